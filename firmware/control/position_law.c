@@ -1,0 +1,57 @@
+#include "firmware/control/position_law.h"
+
+#include "firmware/control/pid.h"
+#include "firmware/control/state_feedback.h"
+#include "firmware/numeric/angle.h"
+
+static const struct position_law *const registry[] = {
+    &state_feedback,
+    &pid,
+};
+
+static bool same_text(const char *a, const char *b)
+{
+    while (*a != '\0' && *a == *b) {
+        a++;
+        b++;
+    }
+    return *a == *b;
+}
+
+const struct position_law *position_law_find(const char *name)
+{
+    for (size_t i = 0; i < sizeof registry / sizeof registry[0]; i++) {
+        if (same_text(registry[i]->name, name)) {
+            return registry[i];
+        }
+    }
+    return NULL;
+}
+
+/* Per-unit bound of one of the error terms: twice this and the rest stay below NUM_MAX. */
+static const double term_limit = 10.0;
+
+static num_t error_limit(double gain, double largest)
+{
+    return num_from_double(gain * largest > term_limit ? term_limit / gain : largest);
+}
+
+void position_law_scale(struct position_law_params *params, const struct position_law_task *task,
+                        const struct position_law_gains *gains)
+{
+    const struct per_unit *base = task->base;
+    const double position = gains->position_A_rad * base->rad_per_turn / base->current_A;
+    const double speed = gains->speed_As_rad * base->speed_rad_s / base->current_A;
+
+    params->position = coef_from_double(position);
+    params->speed = coef_from_double(speed);
+    params->integral = coef_from_double(0.0);
+    params->reference_friction =
+        coef_from_double(gains->reference_friction_As_rad * base->speed_rad_s / base->current_A);
+    params->reference_acceleration = coef_from_double(gains->reference_acceleration_As2_rad *
+                                                      base->acceleration_rad_s2 / base->current_A);
+    params->position_error_limit = error_limit(position, POSITION_DIFFERENCE_MAX);
+    params->speed_error_limit =
+        error_limit(speed, 2.0 * task->speed_limit_rad_s / base->speed_rad_s);
+    params->current_limit = num_from_double(task->current_limit_A / base->current_A);
+}

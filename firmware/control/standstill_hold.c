@@ -1,0 +1,53 @@
+#include "firmware/control/standstill_hold.h"
+
+/* 18 degrees electrical: far inside the quarter turn from which the d axis draws the rotor in. */
+static const double error_limit_turns = 0.05;
+
+/* Within the ramp of the current the rotor may travel a sixteenth of an electrical turn. */
+static const double ramp_travel_turns = 0.0625;
+
+struct standstill_hold_params standstill_hold_design(const struct per_unit *base,
+                                                     const struct standstill_hold_task *task)
+{
+    const double ramp_periods = task->ramp_s / task->period_s;
+    struct standstill_hold_params params;
+
+    params.current = num_from_double(task->current_A / base->current_A);
+    params.current_ramp = num_from_double(task->current_A / base->current_A / ramp_periods);
+    params.current_limit = num_from_double(task->current_limit_A / base->current_A);
+    params.damping =
+        coef_from_double(2.0 * task->speed_gain_As_rad * base->speed_rad_s / base->current_A);
+    params.delay_periods = (uint32_t)(task->delay_s / task->period_s + 0.5);
+    params.error_limit = num_from_double(error_limit_turns);
+    params.speed_limit = num_from_double(ramp_travel_turns / ramp_periods / base->turns_per_period);
+    return params;
+}
+
+void standstill_hold_reset(struct standstill_hold *hold)
+{
+    hold->active = false;
+    hold->i_d = NUM(0.0);
+}
+
+void standstill_hold_step(struct standstill_hold *hold, const struct standstill_hold_params *params,
+                          uint32_t rest_periods, num_t position_error, num_t speed)
+{
+    bool near =
+        num_abs(position_error) < params->error_limit && num_abs(speed) < params->speed_limit;
+
+    if (rest_periods == 0u) {
+        hold->active = false;
+    } else if (rest_periods > params->delay_periods && near) {
+        hold->active = true;
+    }
+    hold->i_d += hold->active ? params->current_ramp : -params->current_ramp;
+    hold->i_d = num_clamp(hold->i_d, NUM(0.0), params->current);
+}
+
+num_t standstill_hold_torque_current(const struct standstill_hold_params *params, num_t speed,
+                                     num_t load_torque)
+{
+    num_t current = load_torque - num_mul_coef(speed, params->damping);
+
+    return num_clamp(current, -params->current_limit, params->current_limit);
+}

@@ -1,0 +1,16 @@
+/*
+ * State feedback with load-torque compensation, Bendjedia 2012 (19):
+ *
+ *   i_q* = K_theta (theta* - theta) + K_w (w* - w) + K_L T_L + (J alpha* + Kv w*)/Km
+ *
+ * As published there is no w* and no alpha*: the position then lags by (2/w0) w in motion. Gains
+ * (18)-(33): design/state_feedback_design.h.
+ */
+#ifndef STEADYSTEP_STATE_FEEDBACK_H
+#define STEADYSTEP_STATE_FEEDBACK_H
+
+#include "firmware/control/position_law.h"
+
+extern const struct position_law state_feedback;
+
+#endif

@@ -1,0 +1,50 @@
+#include "firmware/drive/command_queue.h"
+
+static bool has_come(uint32_t at_period, uint32_t period)
+{
+    return (int32_t)(period - at_period) >= 0;
+}
+
+bool command_queue_put(struct command_queue *queue, const struct queued_command *command)
+{
+    if (queue->written - queue->read == COMMAND_QUEUE_LENGTH) {
+        return false;
+    }
+    queue->entry[queue->written % COMMAND_QUEUE_LENGTH] = *command;
+    queue->written = queue->written + 1u;
+    return true;
+}
+
+void command_queue_put_urgent(struct command_queue *queue, struct urgent_command *urgent,
+                              uint32_t at_period)
+{
+    urgent->posted = false;
+    urgent->at_period = at_period;
+    urgent->flush_to = queue->written;
+    urgent->posted = true;
+}
+
+bool command_queue_take_urgent(struct command_queue *queue, struct urgent_command *urgent,
+                               uint32_t period)
+{
+    if (!urgent->posted || !has_come(urgent->at_period, period)) {
+        return false;
+    }
+    urgent->posted = false;
+    if ((int32_t)(urgent->flush_to - queue->read) > 0) {
+        queue->read = urgent->flush_to;
+    }
+    return true;
+}
+
+const struct queued_command *command_queue_due(const struct command_queue *queue, uint32_t period)
+{
+    const struct queued_command *oldest = &queue->entry[queue->read % COMMAND_QUEUE_LENGTH];
+
+    return queue->written != queue->read && has_come(oldest->at_period, period) ? oldest : NULL;
+}
+
+void command_queue_drop(struct command_queue *queue)
+{
+    queue->read = queue->read + 1u;
+}

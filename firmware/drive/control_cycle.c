@@ -1,0 +1,120 @@
+/*
+ * The control interrupt, read as the block diagram of the drive:
+ *
+ *   samples -> per-unit -> estimator -> reference -> position law or hold -> current control,
+ *   decoupling, voltage limit -> loss compensation, modulator -> duties, watched by the protection
+ *
+ * What is computed from S(k) acts from S(k+1) on. So currents and rotor are predicted to S(k+1)
+ * with the voltage already committed, and compared with the reference of S(k+1).
+ */
+#include "firmware/drive/drive.h"
+#include "firmware/drive/state_machine.h"
+
+/* The motor at S(k+1) as known at S(k). */
+struct prediction {
+    struct phases current;
+    struct rotor rotor;
+};
+
+static struct prediction predict(const struct drive *drive, const struct estimate *estimate)
+{
+    const struct motor_model_params *model = &drive->params.model;
+    struct prediction next;
+
+    next.rotor = estimate->rotor;
+    next.current = predict_current(model, &estimate->winding, estimate->current,
+                                   actuation_in_force(&drive->actuation), estimate->rotor.speed,
+                                   estimate->mid_period);
+    predict_rotor(model, &next.rotor, park(next.current, estimate->mid_period).q);
+    return next;
+}
+
+static struct dq wanted_current(struct drive *drive, const struct rotor *rotor)
+{
+    const struct drive_params *params = &drive->params;
+    const struct reference_sample *reference = &drive->reference.next;
+    const struct position_law_input input = {
+        .position_error = position_difference(reference->position, rotor->position),
+        .reference_speed = params->feed_forward ? reference->speed : NUM(0.0),
+        .reference_acceleration = params->feed_forward ? reference->acceleration : NUM(0.0),
+        .speed = rotor->speed,
+        .load_torque = rotor->load_torque,
+    };
+    struct dq current;
+
+    standstill_hold_step(&drive->hold, &params->hold, drive->reference.rest_periods,
+                         input.position_error, rotor->speed);
+    current.d = drive->hold.i_d;
+    current.q = drive->hold.active ? standstill_hold_torque_current(&params->hold, rotor->speed,
+                                                                    rotor->load_torque)
+                                   : params->position_law->step(&drive->law, &params->law, &input);
+    return current;
+}
+
+/* The hold fixes the current frame to the reference; in motion it turns with the rotor. */
+static angle_t control_frame(const struct drive *drive, const struct rotor *rotor)
+{
+    return drive->hold.active ? drive->reference.next.position.fraction : rotor->position.fraction;
+}
+
+/* The voltage turns back to phases at the angle of the middle of S(k+1)...S(k+2). */
+static struct phases regulate_current(struct drive *drive, const struct prediction *next)
+{
+    const struct drive_params *params = &drive->params;
+    const angle_t frame = control_frame(drive, &next->rotor);
+    const angle_t mid_period = frame + half_period_rotation(&params->model, next->rotor.speed);
+
+    drive->current = park(next->current, sincos_of(frame));
+    drive->voltage_command = current_control_step(
+        &drive->current_control, &params->current_control, drive->current_reference, drive->current,
+        next->rotor.speed, modulator_voltage_limit(&drive->modulator));
+    return inverse_park(drive->voltage_command, sincos_of(mid_period));
+}
+
+static struct hal_outputs modulate(struct drive *drive, struct phases voltage)
+{
+    const struct phases command = actuation_compensate(&drive->actuation, voltage);
+    const struct modulation out =
+        modulator_step(&drive->modulator, &drive->params.modulator, command);
+    const struct hal_outputs duties = {
+        .high_counts = {out.a.plus, out.a.minus, out.b.plus, out.b.minus},
+        .bridge_on = true,
+    };
+
+    actuation_commit(&drive->actuation, out.voltage);
+    return duties;
+}
+
+static struct hal_outputs control(struct drive *drive, const struct sample_set *now)
+{
+    const struct drive_params *params = &drive->params;
+    const struct estimate *estimate;
+    struct prediction next;
+
+    modulator_track_bus(&drive->modulator, now->bus);
+    actuation_observe(&drive->actuation, now->voltage);
+    estimate = estimator_step(&drive->estimator, &params->estimator, now->current, now->voltage,
+                              drive->hold.active);
+    (void)reference_step(&drive->reference, &params->reference);
+    next = predict(drive, estimate);
+    drive->current_reference = wanted_current(drive, &next.rotor);
+    struct hal_outputs duties = modulate(drive, regulate_current(drive, &next));
+    state_machine_fault(drive, protection_check_estimate(&params->protection, estimate));
+    duties.bridge_on = state_machine_powered(drive);
+    return duties;
+}
+
+struct hal_outputs drive_control_cycle(struct drive *drive, const struct hal_samples *samples)
+{
+    const struct sample_set now =
+        measurement_step(&drive->measurement, &drive->params.measurement, samples);
+    struct hal_outputs duties = {.bridge_on = false};
+
+    drive->bus = now.bus;
+    state_machine_step(drive, samples, &now);
+    if (state_machine_powered(drive)) {
+        duties = control(drive, &now);
+    }
+    drive->period++;
+    return duties;
+}

@@ -1,0 +1,118 @@
+#include "firmware/drive/drive.h"
+
+#include "firmware/design/state_feedback_design.h"
+
+static bool design_estimator(struct drive *drive, const struct drive_settings *settings,
+                             double period_s, char error[DRIVE_ERROR_TEXT])
+{
+    struct estimator_params *params = &drive->params.estimator;
+    const struct motor_params *motor = &settings->motor;
+
+    if (settings->estimator == DRIVE_ESTIMATOR_STEADY_STATE_EKF) {
+        struct steady_state_ekf_gains gains;
+
+        if (!steady_state_ekf_design(motor, period_s, &gains, error)) {
+            return false;
+        }
+        params->kind = ESTIMATOR_STEADY_STATE_EKF;
+        params->steady_state = steady_state_ekf_scale(&drive->params.model, &drive->base, &gains);
+    } else {
+        struct invariant_ekf_gains moving;
+        struct invariant_ekf_gains holding;
+        struct invariant_ekf_gains following;
+
+        if (!invariant_ekf_motion_design(motor, period_s, &moving, error) ||
+            !invariant_ekf_hold_design(motor, period_s, settings->hold_current_A,
+                                       INVARIANT_EKF_HOLD_ROBUST, &holding, error) ||
+            !invariant_ekf_hold_design(motor, period_s, settings->hold_current_A,
+                                       INVARIANT_EKF_HOLD_FAST, &following, error)) {
+            return false;
+        }
+        if (!settings->resistance_adaptation) {
+            holding.k_resistance_ohm_AV = 0.0;
+            following.k_resistance_ohm_AV = 0.0;
+        }
+        params->kind = ESTIMATOR_INVARIANT_EKF;
+        params->invariant =
+            invariant_ekf_scale(&drive->params.model, &drive->base, &moving, &holding, &following);
+    }
+    estimator_reset(&drive->estimator, params, drive->params.initial_position,
+                    drive->params.model.nominal_resistance);
+    return true;
+}
+
+static bool design_law(struct drive *drive, const struct drive_settings *settings, double period_s,
+                       char error[DRIVE_ERROR_TEXT])
+{
+    const struct position_law_task task = {
+        .motor = &settings->motor,
+        .base = &drive->base,
+        .period_s = period_s,
+        .bandwidth_rad_s = settings->law_bandwidth_rad_s,
+        .current_bandwidth_rad_s = settings->current_bandwidth_rad_s,
+        .speed_limit_rad_s = settings->speed_limit_rad_s,
+        .current_limit_A = settings->current_limit_A,
+    };
+
+    drive->params.position_law = position_law_find(drive_law_name(settings->law));
+    return drive->params.position_law->design(&drive->params.law, &task, error);
+}
+
+static bool design_hold(struct drive *drive, const struct drive_settings *settings, double period_s,
+                        char error[DRIVE_ERROR_TEXT])
+{
+    struct state_feedback_gains gains;
+
+    if (!state_feedback_design(&settings->motor, period_s, settings->law_bandwidth_rad_s,
+                               settings->current_bandwidth_rad_s, &gains, error)) {
+        return false;
+    }
+    const struct standstill_hold_task task = {
+        .current_A = settings->hold_current_A,
+        .ramp_s = settings->hold_ramp_s,
+        .delay_s = settings->hold_delay_s,
+        .current_limit_A = settings->current_limit_A,
+        .speed_gain_As_rad = gains.k_speed_As_rad,
+        .period_s = period_s,
+    };
+    drive->params.hold = standstill_hold_design(&drive->base, &task);
+    return true;
+}
+
+bool drive_init(struct drive *drive, const struct hal *board, const struct drive_settings *settings,
+                char error[DRIVE_ERROR_TEXT])
+{
+    static const struct drive powered_down = {.state = DRIVE_SWITCH_ON_DISABLED};
+    const struct hal_facts *facts = board->facts;
+    const double period_s = facts->control_period_s;
+    struct drive_params *params = &drive->params;
+
+    *drive = powered_down;
+    if (!drive_settings_check(settings, error)) {
+        return false;
+    }
+    drive->board = board;
+    drive->settings = *settings;
+    drive->base = per_unit_base(&settings->motor, period_s);
+    params->measurement = measurement_design(facts, &drive->base);
+    params->model =
+        motor_model_design(&settings->motor, &drive->base, period_s, facts->bridge_resistance_ohm);
+    params->initial_position =
+        position_from_rad(settings->initial_angle_rad + settings->initial_angle_error_rad,
+                          settings->motor.rotor_teeth);
+    params->reference = reference_design(&drive->base, period_s);
+    params->current_control = current_control_design(&settings->motor, &drive->base, period_s,
+                                                     settings->current_bandwidth_rad_s);
+    params->modulator = modulator_design(facts->pwm_half_period_counts);
+    params->protection = protection_design(&drive->base, settings);
+    params->calibrate_offsets = settings->calibrate_offsets;
+    params->feed_forward = settings->feed_forward;
+    params->hold_on_enable_periods =
+        settings->hold_on_enable ? (uint32_t)(settings->hold_on_enable_s / period_s + 0.5) : 0u;
+    modulator_reset(&drive->modulator);
+    reference_reset(&drive->reference, params->initial_position);
+    drive->planned_end = params->initial_position;
+    return design_estimator(drive, settings, period_s, error) &&
+           design_law(drive, settings, period_s, error) &&
+           design_hold(drive, settings, period_s, error);
+}

@@ -1,0 +1,90 @@
+/*
+ * One sensorless position drive. The application owns the instance; a host may hold as many as it
+ * likes. drive_control_cycle is the control interrupt, everything else is start-up or background.
+ */
+#ifndef STEADYSTEP_DRIVE_H
+#define STEADYSTEP_DRIVE_H
+
+#include "firmware/control/current_control.h"
+#include "firmware/control/modulator.h"
+#include "firmware/control/position_law.h"
+#include "firmware/control/standstill_hold.h"
+#include "firmware/drive/command_queue.h"
+#include "firmware/drive/drive_interface.h"
+#include "firmware/drive/measurement.h"
+#include "firmware/drive/protection.h"
+#include "firmware/estimator/estimator.h"
+#include "firmware/motion/reference.h"
+#include "firmware/motor/actuation.h"
+#include "hal/hal.h"
+
+/* Constants: written at start-up, read by the interrupt. */
+struct drive_params {
+    struct measurement_params measurement;
+    struct motor_model_params model;
+    struct estimator_params estimator;
+    struct reference_params reference;
+    struct position_law_params law;
+    struct standstill_hold_params hold;
+    struct current_control_params current_control;
+    struct modulator_params modulator;
+    struct protection_params protection;
+    const struct position_law *position_law;
+    struct position initial_position; /* as the drive is told it */
+    uint32_t hold_on_enable_periods;
+    bool calibrate_offsets;
+    bool feed_forward;
+};
+
+struct drive {
+    struct drive_params params;
+
+    /* blocks, in the order of the block diagram */
+    struct measurement measurement;
+    struct estimator estimator;
+    struct reference reference;
+    struct standstill_hold hold;
+    struct position_law_state law;
+    struct current_control current_control;
+    struct modulator modulator;
+    struct actuation actuation;
+
+    /* supervision */
+    enum drive_state state;
+    enum drive_fault fault;
+    uint32_t period; /* index of the next control interrupt */
+    uint32_t state_periods;
+    struct command_queue commands;
+
+    /* this period's inner signals, shown by drive_signals_read */
+    struct dq current;
+    struct dq current_reference;
+    struct dq voltage_command;
+    num_t bus;
+
+    /* background */
+    const struct hal *board;
+    struct drive_settings settings;
+    struct per_unit base;
+    struct position planned_end; /* where the reference rests when all posted moves are done */
+    bool stop_posted;            /* planned_end is not known before the reference rests */
+};
+
+/*
+ * Start-up: checks the settings and designs every gain. false: refused, reason in error.
+ * Takes up to 50 ms on a Cortex-M4F, 500 ms on a Cortex-M0+.
+ */
+bool drive_init(struct drive *drive, const struct hal *board, const struct drive_settings *settings,
+                char error[DRIVE_ERROR_TEXT]);
+
+/* The control interrupt: from the samples of S(k) to the duties of S(k+1)...S(k+2). */
+struct hal_outputs drive_control_cycle(struct drive *drive, const struct hal_samples *samples);
+
+/* Background: plans and posts a command. false: refused, reason in error. */
+bool drive_command(struct drive *drive, const struct drive_command *command,
+                   char error[DRIVE_ERROR_TEXT]);
+
+/* Background: what the drive shows of the last period. */
+void drive_signals_read(const struct drive *drive, struct drive_signals *signals);
+
+#endif

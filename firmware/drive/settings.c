@@ -1,0 +1,133 @@
+#include "firmware/design/refusal.h"
+#include "firmware/drive/drive_interface.h"
+
+void drive_settings_default(struct drive_settings *settings, const struct motor_params *motor)
+{
+    const struct drive_settings defaults = {
+        .motor = *motor,
+        .law = DRIVE_LAW_STATE_FEEDBACK,
+        .estimator = DRIVE_ESTIMATOR_INVARIANT_EKF,
+        .law_bandwidth_rad_s = 200.0,
+        .feed_forward = true,
+        .current_bandwidth_rad_s = 1500.0,
+        .current_limit_A = motor->rated_current_A,
+        .overcurrent_trip_A = 1.8 * motor->rated_current_A,
+        .speed_limit_rad_s = 1.3 * motor->supply_V / motor->torque_constant_Nm_A,
+        .resistance_adaptation = true,
+        .hold_current_A = 0.5 * motor->rated_current_A,
+        .hold_ramp_s = 0.010,
+        .hold_delay_s = 0.015,
+        .calibrate_offsets = true,
+        .hold_on_enable = true,
+        .hold_on_enable_s = 0.150,
+    };
+    *settings = defaults;
+}
+
+/* Name, value and allowed range of one setting. */
+struct bounded {
+    const char *name;
+    double value;
+    double min;
+    double max;
+    const char *unit;
+};
+
+static bool check(const struct bounded *setting, char error[DRIVE_ERROR_TEXT])
+{
+    struct refusal refusal = {.quantity = setting->name,
+                              .value = setting->value,
+                              .unit = setting->unit,
+                              .reason = "the range of this setting"};
+
+    if (!(setting->value >= setting->min)) {
+        refusal.relation = "at least";
+        refusal.limit = setting->min;
+        return design_refuse_limit(error, refusal);
+    }
+    if (!(setting->value <= setting->max)) {
+        refusal.relation = "at most";
+        refusal.limit = setting->max;
+        return design_refuse_limit(error, refusal);
+    }
+    return true;
+}
+
+/* Ranges wide enough for any hybrid stepper, narrow enough to catch a slip of the unit. */
+bool drive_settings_check(const struct drive_settings *settings, char error[DRIVE_ERROR_TEXT])
+{
+    const struct motor_params *motor = &settings->motor;
+    const double rated = motor->rated_current_A;
+    const struct bounded bounds[] = {
+        {"resistance_ohm", motor->resistance_ohm, 1e-3, 1e3, "ohm"},
+        {"inductance_H", motor->inductance_H, 1e-6, 1.0, "H"},
+        {"torque_constant_Nm_A", motor->torque_constant_Nm_A, 1e-4, 100.0, "N m/A"},
+        {"viscous_friction_Nms_rad", motor->viscous_friction_Nms_rad, 0.0, 10.0, "N m s/rad"},
+        {"inertia_kgm2", motor->inertia_kgm2, 1e-9, 10.0, "kg m2"},
+        {"rated_current_A", rated, 1e-2, 50.0, "A"},
+        {"supply_V", motor->supply_V, 5.0, 400.0, "V"},
+        {"rotor_teeth", (double)motor->rotor_teeth, 1.0, 1000.0, ""},
+        {"law_bandwidth_rad_s", settings->law_bandwidth_rad_s, 1.0, 1e4, "rad/s"},
+        {"current_bandwidth_rad_s", settings->current_bandwidth_rad_s, 10.0, 1e5, "rad/s"},
+        {"current_limit_A", settings->current_limit_A, 0.01 * rated, 2.0 * rated, "A"},
+        {"overcurrent_trip_A", settings->overcurrent_trip_A, 0.1 * rated, 4.0 * rated, "A"},
+        {"speed_limit_rad_s", settings->speed_limit_rad_s, 0.1, 1e4, "rad/s"},
+        {"hold_current_A", settings->hold_current_A, 0.01 * rated, rated, "A"},
+        {"hold_ramp_s", settings->hold_ramp_s, 1e-3, 1.0, "s"},
+        {"hold_delay_s", settings->hold_delay_s, 0.0, 100.0, "s"},
+        {"hold_on_enable_s", settings->hold_on_enable_s, 0.01, 10.0, "s"},
+        {"initial_angle_rad", settings->initial_angle_rad, -1e4, 1e4, "rad"},
+        {"initial_angle_error_rad", settings->initial_angle_error_rad, -10.0, 10.0, "rad"},
+    };
+
+    for (size_t i = 0; i < sizeof bounds / sizeof bounds[0]; i++) {
+        if (!check(&bounds[i], error)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+const char *drive_state_name(enum drive_state state)
+{
+    static const char *const names[DRIVE_STATES] = {
+        [DRIVE_SWITCH_ON_DISABLED] = "switch-on-disabled",
+        [DRIVE_CALIBRATING_OFFSETS] = "calibrating-offsets",
+        [DRIVE_ALIGNING] = "aligning",
+        [DRIVE_OPERATION_ENABLED] = "operation-enabled",
+        [DRIVE_FAULT] = "fault",
+    };
+    return names[state];
+}
+
+const char *drive_fault_name(enum drive_fault fault)
+{
+    static const char *const names[DRIVE_FAULTS] = {
+        [DRIVE_FAULT_NONE] = "none",
+        [DRIVE_FAULT_OVERCURRENT] = "overcurrent",
+        [DRIVE_FAULT_HARDWARE_OVERCURRENT] = "hardware-overcurrent",
+        [DRIVE_FAULT_DEADLINE_MISSED] = "deadline-missed",
+        [DRIVE_FAULT_BUS_VOLTAGE] = "bus-voltage",
+        [DRIVE_FAULT_ESTIMATE_RANGE] = "estimate-range",
+        [DRIVE_FAULT_OFFSET_RANGE] = "offset-range",
+    };
+    return names[fault];
+}
+
+const char *drive_law_name(enum drive_law law)
+{
+    static const char *const names[DRIVE_LAWS] = {
+        [DRIVE_LAW_STATE_FEEDBACK] = "state-feedback",
+        [DRIVE_LAW_PID] = "pid",
+    };
+    return names[law];
+}
+
+const char *drive_estimator_name(enum drive_estimator estimator)
+{
+    static const char *const names[DRIVE_ESTIMATORS] = {
+        [DRIVE_ESTIMATOR_INVARIANT_EKF] = "invariant-ekf",
+        [DRIVE_ESTIMATOR_STEADY_STATE_EKF] = "steady-state-ekf",
+    };
+    return names[estimator];
+}

@@ -1,0 +1,128 @@
+#include "firmware/drive/state_machine.h"
+
+static void enter(struct drive *drive, enum drive_state state)
+{
+    drive->state = state;
+    drive->state_periods = 0;
+}
+
+/* All blocks at rest at the position the drive is told; a calibrated resistance is kept. */
+static void reset_blocks(struct drive *drive)
+{
+    const struct drive_params *params = &drive->params;
+    const num_t resistance =
+        estimator_estimate(&drive->estimator, &params->estimator)->winding.resistance;
+
+    estimator_reset(&drive->estimator, &params->estimator, params->initial_position, resistance);
+    reference_reset(&drive->reference, params->initial_position);
+    standstill_hold_reset(&drive->hold);
+    drive->law.integral = NUM(0.0);
+    current_control_reset(&drive->current_control);
+    actuation_reset(&drive->actuation);
+}
+
+static void power_up(struct drive *drive)
+{
+    reset_blocks(drive);
+    if (drive->params.hold_on_enable_periods > 0u) {
+        drive->hold.active = true;
+        enter(drive, DRIVE_ALIGNING);
+    } else {
+        enter(drive, DRIVE_OPERATION_ENABLED);
+    }
+}
+
+static void start_enabling(struct drive *drive)
+{
+    measurement_reset(&drive->measurement);
+    if (drive->params.calibrate_offsets) {
+        enter(drive, DRIVE_CALIBRATING_OFFSETS);
+    } else {
+        power_up(drive);
+    }
+}
+
+static void disable(struct drive *drive)
+{
+    drive->fault = DRIVE_FAULT_NONE;
+    enter(drive, DRIVE_SWITCH_ON_DISABLED);
+}
+
+/* true: done with the command; false: it waits for the reference to come to rest. */
+static bool obey(struct drive *drive, const struct queued_command *command)
+{
+    if (command->kind == DRIVE_COMMAND_ENABLE) {
+        if (drive->state == DRIVE_SWITCH_ON_DISABLED) {
+            start_enabling(drive);
+        }
+        return true;
+    }
+    if (drive->state != DRIVE_OPERATION_ENABLED) {
+        return true;
+    }
+    if (drive->reference.next.moving) {
+        return false;
+    }
+    if (command->kind == DRIVE_COMMAND_HOLD) {
+        drive->reference.rest_periods = UINT32_MAX;
+    } else {
+        (void)reference_load(&drive->reference, &command->profile);
+    }
+    return true;
+}
+
+static void take_commands(struct drive *drive)
+{
+    struct command_queue *queue = &drive->commands;
+    const struct queued_command *command;
+
+    if (command_queue_take_urgent(queue, &queue->disable, drive->period)) {
+        disable(drive);
+    }
+    if (command_queue_take_urgent(queue, &queue->stop, drive->period)) {
+        reference_stop(&drive->reference);
+    }
+    command = command_queue_due(queue, drive->period);
+    if (command != NULL && obey(drive, command)) {
+        command_queue_drop(queue);
+    }
+}
+
+static void calibrate_offsets(struct drive *drive, const struct hal_samples *samples)
+{
+    switch (measurement_calibrate(&drive->measurement, &drive->params.measurement, samples)) {
+    case OFFSETS_PENDING:
+        break;
+    case OFFSETS_FOUND:
+        power_up(drive);
+        break;
+    case OFFSETS_OUT_OF_RANGE:
+        state_machine_fault(drive, DRIVE_FAULT_OFFSET_RANGE);
+        break;
+    }
+}
+
+void state_machine_fault(struct drive *drive, enum drive_fault fault)
+{
+    if (fault != DRIVE_FAULT_NONE) {
+        drive->fault = fault;
+        enter(drive, DRIVE_FAULT);
+    }
+}
+
+void state_machine_step(struct drive *drive, const struct hal_samples *samples,
+                        const struct sample_set *now)
+{
+    drive->state_periods++;
+    take_commands(drive);
+    if (drive->state == DRIVE_CALIBRATING_OFFSETS) {
+        calibrate_offsets(drive, samples);
+    } else if (drive->state == DRIVE_ALIGNING &&
+               drive->state_periods > drive->params.hold_on_enable_periods) {
+        enter(drive, DRIVE_OPERATION_ENABLED);
+    }
+    if (state_machine_powered(drive)) {
+        state_machine_fault(
+            drive, protection_check_samples(&drive->params.protection, now, samples->flags));
+    }
+}

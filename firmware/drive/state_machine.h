@@ -1,0 +1,29 @@
+/*
+ * States of the drive (CiA 402 names) and what leads from one to the next:
+ *
+ *   switch-on-disabled --enable--> calibrating-offsets --> aligning --> operation-enabled
+ *          ^                                                                  |
+ *          +-------------------- disable (from anywhere) <--------------------+
+ *   any powered state --protection--> fault --disable--> switch-on-disabled
+ *
+ * The first two steps of enabling can be left out by the settings.
+ */
+#ifndef STEADYSTEP_STATE_MACHINE_H
+#define STEADYSTEP_STATE_MACHINE_H
+
+#include "firmware/drive/drive.h"
+
+/* The bridge is on and the control runs. */
+static inline bool state_machine_powered(const struct drive *drive)
+{
+    return drive->state == DRIVE_ALIGNING || drive->state == DRIVE_OPERATION_ENABLED;
+}
+
+/* One period: takes due commands, the steps of enabling and the faults seen in the samples. */
+void state_machine_step(struct drive *drive, const struct hal_samples *samples,
+                        const struct sample_set *now);
+
+/* Opens the bridge if there is a fault. */
+void state_machine_fault(struct drive *drive, enum drive_fault fault);
+
+#endif

@@ -1,0 +1,188 @@
+#include "firmware/motion/reference.h"
+
+/* Acceleration is shown through 32 bits of 2^-38 turn; profile_plan keeps it below 2^31 of them. */
+#define ACCELERATION_SHIFT 26
+#define ACCELERATION_SCALE 64.0 /* turns_from_angle takes them for 2^-32 turn */
+
+struct reference_params reference_design(const struct per_unit *base, double period_s)
+{
+    const double speed = 1.0 / base->turns_per_period;
+    const double acceleration =
+        base->rad_per_turn / (period_s * period_s * base->acceleration_rad_s2);
+    struct reference_params params;
+
+    params.speed = coef_from_double(speed);
+    params.speed_remainder = coef_from_double(speed - coef_to_double(params.speed));
+    params.acceleration = coef_from_double(acceleration / ACCELERATION_SCALE);
+    return params;
+}
+
+static struct reference_sample sample_of(const struct reference *r,
+                                         const struct reference_params *params)
+{
+    num_t speed = turns_from_angle((int32_t)(r->speed >> 32));
+    num_t acceleration = turns_from_angle((int32_t)(r->acceleration >> ACCELERATION_SHIFT));
+
+    return (struct reference_sample){
+        .position = {.turns = r->turns, .fraction = (angle_t)(r->fraction >> 32)},
+        .speed = num_mul_coef(speed, params->speed) + num_mul_coef(speed, params->speed_remainder),
+        .acceleration = num_mul_coef(acceleration, params->acceleration),
+        .moving = r->phase != REFERENCE_REST,
+    };
+}
+
+static void place(struct reference *r, struct position position)
+{
+    r->turns = position.turns;
+    r->fraction = (uint64_t)position.fraction << 32;
+}
+
+void reference_reset(struct reference *r, struct position position)
+{
+    *r = (struct reference){.phase = REFERENCE_REST};
+    place(r, position);
+    r->next.position = position;
+    r->now = r->next;
+}
+
+bool reference_load(struct reference *r, const struct profile *profile)
+{
+    if (r->phase != REFERENCE_REST || r->next.position.turns != profile->start.turns ||
+        r->next.position.fraction != profile->start.fraction) {
+        return false;
+    }
+    r->profile = *profile;
+    r->phase = REFERENCE_LOADED;
+    r->speed = profile->rounding_speed;
+    r->rest_periods = 0;
+    r->stopped = false;
+    return true;
+}
+
+void reference_stop(struct reference *r)
+{
+    r->stop_requested = r->phase != REFERENCE_REST;
+}
+
+static void advance(struct reference *r)
+{
+    int64_t travel = r->speed + (r->acceleration >> 1) + r->jerk_sixth;
+    uint64_t fraction = r->fraction + (uint64_t)travel;
+
+    r->turns += (travel < 0 ? -1 : 0) + (fraction < r->fraction ? 1 : 0);
+    r->fraction = fraction;
+    r->speed += r->acceleration + (r->jerk >> 1);
+    r->acceleration += r->jerk;
+    r->periods_left--;
+}
+
+/*
+ * The ramp down mirrors the ramp up, so cutting the ramp up short where it stands leaves a profile
+ * that ends at rest: the phases already behind keep the length they had.
+ */
+static void cut_short(struct reference *r)
+{
+    struct profile *profile = &r->profile;
+
+    switch (r->phase) {
+    case REFERENCE_LOADED:
+        profile->jerk_periods = 0;
+        profile->acceleration_periods = 0;
+        break;
+    case REFERENCE_JERK_TO_ACCELERATE:
+        profile->jerk_periods -= r->periods_left;
+        profile->acceleration_periods = 0;
+        r->periods_left = 0;
+        break;
+    case REFERENCE_ACCELERATE:
+        profile->acceleration_periods -= r->periods_left;
+        r->periods_left = 0;
+        break;
+    case REFERENCE_JERK_TO_CRUISE:
+        break;
+    case REFERENCE_CRUISE:
+        r->periods_left = 0;
+        break;
+    default: /* decelerates to rest already */
+        return;
+    }
+    profile->cruise_periods = 0;
+    r->stopped = true;
+}
+
+static uint32_t periods_of(const struct profile *profile, enum reference_phase phase)
+{
+    switch (phase) {
+    case REFERENCE_JERK_TO_ACCELERATE:
+    case REFERENCE_JERK_TO_CRUISE:
+    case REFERENCE_JERK_TO_DECELERATE:
+    case REFERENCE_JERK_TO_REST:
+        return profile->jerk_periods;
+    case REFERENCE_ACCELERATE:
+    case REFERENCE_DECELERATE:
+        return profile->acceleration_periods;
+    case REFERENCE_CRUISE:
+        return profile->cruise_periods;
+    default:
+        return 0;
+    }
+}
+
+/* Jerk phases take the acceleration on from the phase before; the others set it. */
+static void begin_next_phase(struct reference *r)
+{
+    const struct profile *profile = &r->profile;
+
+    do {
+        r->phase = (enum reference_phase)(r->phase + 1);
+        r->periods_left = periods_of(profile, r->phase);
+    } while (r->periods_left == 0u && r->phase != REFERENCE_REST);
+
+    r->jerk = 0;
+    r->jerk_sixth = 0;
+    switch (r->phase) {
+    case REFERENCE_JERK_TO_ACCELERATE:
+    case REFERENCE_JERK_TO_REST:
+        r->jerk = profile->jerk;
+        r->jerk_sixth = profile->jerk_sixth;
+        break;
+    case REFERENCE_JERK_TO_CRUISE:
+    case REFERENCE_JERK_TO_DECELERATE:
+        r->jerk = -profile->jerk;
+        r->jerk_sixth = -profile->jerk_sixth;
+        break;
+    case REFERENCE_ACCELERATE:
+        r->acceleration = profile->acceleration;
+        break;
+    case REFERENCE_DECELERATE:
+        r->acceleration = -profile->acceleration;
+        break;
+    case REFERENCE_CRUISE:
+        r->acceleration = 0;
+        break;
+    default:
+        r->speed = 0;
+        r->acceleration = 0;
+        place(r, r->stopped ? (struct position){r->turns, (angle_t)(r->fraction >> 32)}
+                            : profile->target);
+        break;
+    }
+}
+
+void reference_step(struct reference *r, const struct reference_params *params)
+{
+    if (r->periods_left > 0u) {
+        advance(r);
+    } else if (r->phase == REFERENCE_REST && r->rest_periods < UINT32_MAX) {
+        r->rest_periods++;
+    }
+    if (r->stop_requested) {
+        cut_short(r);
+        r->stop_requested = false;
+    }
+    if (r->periods_left == 0u && r->phase != REFERENCE_REST) {
+        begin_next_phase(r);
+    }
+    r->now = r->next;
+    r->next = sample_of(r, params);
+}

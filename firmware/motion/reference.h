@@ -1,0 +1,84 @@
+/*
+ * Reference generator: samples a planned profile once per control period.
+ *
+ *   x += v + a/2 + j/6,   v += a + j/2,   a += j        exact for piecewise constant jerk
+ *
+ * in 64-bit integers of 2^-64 electrical turn per period^n (profile.h makes the halves and sixths
+ * exact). Additions only; the same bits in every number format.
+ *
+ * The drive computes at S(k) what acts from S(k+1) on; a profile loaded, or a stop asked for, at
+ * S(k) therefore begins at S(k+1), and each step gives the reference of S(k+1). Where the
+ * acceleration jumps, a sample shows its value behind the jump.
+ */
+#ifndef STEADYSTEP_REFERENCE_H
+#define STEADYSTEP_REFERENCE_H
+
+#include "firmware/motion/profile.h"
+#include "firmware/motor/per_unit.h"
+
+/* Per-unit scales of what a sample shows. */
+struct reference_params {
+    coef_t speed;           /* per turn/period */
+    coef_t speed_remainder; /* what a coef_t of 16 bits leaves of it */
+    coef_t acceleration;    /* per 2^-6 turn/period^2 */
+};
+
+struct reference_sample {
+    struct position position; /* electrical */
+    num_t speed;              /* per-unit */
+    num_t acceleration;       /* per-unit, torque base over inertia */
+    bool moving;              /* within a profile */
+};
+
+/* Phases of a profile, in order; those of no length are passed over. */
+enum reference_phase {
+    REFERENCE_LOADED,
+    REFERENCE_JERK_TO_ACCELERATE,
+    REFERENCE_ACCELERATE,
+    REFERENCE_JERK_TO_CRUISE,
+    REFERENCE_CRUISE,
+    REFERENCE_JERK_TO_DECELERATE,
+    REFERENCE_DECELERATE,
+    REFERENCE_JERK_TO_REST,
+    REFERENCE_REST
+};
+
+struct reference {
+    struct reference_sample now;  /* at S(k) */
+    struct reference_sample next; /* at S(k+1) */
+    uint32_t rest_periods;        /* since the reference came to rest, at S(k+1); saturates */
+
+    struct profile profile;
+    enum reference_phase phase;
+    uint32_t periods_left; /* of the phase */
+    bool stop_requested;
+    bool stopped; /* comes to rest where it may, not at the target */
+    int32_t turns;
+    uint64_t fraction;
+    int64_t speed;
+    int64_t acceleration;
+    int64_t jerk;
+    int64_t jerk_sixth;
+};
+
+struct reference_params reference_design(const struct per_unit *base, double period_s);
+
+/* At rest at a position. */
+void reference_reset(struct reference *reference, struct position position);
+
+/*
+ * Takes a planned profile over. Refused (false) while another one runs or if it does not start
+ * where the reference rests: the caller keeps it, or plans again from next.position.
+ */
+bool reference_load(struct reference *reference, const struct profile *profile);
+
+/*
+ * Comes to rest as soon as the ramps of the profile allow: with its own acceleration and jerk,
+ * without a step of position or speed. Nothing happens at rest or while it decelerates already.
+ */
+void reference_stop(struct reference *reference);
+
+/* One control period on. */
+void reference_step(struct reference *reference, const struct reference_params *params);
+
+#endif

@@ -1,0 +1,37 @@
+#include "firmware/motor/motor_model.h"
+
+struct motor_model_params motor_model_design(const struct motor_params *motor,
+                                             const struct per_unit *base, double period_s,
+                                             double bridge_resistance_ohm)
+{
+    const double rate = period_s / motor->inductance_H * base->resistance_ohm;
+    const double nominal = (motor->resistance_ohm + bridge_resistance_ohm) / base->resistance_ohm;
+    const double radians = base->turns_per_period * 6.283185307179586476925;
+    struct motor_model_params params;
+
+    params.rate = coef_from_double(rate);
+    params.emf_droop = coef_from_double(radians * radians / 24.0);
+    params.speed_per_torque =
+        coef_from_double(period_s * base->acceleration_rad_s2 / base->speed_rad_s);
+    params.friction =
+        coef_from_double(motor->viscous_friction_Nms_rad * base->speed_rad_s / base->torque_Nm);
+    params.turns_per_speed = coef_from_double(base->turns_per_period);
+    params.nominal_resistance = num_from_double(nominal);
+    params.resistance_min = num_from_double(0.25 * nominal);
+    params.resistance_max = num_from_double(3.0 * nominal);
+    return params;
+}
+
+/* (1 - exp(-x))/x by its series; x = T R/L stays below 1 for any sensible control period. */
+void winding_set_resistance(struct winding *winding, const struct motor_model_params *params,
+                            num_t resistance)
+{
+    num_t x;
+    num_t series;
+
+    winding->resistance = num_clamp(resistance, params->resistance_min, params->resistance_max);
+    x = num_mul_coef(winding->resistance, params->rate);
+    series = NUM(1.0 / 6.0) - num_mul(x, NUM(1.0 / 24.0) - num_mul(x, NUM(1.0 / 120.0)));
+    series = NUM(1.0) - num_mul(x, NUM(0.5) - num_mul(x, series));
+    winding->admittance = num_mul_coef(series, params->rate);
+}

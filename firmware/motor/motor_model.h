@@ -1,0 +1,95 @@
+/*
+ * The motor over one control period, exact for constant voltage, speed and resistance.
+ *
+ * In phase coordinates, with phi the electrical angle of the middle of the period, h = N T w and
+ * a = exp(-T R / L):
+ *
+ *   i+ = a i + (1 - a)/R (u - j Km w (1 - h^2/24) e^(j phi))
+ *   w+ = w + T/J (Km i_q - Kv w - T_L),   i_q of the mean of i and i+ in the frame phi
+ *   theta+ = theta + T (w + w+)/2
+ *
+ * The first line is written as i+ = i + b (u - R i - e) with b = (1 - a)/R, so that a calibrated
+ * resistance enters in one place.
+ */
+#ifndef STEADYSTEP_MOTOR_MODEL_H
+#define STEADYSTEP_MOTOR_MODEL_H
+
+#include "firmware/motor/motor_params.h"
+#include "firmware/motor/park.h"
+#include "firmware/motor/per_unit.h"
+
+struct motor_model_params {
+    coef_t rate;             /* T/L: current per period and unit of voltage; T R/L per resistance */
+    coef_t emf_droop;        /* (N T)^2/24: loss of mean EMF by rotation within the period */
+    coef_t speed_per_torque; /* T/J */
+    coef_t friction;         /* Kv: torque per speed */
+    coef_t turns_per_speed;  /* N T/(2 pi): electrical turns per period and unit of speed */
+    num_t nominal_resistance;
+    num_t resistance_min; /* range of the calibrated resistance */
+    num_t resistance_max;
+};
+
+/* The winding with its present resistance. */
+struct winding {
+    num_t resistance;
+    num_t admittance; /* b = (1 - exp(-T R/L)) / R */
+};
+
+/* Rotor motion at one instant. */
+struct rotor {
+    struct position position; /* electrical */
+    num_t speed;
+    num_t load_torque;
+};
+
+struct motor_model_params motor_model_design(const struct motor_params *motor,
+                                             const struct per_unit *base, double period_s,
+                                             double bridge_resistance_ohm);
+
+/* Sets the resistance, clamped to its range, and what follows from it. */
+void winding_set_resistance(struct winding *winding, const struct motor_model_params *params,
+                            num_t resistance);
+
+/* Electrical angle by which a rotor at this speed turns in half a period. */
+static inline angle_t half_period_rotation(const struct motor_model_params *params, num_t speed)
+{
+    return (angle_t)angle_from_turns(num_half(num_mul_coef(speed, params->turns_per_speed)));
+}
+
+/* Angle of the middle of the coming period. */
+static inline angle_t angle_of_mid_period(const struct motor_model_params *params,
+                                          const struct rotor *rotor)
+{
+    return rotor->position.fraction + half_period_rotation(params, rotor->speed);
+}
+
+/* Phase currents one period on, under the mean phase voltages of that period. */
+static inline struct phases predict_current(const struct motor_model_params *params,
+                                            const struct winding *winding, struct phases current,
+                                            struct phases voltage, num_t speed,
+                                            struct sincos mid_period)
+{
+    num_t droop = num_mul_coef(num_mul(speed, speed), params->emf_droop);
+    num_t emf = speed - num_mul(speed, droop);
+    num_t drive_a =
+        voltage.a - num_mul(winding->resistance, current.a) + num_mul_unit(emf, mid_period.sin);
+    num_t drive_b =
+        voltage.b - num_mul(winding->resistance, current.b) - num_mul_unit(emf, mid_period.cos);
+    struct phases next = {current.a + num_mul(winding->admittance, drive_a),
+                          current.b + num_mul(winding->admittance, drive_b)};
+    return next;
+}
+
+/* Moves the rotor one period on under a mean torque-producing current; the load torque stays. */
+static inline void predict_rotor(const struct motor_model_params *params, struct rotor *rotor,
+                                 num_t i_q)
+{
+    num_t torque = i_q - num_mul_coef(rotor->speed, params->friction) - rotor->load_torque;
+    num_t speed = rotor->speed + num_mul_coef(torque, params->speed_per_torque);
+    num_t turns = num_mul_coef(num_half(rotor->speed + speed), params->turns_per_speed);
+
+    rotor->position = position_add(rotor->position, angle_from_turns(turns));
+    rotor->speed = speed;
+}
+
+#endif

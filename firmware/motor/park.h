@@ -1,0 +1,31 @@
+/* Phase and rotor frames of a two-phase machine; see the sign conventions of motor_params.h. */
+#ifndef STEADYSTEP_PARK_H
+#define STEADYSTEP_PARK_H
+
+#include "firmware/numeric/trig.h"
+
+struct phases {
+    num_t a;
+    num_t b;
+};
+
+struct dq {
+    num_t d; /* along the magnet's flux */
+    num_t q; /* a quarter electrical turn ahead: torque is Km i_q */
+};
+
+static inline struct dq park(struct phases x, struct sincos angle)
+{
+    struct dq y = {num_mul_unit(x.a, angle.cos) + num_mul_unit(x.b, angle.sin),
+                   num_mul_unit(x.b, angle.cos) - num_mul_unit(x.a, angle.sin)};
+    return y;
+}
+
+static inline struct phases inverse_park(struct dq x, struct sincos angle)
+{
+    struct phases y = {num_mul_unit(x.d, angle.cos) - num_mul_unit(x.q, angle.sin),
+                       num_mul_unit(x.d, angle.sin) + num_mul_unit(x.q, angle.cos)};
+    return y;
+}
+
+#endif

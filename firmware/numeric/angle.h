@@ -1,0 +1,84 @@
+/*
+ * Electrical angles and positions.
+ *
+ * An angle is a 32-bit binary fraction of an electrical turn: it wraps as angles do, with a
+ * resolution of 1.5e-9 rad. A position is whole electrical turns plus such a fraction, so that no
+ * resolution is lost after a million turns. Both are integers in every number format.
+ */
+#ifndef STEADYSTEP_ANGLE_H
+#define STEADYSTEP_ANGLE_H
+
+#include <stdint.h>
+
+#include "firmware/numeric/num.h"
+
+typedef uint32_t angle_t; /* 2^32 is one electrical turn */
+
+struct position {
+    int32_t turns;    /* whole electrical turns, towards minus infinity */
+    angle_t fraction; /* rest, 0...1 turn */
+};
+
+/* Largest difference of positions that position_difference tells apart, electrical turns. */
+#define POSITION_DIFFERENCE_MAX 15.0
+
+/* Adds a signed angle of less than half a turn, in 2^-32 turn. */
+static inline struct position position_add(struct position p, int32_t angle)
+{
+    angle_t fraction = p.fraction + (uint32_t)angle;
+    int32_t carry =
+        (angle < 0) ? -(int32_t)(fraction > p.fraction) : (int32_t)(fraction < p.fraction);
+
+    p.turns = (int32_t)((uint32_t)p.turns + (uint32_t)carry);
+    p.fraction = fraction;
+    return p;
+}
+
+/* a - b in electrical turns, saturated at +-POSITION_DIFFERENCE_MAX. */
+static inline num_t position_difference(struct position a, struct position b)
+{
+    const int64_t limit = (int64_t)POSITION_DIFFERENCE_MAX << 32;
+    int64_t turns = (int32_t)((uint32_t)a.turns - (uint32_t)b.turns);
+    int64_t difference = turns * ((int64_t)1 << 32) + a.fraction - b.fraction;
+
+    if (difference > limit) {
+        difference = limit;
+    } else if (difference < -limit) {
+        difference = -limit;
+    }
+#if STEADYSTEP_NUM == NUM_FIXED
+    return (num_t)(difference >> (32 - NUM_FRACTION_BITS));
+#elif STEADYSTEP_NUM == NUM_FLOAT
+    /* 2^-27 turn; a 32-bit number, because a 64-bit conversion is a library call on the M4F. */
+    return (num_t)(int32_t)(difference >> 5) * NUM(1.0 / 134217728.0);
+#else
+    return (num_t)difference * NUM(1.0 / 4294967296.0);
+#endif
+}
+
+/* Signed angle of less than half a turn, in electrical turns. */
+static inline num_t turns_from_angle(int32_t angle)
+{
+#if STEADYSTEP_NUM == NUM_FIXED
+    return angle >> (32 - NUM_FRACTION_BITS);
+#else
+    return (num_t)angle * NUM(1.0 / 4294967296.0);
+#endif
+}
+
+/* Electrical turns to an angle, clamped to just under half a turn. */
+static inline int32_t angle_from_turns(num_t turns)
+{
+    turns = num_clamp(turns, NUM(-0.499), NUM(0.499));
+#if STEADYSTEP_NUM == NUM_FIXED
+    return num_shift_left(turns, 32 - NUM_FRACTION_BITS);
+#else
+    return (int32_t)(turns * NUM(4294967296.0));
+#endif
+}
+
+/* Start-up and telemetry only. Mechanical rad, |rad| < 2^31 electrical turns. */
+struct position position_from_rad(double rad, int32_t rotor_teeth);
+double position_to_rad(struct position p, int32_t rotor_teeth);
+
+#endif

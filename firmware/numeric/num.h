@@ -1,0 +1,239 @@
+/*
+ * One source for three number formats.
+ *
+ *   num_t   a per-unit quantity inside the interrupt; + and - are plain
+ *   unit_t  a sine, a cosine or another ratio in -1...1
+ *   coef_t  a gain fixed at start-up, any magnitude
+ *
+ * STEADYSTEP_NUM selects the format at build time: NUM_FLOAT (float, Cortex-M4F and host),
+ * NUM_FIXED (32-bit fixed point, any core) or NUM_DOUBLE (reference, host only). It is tested for
+ * in this folder and nowhere else.
+ *
+ * Fixed point: num_t is Q5.26, range -32...32 with a resolution of 1.5e-8. unit_t is Q15 in
+ * 32 bits, so that 1 is exact. coef_t is a 16-bit mantissa and two shifts; the product with a
+ * num_t needs two 16 x 16 multiplications on a Cortex-M0+, which has no long multiply. Products
+ * round towards minus infinity and are the same, bit for bit, on every core and compiler. Right
+ * shifts of negative numbers are arithmetic (implementation-defined in C11; so in gcc and clang).
+ * The headroom is proved at start-up: a design whose gains times ranges leave -32...32 is refused.
+ */
+#ifndef STEADYSTEP_NUM_H
+#define STEADYSTEP_NUM_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define NUM_FLOAT  1
+#define NUM_FIXED  2
+#define NUM_DOUBLE 3
+
+#ifndef STEADYSTEP_NUM
+#error "STEADYSTEP_NUM must be NUM_FLOAT, NUM_FIXED or NUM_DOUBLE"
+#endif
+
+/* NUM_FORMAT: the format's name, as a token. */
+#if STEADYSTEP_NUM == NUM_FIXED
+
+#define NUM_FORMAT fixed
+
+typedef int32_t num_t;
+typedef int32_t unit_t;
+typedef struct {
+    int16_t mantissa; /* value = mantissa 2^(left - right - 16) */
+    uint8_t left;
+    uint8_t right;
+} coef_t;
+
+#define NUM_FRACTION_BITS 26
+#define NUM_MAX           32.0 /* magnitude a num_t must stay below */
+
+/* A literal, folded by the compiler: no number is converted at run time. */
+#define NUM(x)  ((num_t)((x)*67108864.0 + ((x) < 0 ? -0.5 : 0.5)))
+#define UNIT(x) ((unit_t)((x)*32768.0 + ((x) < 0 ? -0.5 : 0.5)))
+
+/* floor(a m / 2^16) for a 16-bit m (or 32768). */
+static inline int32_t num_mul_high16(int32_t a, int32_t m)
+{
+#if defined(__ARM_ARCH_6M__)
+    return (a >> 16) * m + (((int32_t)(a & 0xffff) * m) >> 16);
+#else
+    return (int32_t)(((int64_t)a * m) >> 16);
+#endif
+}
+
+static inline int32_t num_shift_left(int32_t a, unsigned bits)
+{
+    return (int32_t)((uint32_t)a << bits);
+}
+
+static inline num_t num_mul_unit(num_t a, unit_t u)
+{
+    return num_shift_left(num_mul_high16(a, u), 1);
+}
+
+static inline num_t num_mul_coef(num_t a, coef_t k)
+{
+    return num_shift_left(num_mul_high16(a, k.mantissa), k.left) >> k.right;
+}
+
+/* floor(a b / 2^26), the full product of two run-time quantities. */
+static inline num_t num_mul(num_t a, num_t b)
+{
+#if defined(__ARM_ARCH_6M__)
+    int32_t a_high = a >> 16;
+    int32_t b_high = b >> 16;
+    uint32_t a_low = (uint32_t)a & 0xffffu;
+    uint32_t b_low = (uint32_t)b & 0xffffu;
+    uint32_t low = a_low * b_low;
+    /* Sum of the cross terms may need 33 bits: the carry goes in halves, as in schoolbook form. */
+    int32_t cross1 = a_high * (int32_t)b_low;
+    int32_t cross2 = (int32_t)a_low * b_high;
+    uint32_t middle = (low >> 16) + ((uint32_t)cross1 & 0xffffu) + ((uint32_t)cross2 & 0xffffu);
+    int32_t high = a_high * b_high + (cross1 >> 16) + (cross2 >> 16) + (int32_t)(middle >> 16);
+    uint32_t product_low = (middle << 16) | (low & 0xffffu);
+    return (num_t)(((uint32_t)high << 6) | (product_low >> 26));
+#else
+    return (num_t)(((int64_t)a * b) >> NUM_FRACTION_BITS);
+#endif
+}
+
+static inline unit_t unit_from_num(num_t a)
+{
+    return a >> (NUM_FRACTION_BITS - 15);
+}
+
+static inline num_t num_from_unit(unit_t u)
+{
+    return num_shift_left(u, NUM_FRACTION_BITS - 15);
+}
+
+static inline num_t num_half(num_t a)
+{
+    return a >> 1;
+}
+
+/* A raw converter code (less than 2^21 in magnitude) times a gain. */
+static inline num_t num_from_code(int32_t code, coef_t k)
+{
+    return num_mul_coef(num_shift_left(code, 10), k);
+}
+
+/* The gain of num_from_code is stated per code; this is the factor hidden in the format. */
+#define NUM_CODE_SCALE 65536.0
+
+/* A per-unit number times a gain as a whole number of timer counts, rounded to nearest. */
+static inline int32_t counts_from_num(num_t a, coef_t k)
+{
+    return (num_mul_coef(a, k) + (1 << 9)) >> 10;
+}
+
+/* The gain of counts_from_num is stated in counts; this is the factor hidden in the format. */
+#define NUM_COUNT_SCALE (1.0 / 65536.0)
+
+/* x < 0 ? 0 : sqrt(x); 16 significant bits. */
+num_t num_sqrt(num_t x);
+
+static inline bool num_is_finite(num_t a)
+{
+    (void)a;
+    return true;
+}
+
+#else /* floating point */
+
+#if STEADYSTEP_NUM == NUM_FLOAT
+#define NUM_FORMAT float
+typedef float num_t;
+#define NUM(x)     ((float)(x))
+#elif STEADYSTEP_NUM == NUM_DOUBLE
+#define NUM_FORMAT double
+typedef double num_t;
+#define NUM(x)     ((double)(x))
+#else
+#error "unknown STEADYSTEP_NUM"
+#endif
+
+typedef num_t unit_t;
+typedef num_t coef_t;
+#define UNIT(x) NUM(x)
+#define NUM_MAX 1e30
+
+static inline num_t num_mul_unit(num_t a, unit_t u)
+{
+    return a * u;
+}
+
+static inline num_t num_mul_coef(num_t a, coef_t k)
+{
+    return a * k;
+}
+
+static inline num_t num_mul(num_t a, num_t b)
+{
+    return a * b;
+}
+
+static inline unit_t unit_from_num(num_t a)
+{
+    return a;
+}
+
+static inline num_t num_from_unit(unit_t u)
+{
+    return u;
+}
+
+static inline num_t num_half(num_t a)
+{
+    return a * NUM(0.5);
+}
+
+static inline num_t num_from_code(int32_t code, coef_t k)
+{
+    return (num_t)code * k;
+}
+
+#define NUM_CODE_SCALE 1.0
+
+static inline int32_t counts_from_num(num_t a, coef_t k)
+{
+    num_t counts = a * k;
+    return (int32_t)(counts < NUM(0.0) ? counts - NUM(0.5) : counts + NUM(0.5));
+}
+
+#define NUM_COUNT_SCALE 1.0
+
+num_t num_sqrt(num_t x);
+
+static inline bool num_is_finite(num_t a)
+{
+    num_t difference = a - a;
+    return difference == NUM(0.0);
+}
+
+#endif
+
+/* Both comparisons are false for a NaN, which becomes the upper bound: nothing undefined later. */
+static inline num_t num_clamp(num_t a, num_t low, num_t high)
+{
+    a = a < high ? a : high;
+    return a > low ? a : low;
+}
+
+static inline num_t num_abs(num_t a)
+{
+    return a < NUM(0.0) ? -a : a;
+}
+
+/* ---- Start-up and telemetry only: conversions from and to double. ---- */
+
+num_t num_from_double(double x); /* saturates at NUM_MAX */
+double num_to_double(num_t x);
+/* Nearest representable gain; saturates. In fixed point |x| < 2^15, relative error <= 2^-15. */
+coef_t coef_from_double(double x);
+double coef_to_double(coef_t k);
+/* The bits of a value, for hashes: 32 of float and fixed point, the upper 32 of double folded in.
+ */
+uint32_t num_bits(num_t x);
+uint32_t coef_bits(coef_t k);
+
+#endif

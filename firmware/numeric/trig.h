@@ -1,0 +1,18 @@
+/* Sine and cosine of an electrical angle; the same polynomials in every number format. */
+#ifndef STEADYSTEP_TRIG_H
+#define STEADYSTEP_TRIG_H
+
+#include "firmware/numeric/angle.h"
+
+struct sincos {
+    unit_t cos;
+    unit_t sin;
+};
+
+/*
+ * Error below 1.3e-7 in floating point, 1e-4 in fixed point; exact at multiples of a quarter turn.
+ * Least-maximum polynomials over an eighth of a turn, fitted by reweighted least squares.
+ */
+struct sincos sincos_of(angle_t angle);
+
+#endif

@@ -1,0 +1,100 @@
+/*
+ * The whole contract between the drive firmware and a board.
+ *
+ * A board owns the PWM timer, the converters and the bridge. Once per PWM period it hands one
+ * coherent set of raw samples to the control interrupt and takes the duties of the next period.
+ * Raw integers cross this border, so that a fixed-point drive needs no floating-point number.
+ *
+ * Timing of one period (10 kHz, T = 100 us, centre-aligned):
+ *
+ *   counter peak      ^             ^             ^      legs high around the valley; around the
+ *   (low state)       S(k)          S(k+1)        S(k+2) peak all four low sides conduct, so that
+ *                                                        the low-side shunts carry the currents
+ *   control           [ISR]                              starts when the conversion at the peak
+ *                                                        ends, must end within 90 us
+ *   duty in force     D(k-1) -----> D(k) ------->        compares load at the peak only: what is
+ *                                                        computed from S(k) acts S(k+1)...S(k+2)
+ *
+ * Currents are sampled at the peak. A phase voltage is the mean over S(k-1)...S(k) of the
+ * difference of its two leg voltages.
+ */
+#ifndef STEADYSTEP_HAL_H
+#define STEADYSTEP_HAL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Flags of a sample set. */
+enum {
+    HAL_FLAG_OVERCURRENT_TRIP = 1u << 0, /* the board's comparator has opened the bridge */
+    HAL_FLAG_DEADLINE_MISSED = 1u << 1,  /* the previous control interrupt ended too late */
+};
+
+/* One coherent sample set, taken at S(k). */
+struct hal_samples {
+    uint16_t current_a;      /* ADC code, zero current at facts.current_zero_code */
+    uint16_t current_b;      /* ADC code */
+    uint16_t bus_voltage;    /* ADC code, 0 V at code 0 */
+    int16_t phase_voltage_a; /* signed code, mean over the period that ends at S(k) */
+    int16_t phase_voltage_b; /* signed code */
+    uint16_t temperature;    /* ADC code of the bridge temperature; 0 if not fitted */
+    int32_t encoder_count;   /* quadrature count, wraps; 0 if not fitted */
+    uint32_t flags;          /* HAL_FLAG_... */
+};
+
+/* The four half-bridges. */
+enum hal_leg { HAL_LEG_A_PLUS, HAL_LEG_A_MINUS, HAL_LEG_B_PLUS, HAL_LEG_B_MINUS, HAL_LEGS };
+
+/* What the control interrupt returns, to act over S(k+1)...S(k+2). */
+struct hal_outputs {
+    uint16_t high_counts[HAL_LEGS]; /* time high per half period, 0...pwm_half_period_counts */
+    bool bridge_on;                 /* false: all gates off, at once */
+};
+
+/* Constant properties of a board, SI units; read at start-up only. */
+struct hal_facts {
+    const char *board_name;
+    double control_period_s;
+    uint32_t pwm_half_period_counts; /* timer counts from valley to peak; 8500 at 170 MHz, 10 kHz */
+    double dead_time_s;
+    double current_A_per_code; /* both phases, 12-bit codes 0...4095 */
+    uint16_t current_zero_code;
+    double bus_V_per_code;
+    double phase_voltage_V_per_code;
+    bool has_phase_voltages;
+    uint32_t encoder_counts_per_turn; /* 0: no encoder */
+    double bridge_resistance_ohm;     /* both conducting switches in series with a phase */
+    uint32_t cycle_counter_Hz;
+    uint32_t parameter_page_bytes; /* unit of erase of the parameter store */
+    uint32_t parameter_word_bytes; /* unit of programming */
+};
+
+/*
+ * A board. Every function may be called from the background loop; bridge_disable also from any
+ * interrupt. `context` is the board's own. No function blocks for longer than it says.
+ */
+struct hal {
+    void *context;
+    const struct hal_facts *facts;
+
+    /* Allows the gates to follow the outputs; false if a hardware trip is latched. */
+    bool (*bridge_enable)(void *context);
+    /* All gates off, immediate, safe from anywhere. */
+    void (*bridge_disable)(void *context);
+    /* Free-running, wraps at 2^32, facts.cycle_counter_Hz. */
+    uint32_t (*cycle_count)(void *context);
+    /* Time since start-up, never runs backwards. */
+    uint64_t (*time_us)(void *context);
+    /* Feeds the watchdog; the board resets if this stops for longer than its period. */
+    void (*watchdog_feed)(void *context);
+    /* Byte stream to and from the host: number of bytes moved, never blocks. */
+    size_t (*stream_read)(void *context, uint8_t *bytes, size_t capacity);
+    size_t (*stream_write)(void *context, const uint8_t *bytes, size_t count);
+    /* Parameter store in the units of real flash. false: out of range or not erased. */
+    bool (*parameters_erase)(void *context, uint32_t page);
+    bool (*parameters_program)(void *context, uint32_t offset, const void *data, size_t count);
+    bool (*parameters_read)(void *context, uint32_t offset, void *data, size_t count);
+};
+
+#endif

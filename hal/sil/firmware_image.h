@@ -1,0 +1,40 @@
+/*
+ * A firmware image as the simulated board holds it: the entry points of one drive, built for one
+ * number format. The image is the only part of the simulator that is compiled with the firmware;
+ * it carries no behaviour of its own.
+ */
+#ifndef STEADYSTEP_FIRMWARE_IMAGE_H
+#define STEADYSTEP_FIRMWARE_IMAGE_H
+
+#include "firmware/drive/drive_interface.h"
+#include "hal/hal.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct firmware_image {
+    const char *numeric; /* "float", "fixed" or "double" */
+    size_t drive_bytes;  /* size of one drive; allocate with alignment of max_align_t */
+
+    /* Start-up: designs all gains. false: settings refused, reason in error. */
+    bool (*init)(void *drive, const struct hal *board, const struct drive_settings *settings,
+                 char error[DRIVE_ERROR_TEXT]);
+    /* The control interrupt. */
+    struct hal_outputs (*control_cycle)(void *drive, const struct hal_samples *samples);
+    /* Posts a command (background). false: refused, reason in error. */
+    bool (*command)(void *drive, const struct drive_command *command, char error[DRIVE_ERROR_TEXT]);
+    void (*signals)(const void *drive, struct drive_signals *signals);
+    /* drive_hash so far: gains once, then duties and signals of every period (FNV-1a, 64 bit). */
+    uint64_t (*hash)(const void *drive);
+};
+
+extern const struct firmware_image firmware_image_float;
+extern const struct firmware_image firmware_image_fixed;
+extern const struct firmware_image firmware_image_double;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,149 @@
+#include "sil/board/board.h"
+
+#include <cstddef>
+#include <stdexcept>
+#include <vector>
+
+#include "hal/sil/hal_sil.h"
+#include "sil/plant/sensors.h"
+
+namespace sil
+{
+
+namespace
+{
+
+hal_facts facts_of(const plant::Config &config)
+{
+    hal_facts facts = {};
+    facts.board_name = "steadystep SIL board";
+    facts.control_period_s = config.bridge.period_s;
+    facts.pwm_half_period_counts = static_cast<std::uint32_t>(config.bridge.half_period_counts);
+    facts.dead_time_s = config.bridge.dead_time_s;
+    facts.current_A_per_code = plant::current_A_per_code(config.sensors);
+    facts.current_zero_code = plant::current_zero_code;
+    facts.bus_V_per_code = plant::bus_V_per_code(config.sensors);
+    facts.phase_voltage_V_per_code = plant::phase_voltage_V_per_code(config.sensors);
+    facts.has_phase_voltages = true;
+    return facts;
+}
+
+} // namespace
+
+struct Board::Impl {
+    Impl(const plant::Config &config, const firmware_image &firmware, double trip_A)
+        : plant(config), image(firmware), hardware_trip_A(trip_A),
+          drive_memory(1 + firmware.drive_bytes / sizeof(std::max_align_t))
+    {
+    }
+
+    plant::Plant plant;
+    const firmware_image &image;
+    const double hardware_trip_A;
+    std::vector<std::max_align_t> drive_memory;
+    void *drive = drive_memory.data();
+    hal_sil hal;
+    hal_samples samples = {};
+    hal_outputs outputs = {};
+    drive_signals signals = {};
+};
+
+Board::Board(const plant::Config &plant, const firmware_image &image,
+             const drive_settings &settings, double hardware_trip_A)
+    : impl_(std::make_unique<Impl>(plant, image, hardware_trip_A))
+{
+    if (!(hardware_trip_A >= 0.0)) {
+        throw std::invalid_argument("hardware_trip_A: expected 0 (not fitted) or a current");
+    }
+    const hal_facts facts = facts_of(plant);
+    hal_sil_init(&impl_->hal, &facts);
+    char error[DRIVE_ERROR_TEXT] = "";
+    if (!image.init(impl_->drive, &impl_->hal.board, &settings, error)) {
+        throw std::invalid_argument(error);
+    }
+    sample();
+}
+
+Board::~Board() = default;
+
+void Board::command(const drive_command &command)
+{
+    char error[DRIVE_ERROR_TEXT] = "";
+    if (!impl_->image.command(impl_->drive, &command, error)) {
+        throw std::invalid_argument(error);
+    }
+}
+
+/* What the converters and the comparator see at the present S(k). */
+void Board::sample()
+{
+    Impl &board = *impl_;
+    const plant::Samples &codes = board.plant.samples();
+    board.samples.current_a = codes.current_a;
+    board.samples.current_b = codes.current_b;
+    board.samples.bus_voltage = codes.bus_voltage;
+    board.samples.phase_voltage_a = codes.phase_voltage_a;
+    board.samples.phase_voltage_b = codes.phase_voltage_b;
+    if (board.hardware_trip_A > 0.0) {
+        const plant::State &state = board.plant.state();
+        const double limit = board.hardware_trip_A;
+        if (state.i_a_A > limit || state.i_a_A < -limit || state.i_b_A > limit ||
+            state.i_b_A < -limit) {
+            hal_sil_trip(&board.hal);
+        }
+    }
+    board.samples.flags =
+        board.hal.trip_latched ? std::uint32_t{HAL_FLAG_OVERCURRENT_TRIP} : std::uint32_t{0};
+}
+
+void Board::control()
+{
+    Impl &board = *impl_;
+    board.outputs = board.image.control_cycle(board.drive, &board.samples);
+    board.image.signals(board.drive, &board.signals);
+}
+
+void Board::advance()
+{
+    Impl &board = *impl_;
+    plant::Duties duties;
+    for (int leg = 0; leg < HAL_LEGS; leg++) {
+        duties.high_counts[leg] = board.outputs.high_counts[leg];
+    }
+    duties.bridge_on = board.outputs.bridge_on && hal_sil_bridge_on(&board.hal);
+    board.plant.step(duties);
+    hal_sil_next_period(&board.hal);
+    sample();
+}
+
+const drive_signals &Board::signals() const
+{
+    return impl_->signals;
+}
+
+std::uint64_t Board::drive_hash() const
+{
+    return impl_->image.hash(impl_->drive);
+}
+
+plant::Plant &Board::plant()
+{
+    return impl_->plant;
+}
+
+const hal_samples &Board::samples() const
+{
+    return impl_->samples;
+}
+
+const hal_outputs &Board::outputs() const
+{
+    return impl_->outputs;
+}
+
+const hal_facts &Board::facts() const
+{
+    return impl_->hal.facts;
+}
+
+} // namespace sil

@@ -1,0 +1,91 @@
+/*
+ * Two H-bridges on one bus: turns the duties of a period into a timetable of the voltages that act
+ * on the phases. Knows nothing of the motor: where a leg is in dead time its voltage depends on
+ * the sign of the current, so a segment carries the phase voltage for either sign.
+ *
+ * Time is counted in timer counts from S(k), the counter's peak; a half period is
+ * half_period_counts, and leg l is commanded high within half period +- high_counts[l].
+ */
+#ifndef STEADYSTEP_PLANT_BRIDGE_H
+#define STEADYSTEP_PLANT_BRIDGE_H
+
+#include "sil/plant/phases.h"
+#include "sil/plant/plant.h"
+
+namespace plant
+{
+
+/* A stretch of time in which no switch changes. */
+struct Segment {
+    double duration_s;
+    Phases if_positive_V; /* phase voltage while the current is positive, */
+    Phases if_negative_V; /* and while negative; above if_positive_V when a leg is in dead time */
+    Phases diode_V;       /* sum of the forward drops in the path of the current */
+    bool dead_time;       /* some leg is in dead time: the two voltages differ somewhere */
+};
+
+struct Timetable {
+    static constexpr int capacity = 40; /* 16 edges, 16 ends of dead time, the period's end */
+    Segment segments[capacity];
+    int count = 0;
+
+    const Segment *begin() const
+    {
+        return segments;
+    }
+    const Segment *end() const
+    {
+        return segments + count;
+    }
+};
+
+class Bridge
+{
+public:
+    explicit Bridge(const BridgeConfig &config); /* throws std::invalid_argument */
+
+    /* The segments of S(k)...S(k+1) with these duties in force; valid until the next call. */
+    const Timetable &period(const Duties &duties);
+
+private:
+    static constexpr int legs = 4;
+    static constexpr int max_edges = 4 * legs; /* pending, at the peak, rising, falling */
+
+    struct Edge {
+        double time; /* counts from S(k) */
+        int leg;
+        bool high;
+    };
+    /* Of a leg: its voltage while current leaves or enters it, and the drop of its diodes. */
+    struct LegVoltage {
+        double leaves, enters, diode;
+    };
+    struct Leg {
+        LegVoltage voltage_V;
+        bool dead;
+        bool commanded_high;
+        int latest_edge; /* its index in the period's list */
+    };
+
+    void off();
+    void averaged(const Duties &duties);
+    void switched(const Duties &duties);
+    int list_edges(const Duties &duties, Edge *edges) const;
+    void start_dead_time(Leg &leg);
+    void end_dead_time(Leg &leg);
+    void append(double duration_counts);
+
+    BridgeConfig config_;
+    double count_s_;
+    double dead_counts_;
+    LegVoltage low_, high_, dead_;
+    Leg legs_[legs]; /* A+, A-, B+, B-: a phase's current leaves the first and enters the second */
+    int dead_legs_ = 0;
+    Edge pending_[legs]; /* edges of the last period whose dead time reaches into this one */
+    int pending_count_ = 0;
+    Timetable timetable_;
+};
+
+} // namespace plant
+
+#endif

@@ -1,0 +1,20 @@
+/*
+ * Gaussian noise as a function of (seed, channel, period): no state, so a run can be repeated from
+ * anywhere, and channels do not depend on who else is asked.
+ */
+#ifndef STEADYSTEP_PLANT_GAUSSIAN_H
+#define STEADYSTEP_PLANT_GAUSSIAN_H
+
+#include <cstdint>
+
+#include "sil/plant/phases.h"
+
+namespace plant
+{
+
+/* Two independent standard normal deviates (Box and Muller 1958). */
+Phases gaussian_pair(std::uint64_t seed, std::uint64_t channel, std::uint64_t period);
+
+} // namespace plant
+
+#endif

@@ -1,0 +1,32 @@
+/*
+ * A quantity of the two phases (a, b), which is also a vector in the stationary frame. The two
+ * lanes share one register; every operation is plain IEEE arithmetic lane by lane.
+ */
+#ifndef STEADYSTEP_PLANT_PHASES_H
+#define STEADYSTEP_PLANT_PHASES_H
+
+namespace plant
+{
+
+typedef double Phases __attribute__((vector_size(16)));
+
+inline double dot(Phases x, Phases y)
+{
+    const Phases product = x * y;
+    return product[0] + product[1];
+}
+
+/* x turned by a quarter turn: from the d axis to the q axis. */
+inline Phases quarter_turn(Phases x)
+{
+    return __builtin_shufflevector(-x, x, 1, 2);
+}
+
+inline double magnitude(double x)
+{
+    return x < 0.0 ? -x : x;
+}
+
+} // namespace plant
+
+#endif

@@ -1,0 +1,89 @@
+/* What a Taylor-series integrator needs of power series in tau, 0 <= tau <= 1. */
+#ifndef STEADYSTEP_PLANT_TAYLOR_H
+#define STEADYSTEP_PLANT_TAYLOR_H
+
+#include <utility>
+
+namespace plant
+{
+
+/*
+ * Coefficient k of the product of two series: the sum of x[m] y[k - m]. The outermost terms are the
+ * latest to be known and are added last.
+ */
+template <int k, typename X, typename Y> inline auto cauchy_product(const X *x, const Y *y)
+{
+    if constexpr (k == 0) {
+        return x[0] * y[0];
+    } else if constexpr (k == 1) {
+        return x[0] * y[1] + x[1] * y[0];
+    } else {
+        return cauchy_product<k - 2>(x + 1, y + 1) + (x[0] * y[k] + x[k] * y[0]);
+    }
+}
+
+/* The series at t = h. Ascending: each term is added as soon as it is known. */
+template <int order, typename X> inline X value(const X *x, double h)
+{
+    X total = x[0];
+    double power = h;
+    for (int k = 1; k <= order; k++) {
+        total += x[k] * power;
+        power *= h;
+    }
+    return total;
+}
+
+/* Its integral over 0...h. */
+template <int order, typename X> inline X integral(const X *x, double h)
+{
+    X total = x[0] * h;
+    double power = h;
+    for (int k = 1; k <= order; k++) {
+        power *= h;
+        total += x[k] * (power * (1.0 / (k + 1)));
+    }
+    return total;
+}
+
+/* The integral of its square over 0...h, to the order of the series. */
+template <int order, int k = 0, typename X> inline X integral_of_square(const X *x, double h)
+{
+    X total = cauchy_product<k>(x, x) * (1.0 / (k + 1));
+    if constexpr (k < order) {
+        total += integral_of_square<order, k + 1>(x, h);
+    }
+    return total * h;
+}
+
+/*
+ * Where a polynomial that is >= 0 at 0 and < 0 at h becomes negative: Newton's method inside a
+ * shrinking bracket, from the right, to rounding. In (0, h].
+ */
+inline double falling_zero(const double *x, int order, double h)
+{
+    double low = 0.0, high = h;
+    double t = h;
+    for (int iteration = 0; iteration < 60; iteration++) {
+        double value = x[order], slope = 0.0;
+        for (int k = order - 1; k >= 0; k--) {
+            slope = slope * t + value;
+            value = value * t + x[k];
+        }
+        (value < 0.0 ? high : low) = t;
+        double next = slope < 0.0 ? t - value / slope : low;
+        if (!(next > low && next < high)) {
+            next = 0.5 * (low + high);
+        }
+        const double change = next - t;
+        t = next;
+        if (change < 1e-15 * h && change > -1e-15 * h) {
+            break;
+        }
+    }
+    return t;
+}
+
+} // namespace plant
+
+#endif

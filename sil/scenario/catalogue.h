@@ -1,0 +1,41 @@
+/* Where scenarios, sweeps and motors are found by name. */
+#ifndef STEADYSTEP_SCENARIO_CATALOGUE_H
+#define STEADYSTEP_SCENARIO_CATALOGUE_H
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace scenario
+{
+
+class Catalogue
+{
+  public:
+    /*
+     * The folder of scenarios is, in this order: `scenarios` if not empty, "scenarios" beside the
+     * program, the source tree. Motors lie in "../motors" from there, or else where the program's
+     * own motors are.
+     */
+    Catalogue(const std::filesystem::path &scenarios, const std::filesystem::path &program);
+
+    /* A path (with '/' or ending in .toml) or a name in the catalogue; throws InputError, with
+       `asked_by` as the place of the complaint. A path is relative to `folder`. */
+    std::filesystem::path scenario(const std::string &name, const std::string &asked_by,
+                                   const std::filesystem::path &folder = {}) const;
+    std::filesystem::path sweep(const std::string &name, const std::string &asked_by) const;
+    std::filesystem::path motor(const std::string &name, const std::string &asked_by,
+                                const std::filesystem::path &folder) const;
+
+    std::vector<std::filesystem::path> scenarios() const; /* sorted by name */
+    std::vector<std::filesystem::path> motors() const;
+    std::vector<std::filesystem::path> sweeps() const;
+
+  private:
+    std::filesystem::path scenarios_;
+    std::vector<std::filesystem::path> motors_; /* first match wins */
+};
+
+} // namespace scenario
+
+#endif

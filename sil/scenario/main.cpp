@@ -1,0 +1,290 @@
+/* steadystep-sil: runs scenarios of the simulated drive. Exit codes: 0 all expectations held,
+   1 some did not, 2 bad input. */
+#include <charconv>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "sil/scenario/batch.h"
+#include "sil/scenario/output.h"
+#include "sil/scenario/report.h"
+#include "sil/scenario/runner.h"
+#include "sil/scenario/sweep.h"
+#include "sil/scenario/text.h"
+
+namespace fs = std::filesystem;
+using namespace scenario;
+
+namespace
+{
+
+enum ExitCode { held = 0, not_held = 1, bad_input = 2 };
+
+struct Options {
+    std::vector<std::string> scenarios, settings;
+    std::string sweep = "bendjedia-robustness";
+    std::string numeric = "float", seeds, out, folder;
+    std::int64_t seed = 0;
+    bool one_seed = false;
+    unsigned jobs = default_workers();
+    fs::path program;
+
+    Catalogue catalogue() const
+    {
+        return Catalogue(folder, program);
+    }
+};
+
+/* The seeds of one scenario. */
+struct Seeds {
+    std::uint64_t first, count;
+};
+
+constexpr std::uint64_t most_seeds = 1000000;
+
+Seeds seeds_of(const Options &options, std::uint64_t default_seed)
+{
+    if (options.one_seed) {
+        return {static_cast<std::uint64_t>(options.seed), 1};
+    }
+    if (options.seeds.empty()) {
+        return {default_seed, 1};
+    }
+    std::uint64_t first = 0, last = 0;
+    const char *const end = options.seeds.data() + options.seeds.size();
+    const std::from_chars_result dash = std::from_chars(options.seeds.data(), end, first);
+    const bool two = dash.ec == std::errc() && dash.ptr != end && *dash.ptr == '-';
+    const std::from_chars_result rest =
+        std::from_chars(two ? dash.ptr + 1 : end, end, last); /* nothing left is an error, too */
+    if (rest.ec != std::errc() || rest.ptr != end || last < first || last - first >= most_seeds) {
+        throw InputError("--seeds " + options.seeds + ": expected A-B with A <= B, at most " +
+                         std::to_string(most_seeds) + " seeds");
+    }
+    return {first, last - first + 1};
+}
+
+/* Folder of one run below --out. */
+fs::path folder_of(const Options &options, const Result &result)
+{
+    const std::string suffix = options.seeds.empty() ? "" : "-seed" + std::to_string(result.seed);
+    return fs::path(options.out) / (result.scenario->name + suffix);
+}
+
+void write_run(const Options &options, const Result &result, const Record &record)
+{
+    const fs::path folder = folder_of(options, result);
+    write_file(folder / "trace.csv", trace_csv(record));
+    write_file(folder / "summary.json", summary_json(result));
+}
+
+const firmware_image &image(const Options &options)
+{
+    return *image_of(options.numeric);
+}
+
+std::vector<Scenario> read_scenarios(const Options &options)
+{
+    const Catalogue catalogue = options.catalogue();
+    std::vector<Scenario> scenarios;
+    std::set<std::string> names;
+    for (const std::string &name : options.scenarios) {
+        scenarios.push_back(read_scenario(catalogue, name, options.settings, "run"));
+        if (!names.insert(scenarios.back().name).second) {
+            throw InputError("run: " + name + ": given twice");
+        }
+        check(scenarios.back(), image(options));
+    }
+    return scenarios;
+}
+
+/* Runs every scenario with its seeds and hands each scenario's results over, in order. */
+template <typename Scenarios, typename Deliver>
+void run_all(const Options &options, const Scenarios &scenarios, bool write, Deliver deliver)
+{
+    struct Item {
+        std::size_t scenario;
+        std::uint64_t seed;
+        bool last;
+    };
+    std::vector<Item> items;
+    for (std::size_t i = 0; i < scenarios.size(); ++i) {
+        const Seeds seeds = seeds_of(options, scenarios[i]->seed);
+        for (std::uint64_t n = 0; n < seeds.count; ++n) {
+            items.push_back({i, seeds.first + n, n + 1 == seeds.count});
+        }
+    }
+    if (write) {
+        prepare_folder(options.out);
+    }
+    std::vector<Result> results(items.size());
+    std::vector<Result> of_scenario;
+    run_batch(
+        items.size(), options.jobs,
+        [&](std::size_t i) {
+            Record record(1);
+            results[i] =
+                execute(*scenarios[items[i].scenario], image(options), items[i].seed, record);
+            if (write) {
+                write_run(options, results[i], record);
+            }
+        },
+        [&](std::size_t i) {
+            of_scenario.push_back(std::move(results[i]));
+            if (items[i].last) {
+                deliver(items[i].scenario, of_scenario);
+                of_scenario.clear();
+            }
+        });
+}
+
+int run_command(const Options &options)
+{
+    const std::vector<Scenario> scenarios = read_scenarios(options);
+    std::vector<const Scenario *> pointers;
+    for (const Scenario &scenario : scenarios) {
+        pointers.push_back(&scenario);
+    }
+    std::size_t failed = 0;
+    run_all(options, pointers, !options.out.empty(),
+            [&](std::size_t, const std::vector<Result> &results) {
+                const Report one = report(results);
+                failed += one.passed ? 0 : 1;
+                std::printf("%s\n", one.text.c_str());
+                std::fflush(stdout);
+            });
+    std::printf("%zu of %zu scenarios hold\n", scenarios.size() - failed, scenarios.size());
+    return failed == 0 ? held : not_held;
+}
+
+int sweep_command(const Options &options)
+{
+    const Catalogue catalogue = options.catalogue();
+    const Sweep sweep = read_sweep(catalogue, catalogue.sweep(options.sweep, "sweep"));
+    std::vector<const Scenario *> pointers;
+    for (const SweepCase &one : sweep.cases) {
+        check(one.scenario, image(options));
+        pointers.push_back(&one.scenario);
+    }
+    const std::uint64_t seeds = seeds_of(options, 1).count;
+    if (!options.out.empty()) {
+        prepare_folder(options.out);
+    }
+    std::printf("%s\n%s, %llu seed%s; 95th percentiles\n\n%s", sweep.description.c_str(),
+                options.numeric.c_str(), static_cast<unsigned long long>(seeds),
+                seeds == 1 ? "" : "s", sweep_heading().c_str());
+    std::vector<SweepFigures> figures;
+    std::size_t failed = 0;
+    run_all(options, pointers, false, [&](std::size_t i, const std::vector<Result> &results) {
+        figures.push_back(figures_of(sweep.cases[i], results));
+        std::printf("%s", sweep_line(sweep.cases[i], figures.back()).c_str());
+        if (!figures.back().held) {
+            ++failed;
+            std::printf("  reproduce: %s\n",
+                        reproduce_command(sweep.cases[i].scenario, options.numeric, results[0].seed)
+                            .c_str());
+        }
+        std::fflush(stdout);
+    });
+    if (!options.out.empty()) {
+        write_file(fs::path(options.out) / "table.json",
+                   sweep_json(sweep, figures, options.numeric, seeds));
+    }
+    return failed == 0 ? held : not_held;
+}
+
+int list_command(const Options &options)
+{
+    const Catalogue catalogue = options.catalogue();
+    std::string complaints;
+    const auto list = [&](const char *heading, const std::vector<fs::path> &files,
+                          const auto &describe) {
+        std::printf("%s\n", heading);
+        for (const fs::path &file : files) {
+            try {
+                std::printf("  %-32s %s\n", file.stem().c_str(), describe(file).c_str());
+            } catch (const InputError &error) {
+                complaints += std::string("steadystep-sil: ") + error.what() + "\n";
+            }
+        }
+    };
+    list("scenarios", catalogue.scenarios(), [&](const fs::path &file) {
+        return read_scenario(catalogue, file.string(), {}, "list").description;
+    });
+    list("sweeps", catalogue.sweeps(),
+         [&](const fs::path &file) { return read_sweep(catalogue, file).description; });
+    list("motors", catalogue.motors(),
+         [](const fs::path &file) { return read_motor(file).description; });
+    std::fputs(complaints.c_str(), stderr);
+    return complaints.empty() ? held : bad_input;
+}
+
+/* Options that `run` and `sweep` share. */
+void add_run_options(CLI::App &command, Options &options)
+{
+    command.add_option("--numeric", options.numeric, "number format of the drive")
+        ->check(CLI::IsMember({"float", "fixed", "double"}))
+        ->capture_default_str();
+    CLI::Option *seed = command.add_option("--seed", options.seed, "seed of all noise")
+                            ->check(CLI::NonNegativeNumber);
+    CLI::Option *seeds = command.add_option("--seeds", options.seeds,
+                                            "A-B: one run per seed, the 95th percentile decides");
+    seed->excludes(seeds);
+    command.add_option("--out", options.out, "folder that receives the results");
+    command.add_option("--jobs", options.jobs, "runs at a time; changes no result")
+        ->check(CLI::Range(1u, 256u))
+        ->capture_default_str();
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    Options options;
+    std::error_code unknown;
+    options.program = fs::read_symlink("/proc/self/exe", unknown);
+    if (unknown) {
+        options.program = argv[0];
+    }
+
+    CLI::App app{"steadystep-sil: the drive's own firmware on a simulated board and motor.\n"
+                 "Exit code 0: all expectations held, 1: some did not, 2: bad input.",
+                 "steadystep-sil"};
+    app.set_version_flag("--version", "steadystep-sil " STEADYSTEP_VERSION);
+    app.require_subcommand(1);
+    app.add_option("--scenarios", options.folder, "folder of scenarios; motors in ../motors")
+        ->envname("STEADYSTEP_SCENARIOS");
+    app.fallthrough();
+
+    CLI::App *run = app.add_subcommand("run", "run scenarios and judge them");
+    run->add_option("SCENARIO", options.scenarios, "names or paths")->required();
+    run->add_option("--set", options.settings, "table.key=value, on top of every file")
+        ->allow_extra_args(false);
+    add_run_options(*run, options);
+    CLI::App *sweep = app.add_subcommand("sweep", "run a table of plant parameters");
+    sweep->add_option("SWEEP", options.sweep, "name or path")->capture_default_str();
+    add_run_options(*sweep, options);
+    CLI::App *list = app.add_subcommand("list", "scenarios, sweeps and motors, in one line each");
+
+    try {
+        app.parse(argc, argv);
+        options.one_seed = run->count("--seed") + sweep->count("--seed") > 0;
+        if (*list) {
+            return list_command(options);
+        }
+        return *run ? run_command(options) : sweep_command(options);
+    } catch (const CLI::Success &asked) {
+        return app.exit(asked); /* --help, --version */
+    } catch (const CLI::ParseError &error) {
+        std::fprintf(stderr, "steadystep-sil: %s (see --help)\n", error.what());
+    } catch (const std::exception &error) { /* InputError, and what the machine refuses */
+        std::fprintf(stderr, "steadystep-sil: %s\n", error.what());
+    }
+    return bad_input;
+}

@@ -1,0 +1,99 @@
+/*
+ * Figures of merit of a record over a window of time.
+ *
+ * Position error is reference - true, estimate error true - estimate, speed and load torque errors
+ * true - estimate. `max` and `final` are magnitudes; `final` belongs to the last row of the window.
+ * A figure that has no value (an estimate that is not finite, a load step never followed, an empty
+ * window) is NaN, and no bound holds for it.
+ */
+#ifndef STEADYSTEP_SCENARIO_METRICS_H
+#define STEADYSTEP_SCENARIO_METRICS_H
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "sil/board/board.h"
+#include "sil/scenario/record.h"
+
+namespace scenario
+{
+
+/* A window as an expectation names it. */
+struct Window {
+    /*
+     * move: time zero to the end of the last profile. A step ends with the first row from which
+     *       |omega| < 0.1 rad/s for 10 ms.
+     * rest: what follows. all: both. times: begin_s...end_s, rounded to periods, both ends in.
+     */
+    enum class Kind { move, rest, all, times };
+
+    Kind kind = Kind::all;
+    double begin_s = 0, end_s = 0;
+
+    std::string name() const; /* "move", "rest", "all" or "0.5...0.7" */
+};
+
+/* Rows first...last - 1. */
+struct RowRange {
+    std::size_t first = 0, last = 0;
+
+    bool empty() const
+    {
+        return first >= last;
+    }
+};
+
+RowRange rows_of(const Record &record, const Window &window);
+
+/* What the figures need to know besides the record. */
+struct MetricSettings {
+    int rotor_teeth = 50;
+    double settling_band_rad = 2e-3;
+    double enabling_time_s = 0;
+};
+
+struct Metrics {
+    static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+    double position_error_max_rad = none;
+    double position_error_rms_rad = none;
+    double position_error_final_rad = none;
+    double position_error_steady_rad = none; /* mean over the later half of the cruise, signed */
+    double lag_s = none;                     /* that by the reference's cruise speed */
+    double estimate_error_max_rad = none;
+    double estimate_error_rms_rad = none;
+    double estimate_error_final_rad = none;
+    double speed_error_max_rad_s = none;
+    double speed_error_rms_rad_s = none;
+    double load_torque_error_max_Nm = none;
+    double load_torque_error_rms_Nm = none;
+    double load_torque_error_final_Nm = none;
+    double load_torque_t90_s = none; /* from a load step until 90 % of it is estimated; longest */
+    double overshoot_rad = none;     /* beyond the target, once the reference stands there */
+    double settling_time_s = none;   /* end of reference motion until the error stays in the band */
+    double current_peak_A = none;    /* of either phase */
+    double current_rms_A = none;     /* of one phase: root of the mean of (i_a^2 + i_b^2) / 2 */
+    double voltage_peak_V = none;    /* likewise, of the period means */
+    double voltage_rms_V = none;
+    double slip_full_steps = none; /* largest change of the estimate error since the window began,
+                                      in full steps (90 degrees electrical), rounded */
+    double resistance_estimate_error_ratio = none; /* |R^ - R| / R in the last row */
+    double enabling_time_s = none;                 /* first interrupt to the drive ready */
+
+    std::string fault = "none"; /* the first in the window, as drive_fault_name spells it */
+};
+
+struct MetricField {
+    const char *name;
+    double Metrics::*value;
+};
+
+/* All numbers of Metrics, in order; `fault` is the only text. */
+const std::vector<MetricField> &metric_fields();
+
+Metrics evaluate(const Record &record, RowRange rows, const MetricSettings &settings);
+
+} // namespace scenario
+
+#endif

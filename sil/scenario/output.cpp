@@ -1,0 +1,168 @@
+#include "sil/scenario/output.h"
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "sil/scenario/text.h"
+
+namespace scenario
+{
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace
+{
+
+Json window_json(const WindowResult &window)
+{
+    Json json;
+    json["begin_s"] = window.begin_s; /* NaN becomes null, here and below */
+    json["end_s"] = window.end_s;
+    for (const MetricField &field : metric_fields()) {
+        json[field.name] = window.metrics.*field.value;
+    }
+    json["fault"] = window.metrics.fault;
+    return json;
+}
+
+Json expectation_json(const Expectation &expectation, const Observation &observation)
+{
+    Json json;
+    json["metric"] = expectation.metric;
+    json["window"] = expectation.window.name();
+    if (expectation.min) {
+        json["min"] = *expectation.min;
+    }
+    if (expectation.max) {
+        json["max"] = *expectation.max;
+    }
+    if (expectation.equals) {
+        json["equals"] = *expectation.equals;
+    }
+    if (expectation.equals_text) {
+        json["equals"] = *expectation.equals_text;
+        json["value"] = observation.text;
+    } else {
+        json["value"] = observation.value;
+    }
+    json["passed"] = observation.held;
+    return json;
+}
+
+std::string quoted(const std::string &argument)
+{
+    const std::string plain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=./:+";
+    if (argument.find_first_not_of(plain) == std::string::npos) {
+        return argument;
+    }
+    std::string text = "'";
+    for (const char letter : argument) {
+        text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+    }
+    return text + "'";
+}
+
+} // namespace
+
+void prepare_folder(const fs::path &folder)
+{
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) {
+        throw InputError("--out " + folder.string() + ": cannot be made: " + error.message());
+    }
+    if (access(folder.c_str(), W_OK | X_OK) != 0) {
+        throw InputError("--out " + folder.string() +
+                         ": cannot be written: " + std::strerror(errno));
+    }
+}
+
+void write_file(const fs::path &file, const std::string &content)
+{
+    const fs::path aside = file.string() + ".part";
+    std::error_code error;
+    fs::create_directories(file.parent_path(), error);
+    std::ofstream stream(aside, std::ios::binary);
+    stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+    stream.close();
+    if (stream) {
+        fs::rename(aside, file, error);
+    }
+    if (!stream || error) {
+        fs::remove(aside, error);
+        throw InputError(file.string() + ": cannot be written");
+    }
+}
+
+std::string summary_json(const Result &result)
+{
+    const Scenario &scenario = *result.scenario;
+    Json json;
+    json["scenario"] = scenario.name;
+    json["description"] = scenario.description;
+    json["motor"] = scenario.motor.id;
+    json["numeric"] = result.numeric;
+    json["seed"] = result.seed;
+    json["set"] = scenario.settings;
+    json["version"] = STEADYSTEP_VERSION;
+    json["reproduce"] = reproduce_command(scenario, result.numeric, result.seed);
+    json["passed"] = result.passed();
+    json["failure"] = result.failure.empty() ? Json() : Json(result.failure);
+    json["simulated_s"] = result.simulated_s;
+    json["cpu_s"] = result.cpu_s;
+    json["trace_hash"] = hexadecimal(result.trace_hash);
+    json["drive_hash"] = hexadecimal(result.drive_hash);
+    json["metrics"]["move"] = window_json(result.move);
+    json["metrics"]["rest"] = window_json(result.rest);
+    json["metrics"]["all"] = window_json(result.all);
+    json["expectations"] = Json::array();
+    for (std::size_t i = 0; i < scenario.expectations.size(); ++i) {
+        json["expectations"].push_back(
+            expectation_json(scenario.expectations[i], result.observations[i]));
+    }
+    return json.dump(2) + "\n";
+}
+
+std::string trace_csv(const Record &record)
+{
+    std::string csv = "time_s";
+    for (std::size_t column = 0; column < COLUMNS; ++column) {
+        csv += ',';
+        csv += column_name(static_cast<Column>(column));
+    }
+    csv += '\n';
+    csv.reserve(csv.size() + record.rows() * COLUMNS * 16);
+    char digits[32];
+    const auto put = [&](double number, char separator) {
+        const std::to_chars_result end = std::to_chars(digits, digits + sizeof digits, number);
+        csv.append(digits, end.ptr);
+        csv += separator;
+    };
+    for (std::size_t row = 0; row < record.rows(); ++row) {
+        put(record.time_s(row), ',');
+        for (std::size_t column = 0; column < COLUMNS; ++column) {
+            put(record.row(row)[column], column + 1 < COLUMNS ? ',' : '\n');
+        }
+    }
+    return csv;
+}
+
+std::string reproduce_command(const Scenario &scenario, const std::string &numeric,
+                              std::uint64_t seed)
+{
+    std::string command = "steadystep-sil run " + quoted(scenario.asked) + " --numeric " + numeric +
+                          " --seed " + std::to_string(seed);
+    for (const std::string &setting : scenario.settings) {
+        command += " --set " + quoted(setting);
+    }
+    return command;
+}
+
+} // namespace scenario

@@ -1,0 +1,114 @@
+#include "sil/scenario/report.h"
+
+#include <algorithm>
+
+#include "sil/scenario/output.h"
+#include "sil/scenario/text.h"
+
+namespace scenario
+{
+
+namespace
+{
+
+std::string shown(const Expectation &expectation, const Observation &observation)
+{
+    if (expectation.equals_text) {
+        return observation.text.empty() ? "-" : observation.text;
+    }
+    return observation.value == observation.value ? format("%.3g", observation.value) : "none";
+}
+
+std::string heading(const std::vector<Result> &results)
+{
+    const Result &first = results.front();
+    std::string seeds = results.size() == 1
+                            ? format("seed %llu", static_cast<unsigned long long>(first.seed))
+                            : format("seeds %llu-%llu", static_cast<unsigned long long>(first.seed),
+                                     static_cast<unsigned long long>(results.back().seed));
+    double simulated_s = 0, cpu_s = 0;
+    for (const Result &result : results) {
+        simulated_s += result.simulated_s;
+        cpu_s += result.cpu_s;
+    }
+    std::string text = first.scenario->name + "  " + first.numeric + "  " + seeds +
+                       format("  %.4g s simulated in %.2g s", simulated_s, cpu_s);
+    if (cpu_s > 0) {
+        text += format(" (%.0f x real time)", simulated_s / cpu_s);
+    }
+    return text + "\n  " + first.scenario->description + "\n";
+}
+
+std::string line(const std::string &metric, const std::string &window, const std::string &value,
+                 const std::string &worst, const std::string &bound, const std::string &verdict)
+{
+    return format("  %-32s %-12s %-12s %-12s %-14s %s\n", metric.c_str(), window.c_str(),
+                  value.c_str(), worst.c_str(), bound.c_str(), verdict.c_str());
+}
+
+/* The main figures of one window, of one run. */
+std::string figures(const char *name, const WindowResult &window)
+{
+    if (window.begin_s != window.begin_s) {
+        return "";
+    }
+    const Metrics &m = window.metrics;
+    return format("  %-5s %.3g...%.3g s: estimate error max %.2g rms %.2g rad, position error max "
+                  "%.2g final %.2g rad, load error rms %.2g Nm, current peak %.2g A\n",
+                  name, window.begin_s, window.end_s, m.estimate_error_max_rad,
+                  m.estimate_error_rms_rad, m.position_error_max_rad, m.position_error_final_rad,
+                  m.load_torque_error_rms_Nm, m.current_peak_A);
+}
+
+} // namespace
+
+Report report(const std::vector<Result> &results)
+{
+    const Result &first = results.front();
+    const Scenario &scenario = *first.scenario;
+    const bool many = results.size() > 1;
+    Report report;
+    report.passed = true;
+    report.text = heading(results);
+    std::uint64_t seed_to_reproduce = first.seed;
+
+    for (const Result &result : results) {
+        if (!result.failure.empty()) {
+            report.passed = false;
+            report.text +=
+                format("  FAILED  seed %llu: %s\n", static_cast<unsigned long long>(result.seed),
+                       result.failure.c_str());
+            seed_to_reproduce = result.seed;
+        }
+    }
+    if (!scenario.expectations.empty()) {
+        report.text += line("expectation", "window", many ? "95 % of runs" : "value",
+                            many ? "worst" : "", "bound", "");
+    }
+    for (std::size_t i = 0; i < scenario.expectations.size(); ++i) {
+        const Expectation &expectation = scenario.expectations[i];
+        const Judgement judgement = judge(expectation, i, results);
+        report.text += line(expectation.metric, expectation.window.name(),
+                            shown(expectation, judgement.typical),
+                            many ? shown(expectation, judgement.worst) : "", expectation.bound(),
+                            judgement.held ? "held" : "NOT HELD");
+        if (!judgement.held) {
+            report.passed = false;
+            seed_to_reproduce = judgement.worst_seed;
+        }
+    }
+    if (many) {
+        report.text +=
+            format("  figures of seed %llu:\n", static_cast<unsigned long long>(first.seed));
+    }
+    report.text += figures("move", first.move) + figures("rest", first.rest);
+    report.text += "  trace " + hexadecimal(first.trace_hash) + "  drive " +
+                   hexadecimal(first.drive_hash) + "\n";
+    if (!report.passed) {
+        report.text +=
+            "  reproduce: " + reproduce_command(scenario, first.numeric, seed_to_reproduce) + "\n";
+    }
+    return report;
+}
+
+} // namespace scenario

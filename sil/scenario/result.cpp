@@ -1,0 +1,149 @@
+#include "sil/scenario/result.h"
+
+#include <algorithm>
+#include <ctime>
+#include <numeric>
+
+namespace scenario
+{
+
+namespace
+{
+
+/* Of this thread; reported beside the results, never part of them. */
+double cpu_seconds()
+{
+    std::timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double value_of(const Metrics &metrics, const std::string &name)
+{
+    for (const MetricField &field : metric_fields()) {
+        if (name == field.name) {
+            return metrics.*field.value;
+        }
+    }
+    return Metrics::none;
+}
+
+/* Every comparison is false for a NaN. */
+bool holds(const Expectation &expectation, double value)
+{
+    return value == value && (!expectation.min || value >= *expectation.min) &&
+           (!expectation.max || value <= *expectation.max) &&
+           (!expectation.equals || value == *expectation.equals);
+}
+
+WindowResult evaluate_window(const Record &record, const Window &window,
+                             const MetricSettings &settings)
+{
+    WindowResult result;
+    const RowRange rows = rows_of(record, window);
+    if (!rows.empty()) {
+        result.begin_s = record.time_s(rows.first);
+        result.end_s = record.time_s(rows.last - 1);
+    }
+    result.metrics = evaluate(record, rows, settings);
+    return result;
+}
+
+Observation observe(const Expectation &expectation, const Record &record,
+                    const MetricSettings &settings)
+{
+    const Metrics metrics = evaluate(record, rows_of(record, expectation.window), settings);
+    Observation observation;
+    if (expectation.equals_text) {
+        observation.text = metrics.fault;
+        observation.held = metrics.fault == *expectation.equals_text;
+    } else {
+        observation.value = value_of(metrics, expectation.metric);
+        observation.held = holds(expectation, observation.value);
+    }
+    return observation;
+}
+
+/* Rank of the 95th percentile of n sorted values, from 0. */
+std::size_t rank_95(std::size_t n)
+{
+    return (95 * n + 99) / 100 - 1;
+}
+
+} // namespace
+
+bool Result::passed() const
+{
+    return failure.empty() && std::all_of(observations.begin(), observations.end(),
+                                          [](const Observation &o) { return o.held; });
+}
+
+Result execute(const Scenario &scenario, const firmware_image &image, std::uint64_t seed,
+               Record &record)
+{
+    Result result;
+    result.scenario = &scenario;
+    result.numeric = image.numeric;
+    result.seed = seed;
+
+    const double start_s = cpu_seconds();
+    Run run = scenario::run(scenario, image, seed);
+    result.cpu_s = cpu_seconds() - start_s;
+
+    record = std::move(run.record);
+    result.failure = run.failure;
+    result.trace_hash = record.hash();
+    result.drive_hash = run.drive_hash;
+    result.simulated_s =
+        run.enabling_time_s +
+        static_cast<double>(record.rows() - record.time_zero_row()) * record.period_s();
+
+    const MetricSettings settings{scenario.motor.params.rotor_teeth, scenario.settling_band_rad,
+                                  run.enabling_time_s};
+    result.move = evaluate_window(record, {Window::Kind::move}, settings);
+    result.rest = evaluate_window(record, {Window::Kind::rest}, settings);
+    result.all = evaluate_window(record, {Window::Kind::all}, settings);
+    for (const Expectation &expectation : scenario.expectations) {
+        result.observations.push_back(
+            result.failure.empty() ? observe(expectation, record, settings) : Observation{});
+    }
+    return result;
+}
+
+Judgement judge(const Expectation &expectation, std::size_t index,
+                const std::vector<Result> &results)
+{
+    /* Best run first. */
+    std::vector<std::size_t> order(results.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const bool largest_is_best = expectation.min && !expectation.max;
+    const auto better = [&](std::size_t a, std::size_t b) {
+        const Observation &first = results[a].observations[index];
+        const Observation &second = results[b].observations[index];
+        if (first.held != second.held) {
+            return first.held;
+        }
+        if (first.value != first.value || second.value != second.value) {
+            return first.value == first.value && second.value != second.value;
+        }
+        return largest_is_best ? first.value > second.value : first.value < second.value;
+    };
+    std::stable_sort(order.begin(), order.end(), better);
+
+    Judgement judgement;
+    const std::size_t typical = order[rank_95(order.size())];
+    judgement.typical = results[typical].observations[index];
+    judgement.worst = results[order.back()].observations[index];
+    judgement.worst_seed = results[order.back()].seed;
+    judgement.held = judgement.typical.held;
+    return judgement;
+}
+
+double percentile_95(std::vector<double> values)
+{
+    std::stable_sort(values.begin(), values.end(),
+                     [](double a, double b) { return a == a && (b != b || a < b); });
+    return values[rank_95(values.size())];
+}
+
+} // namespace scenario

@@ -1,0 +1,64 @@
+/* What came of a run, and whether that is what the scenario expects. */
+#ifndef STEADYSTEP_SCENARIO_RESULT_H
+#define STEADYSTEP_SCENARIO_RESULT_H
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sil/scenario/metrics.h"
+#include "sil/scenario/runner.h"
+#include "sil/scenario/scenario_file.h"
+
+namespace scenario
+{
+
+/* An expectation's metric in one run. */
+struct Observation {
+    double value = Metrics::none;
+    std::string text; /* of `fault` */
+    bool held = false;
+};
+
+struct WindowResult {
+    double begin_s = Metrics::none, end_s = Metrics::none; /* of its first and last row */
+    Metrics metrics;
+};
+
+struct Result {
+    const Scenario *scenario = nullptr;
+    std::string numeric;
+    std::uint64_t seed = 1;
+    std::string failure; /* why the run ended early; "" if it did not */
+    WindowResult move, rest, all;
+    std::vector<Observation> observations; /* one per expectation */
+    std::uint64_t trace_hash = 0, drive_hash = 0;
+    double simulated_s = 0, cpu_s = 0;
+
+    bool passed() const;
+};
+
+/* Runs and evaluates; the record stays with the caller, who may write or drop it. */
+Result execute(const Scenario &scenario, const firmware_image &image, std::uint64_t seed,
+               Record &record);
+
+/*
+ * An expectation over several seeds: the bound must hold for the 95th percentile, which is the
+ * worst run up to 19 seeds. A run without a value is the worst of all.
+ */
+struct Judgement {
+    Observation typical; /* the 95th percentile */
+    Observation worst;
+    std::uint64_t worst_seed = 0;
+    bool held = false;
+};
+
+Judgement judge(const Expectation &expectation, std::size_t index,
+                const std::vector<Result> &results);
+
+/* Values, ascending, NaN last: the one that 95 % do not exceed. */
+double percentile_95(std::vector<double> values);
+
+} // namespace scenario
+
+#endif

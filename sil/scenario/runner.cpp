@@ -1,0 +1,237 @@
+#include "sil/scenario/runner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "sil/scenario/text.h"
+
+namespace scenario
+{
+
+namespace
+{
+
+constexpr double longest_enabling_s = 2;
+
+std::uint32_t periods(double time_s, double period_s)
+{
+    return static_cast<std::uint32_t>(std::floor(time_s / period_s + 0.5));
+}
+
+/* Steps a board through its timeline and writes the record. */
+class Runner
+{
+  public:
+    Runner(const Scenario &scenario, const plant::Config &config, const firmware_image &image)
+        : scenario_(scenario), board_(config, image, scenario.drive),
+          period_s_(config.bridge.period_s), scales_(scenario.scales),
+          motor_(scaled(scenario.motor.params, scenario.scales)), result_{Record(period_s_), 0, 0,
+                                                                          ""}
+    {
+    }
+
+    Run run()
+    {
+        const std::uint32_t last = periods(scenario_.duration_s, period_s_);
+        result_.record.reserve(last + 1);
+        try {
+            if (enable()) {
+                follow_timeline(last);
+            }
+        } catch (const std::invalid_argument &refusal) {
+            result_.failure = refusal.what();
+        }
+        result_.drive_hash = board_.drive_hash();
+        return std::move(result_);
+    }
+
+  private:
+    /* Leaves the board at S(k0), the control interrupt done: the first period it is ready. */
+    bool enable()
+    {
+        drive_command command{};
+        command.kind = DRIVE_COMMAND_ENABLE;
+        board_.command(command);
+        const std::uint32_t last = periods(longest_enabling_s, period_s_);
+        for (std::uint32_t k = 0;; ++k) {
+            board_.control();
+            const drive_state state = board_.signals().state;
+            if (state == DRIVE_OPERATION_ENABLED) {
+                time_zero_ = board_.signals().period;
+                result_.enabling_time_s = k * period_s_;
+                return true;
+            }
+            if (state == DRIVE_FAULT || k == last) {
+                result_.failure = format("the drive did not become ready: %s after %g s, fault %s",
+                                         drive_state_name(state), k * period_s_,
+                                         drive_fault_name(board_.signals().fault));
+                return false;
+            }
+            if (scenario_.record_enabling) {
+                record();
+            }
+            board_.advance();
+        }
+    }
+
+    void follow_timeline(std::uint32_t last)
+    {
+        result_.record.start_time_here();
+        for (std::uint32_t n = 0;; ++n) {
+            act(n);
+            if (n > 0) {
+                board_.control();
+            }
+            record();
+            if (n == last) {
+                return;
+            }
+            board_.advance();
+        }
+    }
+
+    /* Events of period n. A command of period 0 acts in the next interrupt: the one of S(k0) has
+       found the drive ready only now. */
+    void act(std::uint32_t n)
+    {
+        for (; next_ < scenario_.events.size() &&
+               periods(scenario_.events[next_].time_s, period_s_) <= n;
+             ++next_) {
+            const Event &event = scenario_.events[next_];
+            if (event.command) {
+                drive_command command = *event.command;
+                command.at_period = time_zero_ + n;
+                board_.command(command);
+            } else if (event.load_torque_Nm) {
+                board_.plant().set_load_torque(*event.load_torque_Nm);
+            } else {
+                drifts_.push_back({event.drift, scales_.*event.drift, event.drift_to, n,
+                                   std::max(1u, periods(event.drift_ramp_s, period_s_))});
+            }
+        }
+        drift(n);
+    }
+
+    struct Drift {
+        double PlantScales::*scale;
+        double from, to;
+        std::uint32_t start, periods;
+    };
+
+    void drift(std::uint32_t n)
+    {
+        if (drifts_.empty()) {
+            return;
+        }
+        for (const Drift &drift : drifts_) {
+            const double part = (n - drift.start + 1) / static_cast<double>(drift.periods);
+            scales_.*drift.scale =
+                part < 1 ? drift.from + (drift.to - drift.from) * part : drift.to;
+        }
+        drifts_.erase(std::remove_if(
+                          drifts_.begin(), drifts_.end(),
+                          [n](const Drift &drift) { return n - drift.start + 1 >= drift.periods; }),
+                      drifts_.end());
+        motor_ = scaled(scenario_.motor.params, scales_);
+        board_.plant().set_motor(motor_);
+    }
+
+    void record()
+    {
+        const plant::State &state = board_.plant().state();
+        const drive_signals &drive = board_.signals();
+        Row row;
+        row[THETA_REF] = drive.theta_ref_rad;
+        row[THETA] = state.theta_rad;
+        row[THETA_EST] = drive.theta_est_rad;
+        row[OMEGA_REF] = drive.omega_ref_rad_s;
+        row[OMEGA] = state.omega_rad_s;
+        row[OMEGA_EST] = drive.omega_est_rad_s;
+        row[LOAD_TORQUE] = state.load_torque_Nm;
+        row[LOAD_TORQUE_EST] = drive.load_torque_est_Nm;
+        row[I_A] = state.i_a_A;
+        row[I_B] = state.i_b_A;
+        row[U_A] = state.u_a_V;
+        row[U_B] = state.u_b_V;
+        row[I_D] = drive.i_d_A;
+        row[I_Q] = drive.i_q_A;
+        row[I_D_REF] = drive.i_d_ref_A;
+        row[I_Q_REF] = drive.i_q_ref_A;
+        row[U_D] = drive.u_d_V;
+        row[U_Q] = drive.u_q_V;
+        row[RESISTANCE] = motor_.resistance_ohm;
+        row[RESISTANCE_EST] = drive.resistance_est_ohm;
+        row[BUS] = state.bus_V;
+        row[DRIVE_STATE] = drive.state;
+        row[DRIVE_FAULT_CODE] = drive.fault;
+        row[HOLDING] = drive.holding ? 1 : 0;
+        row[REFERENCE_MOVING] = drive.reference_moving ? 1 : 0;
+        result_.record.append(row);
+    }
+
+    const Scenario &scenario_;
+    sil::Board board_;
+    double period_s_;
+    PlantScales scales_;
+    plant::MotorConfig motor_;
+    Run result_;
+    std::uint32_t time_zero_ = 0;
+    std::size_t next_ = 0; /* first event that has not acted */
+    std::vector<Drift> drifts_;
+};
+
+constexpr int drive_queue_length = 16;
+
+/* As many as the drive takes at once: it plans a move, and may refuse it, when it is posted. */
+void post_commands(sil::Board &board, const Scenario &scenario)
+{
+    int posted = 0;
+    for (const Event &event : scenario.events) {
+        if (!event.command || posted == drive_queue_length) {
+            continue;
+        }
+        if (event.command->kind == DRIVE_COMMAND_STOP) {
+            return; /* where the next move starts is known in the run only */
+        }
+        try {
+            board.command(*event.command);
+        } catch (const std::invalid_argument &refusal) {
+            throw InputError(event.location.text() + ": " + refusal.what());
+        }
+        ++posted;
+    }
+}
+
+} // namespace
+
+const firmware_image *image_of(const std::string &numeric)
+{
+    for (const firmware_image *image :
+         {&firmware_image_float, &firmware_image_fixed, &firmware_image_double}) {
+        if (numeric == image->numeric) {
+            return image;
+        }
+    }
+    return nullptr;
+}
+
+void check(const Scenario &scenario, const firmware_image &image)
+{
+    try {
+        sil::Board board(scenario.plant, image, scenario.drive);
+        post_commands(board, scenario);
+    } catch (const std::invalid_argument &refusal) {
+        throw InputError(scenario.locate(refusal.what()) + refusal.what());
+    }
+}
+
+Run run(const Scenario &scenario, const firmware_image &image, std::uint64_t seed)
+{
+    plant::Config config = scenario.plant;
+    config.seed = seed;
+    return Runner(scenario, config, image).run();
+}
+
+} // namespace scenario

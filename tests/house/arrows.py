@@ -1,0 +1,172 @@
+#!/usr/bin/env python3
+"""Checks the arrows between the rooms of the house on their includes, so that it cannot rot.
+
+usage: arrows.py ROOT         exit 1 and one line file:line per violation
+       arrows.py --self-test ROOT   plants violations in a copy and expects each to be found
+"""
+import pathlib
+import re
+import shutil
+import sys
+import tempfile
+
+NUMERIC = ["firmware/numeric/"]
+MOTOR = ["firmware/motor/", *NUMERIC]
+DESIGN = ["firmware/design/", *MOTOR]  # blocks are scaled from its gains at start-up
+
+# What each room may include, by prefix; the longest matching room decides. A file is a room of its
+# own where the contract names it. "board.h's" stands for all that board.h itself exposes.
+ROOMS = {
+    "firmware/numeric/": NUMERIC,
+    "firmware/motor/": MOTOR,
+    "firmware/design/": DESIGN,
+    "firmware/estimator/": ["firmware/estimator/", *DESIGN],
+    "firmware/control/": ["firmware/control/", *DESIGN],
+    "firmware/motion/": ["firmware/motion/", *DESIGN],
+    "firmware/drive/": ["firmware/drive/", "firmware/estimator/", "firmware/control/",
+                        "firmware/motion/", *DESIGN, "hal/hal.h"],
+    "hal/hal.h": [],
+    "hal/sil/": ["hal/sil/", "hal/hal.h"],
+    "hal/sil/firmware_image.": ["hal/hal.h", "hal/sil/firmware_image.h", "firmware/drive/"],
+    "sil/plant/": ["sil/plant/"],
+    "sil/board/": ["sil/board/", "sil/plant/", "hal/"],
+    "sil/scenario/": ["sil/scenario/", "board.h's"],
+}
+EXPOSED_BY = "sil/board/board.h"
+
+# The portable firmware stands on a freestanding C compiler: no heap, no I/O, no libm.
+C_HEADERS = {"float.h", "limits.h", "stdbool.h", "stddef.h", "stdint.h", "string.h"}
+# What would make a simulation depend on clock, scheduling or library version.
+BANNED_IN_SIMULATION = {"chrono", "ctime", "future", "random", "thread", "time.h"}
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
+NUMBER_FORMAT = re.compile(r"\b(STEADYSTEP_NUM|NUM_FLOAT|NUM_FIXED|NUM_DOUBLE)\b")
+COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
+
+
+def code_lines(path):
+    """Numbered lines of a source without its comments."""
+    text = path.read_text(encoding="utf-8")
+    text = COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match.group()), text)
+    return enumerate(text.splitlines(), start=1)
+
+
+def includes(path):
+    for number, line in code_lines(path):
+        match = INCLUDE.match(line)
+        if match:
+            yield number, match.group(1) == '"', match.group(2)
+
+
+def exposed(root, header, found=None):
+    """The headers of the house that `header` includes, directly or through others, and itself."""
+    found = set() if found is None else found
+    if header not in found and (root / header).is_file():
+        found.add(header)
+        for _, ours, name in includes(root / header):
+            if ours:
+                exposed(root, name, found)
+    return found
+
+
+def room_of(name):
+    rooms = [room for room in ROOMS if name.startswith(room)]
+    return max(rooms, key=len, default=None)
+
+
+def check_file(root, name, board_exposes):
+    """Yields (line, text) for each violation in one source."""
+    room = room_of(name)
+    if room is None:
+        yield 1, "belongs to no room that tests/house/arrows.py knows"
+        return
+    firmware = name.startswith("firmware/")
+    simulation = (name.startswith(("sil/plant/", "sil/board/", "hal/sil/"))
+                  and not name.startswith("sil/plant/bench_"))  # those measure time
+    allowed = ROOMS[room]
+    for number, ours, target in includes(root / name):
+        if not ours:
+            if firmware and target not in C_HEADERS:
+                yield number, f"the firmware must not include <{target}>"
+            elif simulation and target in BANNED_IN_SIMULATION:
+                yield number, f"a deterministic simulation must not include <{target}>"
+        elif not (root / target).is_file():
+            yield number, f'"{target}" is no path from the root of the house'
+        elif not (target.startswith(tuple(allowed))
+                  or "board.h's" in allowed and target in board_exposes):
+            yield number, f'{room} must not include "{target}"'
+    if not name.startswith("firmware/numeric/"):
+        for number, line in code_lines(root / name):
+            match = NUMBER_FORMAT.search(line)
+            if match:
+                yield number, f"{match.group()} is tested for in firmware/numeric/ and nowhere else"
+
+
+def violations(root):
+    board_exposes = exposed(root, EXPOSED_BY)
+    for top in ("firmware", "hal", "sil"):
+        for path in sorted((root / top).rglob("*")):
+            if path.suffix in {".c", ".h", ".cpp"}:
+                name = path.relative_to(root).as_posix()
+                for number, text in check_file(root, name, board_exposes):
+                    yield f"{name}:{number}: {text}"
+
+
+PLANTED = [
+    ("firmware/numeric/planted.c", '#include "firmware/motor/motor_params.h"'),
+    ("firmware/motor/planted.c", '#include "firmware/drive/drive_interface.h"'),
+    ("firmware/control/planted.c", '#include "firmware/drive/drive_interface.h"'),
+    ("firmware/control/planted.c", '#include "firmware/estimator/estimate.h"'),
+    ("firmware/motion/planted.c", '#include "firmware/control/modulator.h"'),
+    ("firmware/control/planted.c", '#include "hal/hal.h"'),
+    ("firmware/control/planted.c", '#include "../motor/motor_params.h"'),
+    ("firmware/control/planted.c", '#include "motor_params.h"'),
+    ("firmware/control/planted.c", "#include <math.h>"),
+    ("firmware/control/planted.c", "#include <stdlib.h>"),
+    ("firmware/control/planted.c", "#if STEADYSTEP_NUM == NUM_FIXED"),
+    ("firmware/drive/planted.c", '#include "hal/sil/firmware_image.h"'),
+    ("hal/sil/planted.c", '#include "firmware/drive/drive_interface.h"'),
+    ("sil/plant/planted.cpp", '#include "hal/hal.h"'),
+    ("sil/plant/planted.cpp", "#include <random>"),
+    ("sil/board/planted.cpp", '#include "firmware/numeric/num.h"'),
+    ("sil/scenario/planted.cpp", '#include "firmware/numeric/num.h"'),
+    ("firmware/attic/planted.c", "int planted;"),
+]
+
+
+def self_test(root):
+    """Every planted violation is found, at its line; a comment that names one is not."""
+    missed = 0
+    for name, line in PLANTED:
+        with tempfile.TemporaryDirectory() as scratch:
+            copy = pathlib.Path(scratch)
+            for top in ("firmware", "hal", "sil"):
+                shutil.copytree(root / top, copy / top)
+            planted = copy / name
+            planted.parent.mkdir(parents=True, exist_ok=True)
+            planted.write_text(f"/* {line} */\n// {line}\n{line}\n",
+                               encoding="utf-8")
+            found = [text for text in violations(copy) if text.startswith(name)]
+            expected_line = 1 if name.startswith("firmware/attic") else 3
+            if len(found) != 1 or not found[0].startswith(f"{name}:{expected_line}:"):
+                print(f"planted in {name}: {line}\n  reported: {found}")
+                missed += 1
+    print(f"{len(PLANTED) - missed} of {len(PLANTED)} planted violations found")
+    return missed == 0
+
+
+def main(arguments):
+    if len(arguments) == 2 and arguments[0] == "--self-test":
+        return 0 if self_test(pathlib.Path(arguments[1])) else 1
+    if len(arguments) != 1:
+        print(__doc__, file=sys.stderr)
+        return 2
+    found = list(violations(pathlib.Path(arguments[0])))
+    for text in found:
+        print(text)
+    print(f"{len(found)} violations of the arrows")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,60 @@
+#!/usr/bin/env python3
+"""Runs clang-tidy (.clang-tidy) over the portable firmware, as float and as fixed point.
+
+usage: tidy.py ROOT BUILD    BUILD holds compile_commands.json; exit 1 with the findings, 77
+                             (skipped) without clang-tidy
+"""
+import concurrent.futures
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+SKIPPED = 77
+# Two of three: double is the same source as float.
+FORMAT = re.compile(r"-DSTEADYSTEP_NUM=(NUM_FLOAT|NUM_FIXED)\b")
+
+
+def jobs(root, build):
+    """(source, compiler arguments), once per source and number format."""
+    commands = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
+    for entry in commands:
+        source = pathlib.Path(entry["file"])
+        number_format = FORMAT.search(entry["command"])
+        if number_format and (root / "firmware") in source.parents:
+            yield str(source), ["-std=c11", "-ffp-contract=off", "-Wall", "-Wextra",
+                                "-Wconversion", f"-I{root}", number_format.group()]
+
+
+def check(tool, job):
+    source, arguments = job
+    result = subprocess.run([tool, "--quiet", "--warnings-as-errors=*", source, "--", *arguments],
+                            check=False, capture_output=True, text=True)
+    return result.stdout if result.returncode else ""
+
+
+def main(arguments):
+    if len(arguments) != 2:
+        print(__doc__, file=sys.stderr)
+        return 2
+    root, build = (pathlib.Path(argument).resolve() for argument in arguments)
+    tool = shutil.which("clang-tidy-14") or shutil.which("clang-tidy")
+    if tool is None:
+        print("clang-tidy is not installed")
+        return SKIPPED
+    work = sorted(jobs(root, build))
+    if not work:
+        print(f"no firmware in {build}/compile_commands.json")
+        return 1
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        findings = list(filter(None, pool.map(lambda job: check(tool, job), work)))
+    print("\n".join(dict.fromkeys(findings)))
+    print(f"{len(work)} firmware sources checked, {len(findings)} with findings")
+    return 1 if findings else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

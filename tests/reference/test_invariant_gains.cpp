@@ -1,0 +1,325 @@
+/*
+ * The invariant estimator's gains against an independent formulation: the error model is the
+ * numerical Jacobian of the phase equations, the gain comes from the Riccati recursion run period
+ * by period, and what is left of it is judged by the eigenvalues of the estimation error.
+ */
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <string>
+#include <unity.h>
+
+#include <Eigen/Dense>
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include "tests/reference/motors.h"
+
+extern "C" {
+#include "firmware/design/invariant_ekf_design.h"
+}
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using std::complex;
+
+namespace
+{
+
+constexpr double period_s = 1e-4;
+constexpr double bias_time_s = 0.05;
+
+/* Where the estimation error is linearised. */
+struct OperatingPoint {
+    double speed_rad_s, i_d_A;
+};
+
+/* Errors: current (d, q of the estimated frame), w, theta, T_L, voltage bias (d, q). */
+enum { I_D, I_Q, SPEED, ANGLE, LOAD, BIAS_D, BIAS_Q, STATES };
+
+/* True rotor and winding, or their estimate. */
+struct Rotor {
+    complex<double> current, bias; /* current in phase coordinates, bias in the estimated frame */
+    double speed, angle, load;
+};
+
+Rotor rate(const motor_params &m, const Rotor &x, complex<double> voltage, complex<double> frame)
+{
+    const complex<double> magnet = std::polar(1.0, m.rotor_teeth * x.angle);
+    const complex<double> emf = complex<double>(0, 1) * m.torque_constant_Nm_A * x.speed * magnet;
+    const double torque = m.torque_constant_Nm_A * (x.current * std::conj(magnet)).imag();
+    Rotor d{};
+    d.current = (voltage - x.bias * frame - m.resistance_ohm * x.current - emf) / m.inductance_H;
+    d.bias = -x.bias / bias_time_s;
+    d.speed = (torque - m.viscous_friction_Nms_rad * x.speed - x.load) / m.inertia_kgm2;
+    d.angle = x.speed;
+    return d;
+}
+
+/* d/dt of the error, for a small error e around an estimate at the operating point. */
+VectorXd error_rate(const motor_params &m, OperatingPoint at, const VectorXd &e)
+{
+    const double angle = 0.7; /* any: the error model must not depend on it */
+    const complex<double> frame = std::polar(1.0, m.rotor_teeth * angle);
+    const complex<double> voltage = 3.0 * frame; /* any, both see it */
+    const Rotor estimate{at.i_d_A * frame, 0.0, at.speed_rad_s, angle, 0.03};
+    const Rotor truth{estimate.current + complex<double>(e(I_D), e(I_Q)) * frame,
+                      complex<double>(e(BIAS_D), e(BIAS_Q)), estimate.speed + e(SPEED),
+                      estimate.angle + e(ANGLE), estimate.load + e(LOAD)};
+    const Rotor d_truth = rate(m, truth, voltage, frame);
+    const Rotor d_estimate = rate(m, estimate, voltage, frame);
+    const complex<double> epsilon(e(I_D), e(I_Q));
+    const complex<double> d_epsilon = (d_truth.current - d_estimate.current) * std::conj(frame) -
+                                      complex<double>(0, m.rotor_teeth * at.speed_rad_s) * epsilon;
+    VectorXd result(STATES);
+    result << d_epsilon.real(), d_epsilon.imag(), d_truth.speed - d_estimate.speed,
+        d_truth.angle - d_estimate.angle, 0.0, d_truth.bias.real(), d_truth.bias.imag();
+    return result;
+}
+
+MatrixXd transition(const motor_params &m, OperatingPoint at, int states, double period = period_s)
+{
+    const double size[STATES] = {1e-3, 1e-3, 1e-2, 1e-6, 1e-3, 1e-3, 1e-3};
+    MatrixXd jacobian(STATES, STATES);
+    for (int j = 0; j < STATES; j++) {
+        const VectorXd e = VectorXd::Unit(STATES, j) * size[j];
+        jacobian.col(j) = (error_rate(m, at, e) - error_rate(m, at, -e)) / (2.0 * size[j]);
+    }
+    const MatrixXd model = jacobian.topLeftCorner(states, states) * period;
+    return model.exp();
+}
+
+/* (9), (10), (12), period by period from P = Q. */
+MatrixXd kalman_gain(const MatrixXd &f, const VectorXd &q, double r, int periods)
+{
+    MatrixXd p = q.asDiagonal();
+    MatrixXd k;
+    for (int i = 0; i < periods; i++) {
+        const Eigen::Matrix2d s = p.topLeftCorner<2, 2>() + r * Eigen::Matrix2d::Identity();
+        k = p.leftCols<2>() * s.inverse();
+        p = f * (p - k * p.topRows<2>()) * f.transpose();
+        p.diagonal() += q;
+        p = (0.5 * (p + p.transpose())).eval();
+    }
+    return k;
+}
+
+invariant_ekf_gains motion_design(const motor_params &motor, double period = period_s)
+{
+    invariant_ekf_gains gains{};
+    char error[DESIGN_ERROR_TEXT] = "";
+    TEST_ASSERT_TRUE_MESSAGE(invariant_ekf_motion_design(&motor, period, &gains, error), error);
+    return gains;
+}
+
+invariant_ekf_gains hold_design(const motor_params &motor, double current_A,
+                                invariant_ekf_hold tuning, double period = period_s)
+{
+    invariant_ekf_gains gains{};
+    char error[DESIGN_ERROR_TEXT] = "";
+    TEST_ASSERT_TRUE_MESSAGE(
+        invariant_ekf_hold_design(&motor, period, current_A, tuning, &gains, error), error);
+    return gains;
+}
+
+void assert_relative(double tolerance, double expected, double actual, const char *name)
+{
+    TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(tolerance * std::abs(expected), expected, actual, name);
+}
+
+/* Spectral radius of one period of the estimation error: correct with the kept gains, predict. */
+double spectral_radius(const motor_params &motor, const invariant_ekf_gains &k, OperatingPoint at,
+                       int states, double period = period_s)
+{
+    /* The drive corrects the phase currents, so both axes share the mean of the two gains. */
+    const double k_current = 0.5 * (k.k_current_d + k.k_current_q);
+    const double direction = std::clamp(at.speed_rad_s / k.angle_d_full_speed_rad_s, -1.0, 1.0);
+    MatrixXd correction = MatrixXd::Identity(STATES, STATES);
+    correction(I_D, I_D) -= k_current;
+    correction(I_Q, I_Q) -= k_current;
+    correction(SPEED, I_Q) -= k.k_speed_q_rad_As;
+    correction(ANGLE, I_D) -= k.k_angle_d_rad_A * direction;
+    correction(ANGLE, I_Q) -= k.k_angle_q_rad_A;
+    correction(LOAD, I_Q) -= k.k_load_q_Nm_A;
+    correction(BIAS_D, I_D) -= k.k_bias_d_V_A;
+    correction(BIAS_Q, I_Q) -= k.k_bias_q_V_A;
+    const MatrixXd step =
+        transition(motor, at, states, period) * correction.topLeftCorner(states, states);
+    return step.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+double top_speed(const motor_params &motor, double period)
+{
+    const double no_load = motor.supply_V / motor.torque_constant_Nm_A;
+    return std::min(no_load, 1.0 / (motor.rotor_teeth * period)); /* 1 electrical rad per sample */
+}
+
+void motion_gains_are_the_steady_kalman_gain_at_5_rad_s()
+{
+    const motor_params motor = reference::bendjedia_2012();
+    const double current_noise = std::pow(0.03 * period_s / motor.inductance_H, 2);
+    VectorXd q(5);
+    q << current_noise, current_noise, 1e-6, 1e-8, 1e-6;
+    const MatrixXd k = kalman_gain(transition(motor, {5.0, 0.0}, 5), q, 3.9e-5, 4000);
+    const invariant_ekf_gains gains = motion_design(motor);
+    assert_relative(1e-6, k(I_D, 0), gains.k_current_d, "i_d");
+    assert_relative(1e-6, k(I_Q, 1), gains.k_current_q, "i_q");
+    assert_relative(1e-6, k(SPEED, 1), gains.k_speed_q_rad_As, "w");
+    assert_relative(1e-6, k(ANGLE, 0), gains.k_angle_d_rad_A, "theta from d");
+    assert_relative(1e-6, k(ANGLE, 1), gains.k_angle_q_rad_A, "theta from q");
+    assert_relative(1e-6, k(LOAD, 1), gains.k_load_q_Nm_A, "T_L");
+}
+
+void hold_gains_are_the_steady_kalman_gain_at_1_rad_s()
+{
+    const motor_params motor = reference::bendjedia_2012();
+    const double current_noise = std::pow(0.03 * period_s / motor.inductance_H, 2);
+    const double renewal = 1.0 - std::exp(-2.0 * period_s / bias_time_s);
+    const struct {
+        invariant_ekf_hold tuning;
+        double load_walk, bias_q;
+    } holds[] = {{INVARIANT_EKF_HOLD_ROBUST, 1e-6, 0.02}, {INVARIANT_EKF_HOLD_FAST, 1e-5, 0.005}};
+    for (const auto &hold : holds) {
+        VectorXd q(7);
+        q << current_noise, current_noise, 1e-6, 1e-12, hold.load_walk, 0.05 * 0.05 * renewal,
+            hold.bias_q * hold.bias_q * renewal;
+        const MatrixXd k = kalman_gain(transition(motor, {1.0, 1.5}, 7), q, 9.7e-6, 32768);
+        const invariant_ekf_gains gains = hold_design(motor, 1.5, hold.tuning);
+        assert_relative(1e-5, k(I_D, 0), gains.k_current_d, "i_d");
+        assert_relative(1e-5, k(I_Q, 1), gains.k_current_q, "i_q");
+        assert_relative(1e-5, k(SPEED, 1), gains.k_speed_q_rad_As, "w");
+        assert_relative(1e-5, k(ANGLE, 1), gains.k_angle_q_rad_A, "theta");
+        assert_relative(1e-5, k(LOAD, 1), gains.k_load_q_Nm_A, "T_L");
+        assert_relative(1e-5, k(BIAS_D, 0), gains.k_bias_d_V_A, "b_d");
+        assert_relative(1e-5, k(BIAS_Q, 1), gains.k_bias_q_V_A, "b_q");
+    }
+}
+
+/* Decay of the slowest error, 1/s. */
+double decay(double radius, double period)
+{
+    return -std::log(radius) / period;
+}
+
+void estimation_error_decays_at_every_speed_and_current_of_every_motor()
+{
+    for (const motor_params &motor : reference::motors()) {
+        for (const double period : {50e-6, 100e-6, 200e-6}) {
+            const invariant_ekf_gains gains = motion_design(motor, period);
+            for (double speed = 1.0; speed <= top_speed(motor, period); speed *= 1.25) {
+                for (const double sign : {1.0, -1.0}) {
+                    for (const double load : {0.0, 0.5, 1.0}) {
+                        const OperatingPoint at{sign * speed, load * motor.rated_current_A};
+                        const double radius = spectral_radius(motor, gains, at, 5, period);
+                        TEST_ASSERT_TRUE_MESSAGE(decay(radius, period) > 5.0,
+                                                 ("grows at " + std::to_string(at.speed_rad_s) +
+                                                  " rad/s, i_d " + std::to_string(at.i_d_A))
+                                                     .c_str());
+                    }
+                }
+            }
+        }
+    }
+}
+
+void estimation_error_of_the_reference_motor_is_gone_in_ten_milliseconds()
+{
+    const motor_params motor = reference::bendjedia_2012();
+    const invariant_ekf_gains gains = motion_design(motor);
+    for (const double sign : {1.0, -1.0}) {
+        for (const double speed : {1.0, 2.0, 5.0, 20.0, 50.0, 150.0}) {
+            for (const double i_d : {0.0, 1.5, 3.0}) {
+                const double radius = spectral_radius(motor, gains, {sign * speed, i_d}, 5);
+                TEST_ASSERT_TRUE(decay(radius, period_s) > 165.0);
+            }
+        }
+    }
+}
+
+/* Why the gain from d to theta is odd in the speed. */
+void angle_gain_without_its_sign_loses_one_direction()
+{
+    const motor_params motor = reference::bendjedia_2012();
+    invariant_ekf_gains gains = motion_design(motor);
+    gains.k_angle_d_rad_A = -gains.k_angle_d_rad_A;
+    TEST_ASSERT_TRUE(spectral_radius(motor, gains, {20.0, 0.0}, 5) > 1.0);
+    gains.k_angle_d_rad_A = 0.0;
+    TEST_ASSERT_TRUE(decay(spectral_radius(motor, gains, {1.0, 0.0}, 5), period_s) < 10.0);
+}
+
+/* A constant load and its displacement have no current signature: one error stays, none grows. */
+void no_error_grows_in_hold()
+{
+    for (const motor_params &motor : reference::motors()) {
+        for (const double period : {50e-6, 100e-6, 200e-6}) {
+            for (const auto tuning : {INVARIANT_EKF_HOLD_ROBUST, INVARIANT_EKF_HOLD_FAST}) {
+                const double current = 0.5 * motor.rated_current_A;
+                const invariant_ekf_gains gains = hold_design(motor, current, tuning, period);
+                for (const double speed : {-5.0, -1.0, 0.0, 1.0, 5.0}) {
+                    for (const double part : {0.1, 0.5, 1.0}) { /* of the current, ramping in */
+                        const OperatingPoint at{speed, part * current};
+                        TEST_ASSERT_TRUE(spectral_radius(motor, gains, at, STATES, period) <
+                                         1.0 + 1e-6);
+                    }
+                }
+            }
+        }
+    }
+}
+
+void full_angle_correction_begins_at_the_same_back_emf_on_every_motor()
+{
+    for (const motor_params &motor : reference::motors()) {
+        const invariant_ekf_gains gains = motion_design(motor);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.157 / 24.0,
+                                  gains.angle_d_full_speed_rad_s * motor.torque_constant_Nm_A /
+                                      motor.supply_V);
+    }
+}
+
+/* Scaling a motor's voltage, current, time base leaves a dimensionless gain as it is. */
+void gains_follow_the_motor()
+{
+    const motor_params motor = reference::bendjedia_2012();
+    motor_params scaled = motor; /* twice the turns: half the current at twice the voltage */
+    scaled.resistance_ohm *= 4.0;
+    scaled.inductance_H *= 4.0;
+    scaled.torque_constant_Nm_A *= 2.0;
+    scaled.rated_current_A *= 0.5;
+    scaled.supply_V *= 2.0;
+    const invariant_ekf_gains a = motion_design(motor);
+    const invariant_ekf_gains b = motion_design(scaled);
+    assert_relative(1e-9, a.k_current_d, b.k_current_d, "i_d");
+    assert_relative(1e-9, 2.0 * a.k_speed_q_rad_As, b.k_speed_q_rad_As, "w");
+    assert_relative(1e-9, 2.0 * a.k_angle_d_rad_A, b.k_angle_d_rad_A, "theta");
+    assert_relative(1e-9, 2.0 * a.k_load_q_Nm_A, b.k_load_q_Nm_A, "T_L");
+    const invariant_ekf_gains c = hold_design(motor, 1.5, INVARIANT_EKF_HOLD_ROBUST);
+    const invariant_ekf_gains d = hold_design(scaled, 0.75, INVARIANT_EKF_HOLD_ROBUST);
+    assert_relative(1e-5, c.k_current_d, d.k_current_d, "i_d");
+    assert_relative(1e-5, 2.0 * c.k_load_q_Nm_A, d.k_load_q_Nm_A, "T_L");
+    assert_relative(1e-5, 4.0 * c.k_bias_d_V_A, d.k_bias_d_V_A, "b_d");
+    assert_relative(1e-9, 4.0 * c.k_resistance_ohm_AV, d.k_resistance_ohm_AV, "R");
+}
+
+} // namespace
+
+void setUp()
+{
+}
+
+void tearDown()
+{
+}
+
+int main()
+{
+    UNITY_BEGIN();
+    RUN_TEST(motion_gains_are_the_steady_kalman_gain_at_5_rad_s);
+    RUN_TEST(hold_gains_are_the_steady_kalman_gain_at_1_rad_s);
+    RUN_TEST(estimation_error_decays_at_every_speed_and_current_of_every_motor);
+    RUN_TEST(estimation_error_of_the_reference_motor_is_gone_in_ten_milliseconds);
+    RUN_TEST(angle_gain_without_its_sign_loses_one_direction);
+    RUN_TEST(no_error_grows_in_hold);
+    RUN_TEST(full_angle_correction_begins_at_the_same_back_emf_on_every_motor);
+    RUN_TEST(gains_follow_the_motor);
+    return UNITY_END();
+}

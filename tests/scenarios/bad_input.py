@@ -1,0 +1,213 @@
+"""Bad input: one clear line that names file, line and key, exit code 2, and nothing written."""
+import os
+import pathlib
+
+from program import ROOT, SMALL, Checks, run, scratch
+
+CHECKS = Checks()
+MOTOR = (ROOT / "sil/motors/bendjedia-2012.toml").read_text(encoding="utf-8")
+
+
+def replaced(old, new, text=SMALL):
+    assert old in text, old
+    return text.replace(old, new)
+
+
+# name, text of the scenario, line of the complaint, what the complaint must contain
+SCENARIOS = [
+    ("no TOML", replaced("duration_s = 0.05", "duration_s = = 0.05"), 3, ["not valid TOML"]),
+    ("cut off", SMALL + "[plan", 21, ["not valid TOML"]),
+    ("a key twice", replaced("hold_on_enable = false", "hold_on_enable = false\n" * 2), 7,
+     ["not valid TOML"]),
+    ("unknown key at the top", replaced("duration_s = 0.05", "durations = 0.05"), None,
+     ["duration_s"]),
+    ("unknown key in a table", replaced('model = "bench"', "bus_v = 24"), 9,
+     ["plant.bus_v", "did you mean bus_V?"]),
+    ("unknown table", SMALL + "[plants]\n", 21, ["plants", "did you mean plant?"]),
+    ("text for a number", replaced("duration_s = 0.05", 'duration_s = "0.05"'), 3,
+     ["duration_s", "expected a number in 0.001...600"]),
+    ("number for a text", replaced('motor = "bendjedia-2012"', "motor = 2012"), 2,
+     ["motor", "expected a text"]),
+    ("number for a boolean", replaced("hold_on_enable = false", "hold_on_enable = 0"), 6,
+     ["drive.hold_on_enable", "expected true or false"]),
+    ("fraction for an integer", replaced('model = "bench"', "delay_periods = 0.5"), 9,
+     ["plant.delay_periods", "expected an integer in 0...1"]),
+    ("value for a table", "drive = 3\n" + replaced("[drive]\nhold_on_enable = false\n", ""), 1,
+     ["drive", "expected a table"]),
+    ("date", replaced("duration_s = 0.05", "duration_s = 2012-02-01"), 3, ["date"]),
+    ("zero period", replaced('model = "bench"', "period_s = 0"), 9,
+     ["plant.period_s", "1e-05...0.001", "got 0"]),
+    ("negative inductance", replaced('model = "bench"', "inductance_scale = -1"), 9,
+     ["plant.inductance_scale", "0.01...100", "got -1"]),
+    ("NaN", replaced('model = "bench"', "bus_V = nan"), 9, ["plant.bus_V", "got nan"]),
+    ("infinity", replaced("position_rad = 0.05", "position_rad = inf"), 14,
+     ["event[1].position_rad", "got inf"]),
+    ("duration zero", replaced("duration_s = 0.05", "duration_s = 0"), 3, ["duration_s"]),
+    ("a setting that the drive refuses",
+     replaced("hold_on_enable = false", "hold_current_A = 30.0"), 6, ["hold_current_A", "30"]),
+    ("unknown motor", replaced("bendjedia-2012", "bendjedia-2013"), 2,
+     ["unknown motor", "did you mean bendjedia-2012?"]),
+    ("no motor", replaced('motor = "bendjedia-2012"\n', ""), None, ["motor: is missing"]),
+    ("unknown law", replaced("hold_on_enable = false", 'law = "pip"'), 6,
+     ["drive.law", "state-feedback, pid", "did you mean pid?"]),
+    ("unknown estimator", replaced("hold_on_enable = false", 'estimator = "ukf"'), 6,
+     ["drive.estimator", "invariant-ekf, steady-state-ekf"]),
+    ("unknown plant model", replaced('"bench"', '"perfect"'), 9, ["plant.model", "ideal, bench"]),
+    ("unknown command", replaced("move-trapezoid", "move"), 13, ["event[1].command"]),
+    ("command without its fields", replaced("ramp_s = 0.01\n", ""), 11,
+     ["event[1].ramp_s", "missing"]),
+    ("ramps longer than the move", replaced("ramp_s = 0.01", "ramp_s = 0.02"), 16,
+     ["event[1].ramp_s", "0.0001...0.01"]),
+    ("field of another command", replaced("ramp_s = 0.01", "ramp_s = 0.01\njerk_s = 0.001"), 17,
+     ["event[1].jerk_s", "unknown key"]),
+    ("event after the end", replaced("time_s = 0.0", "time_s = 0.06"), 12,
+     ["event[1].time_s", "0...0.05"]),
+    ("event of two kinds", replaced("time_s = 0.0", "time_s = 0.0\nload_torque_Nm = 1.0"), None,
+     ["event[1].command", "exactly one of"]),
+    ("drift of nothing", replaced("position_rad = 0.05\nduration_s = 0.02\nramp_s = 0.01",
+                                  "").replace('command = "move-trapezoid"', "plant = {}"), None,
+     ["event[1].plant", "expected a scale"]),
+    ("unknown metric", replaced('"fault"', '"faults"'), 19,
+     ["expect[1].metric", "did you mean fault?"]),
+    ("unknown fault", replaced('"none"', '"nothing"'), 20, ["expect[1].equals"]),
+    ("no bound", replaced('"fault"\nequals = "none"', '"overshoot_rad"'), None,
+     ["expect[1].max", "max, min, equals"]),
+    ("unknown window", SMALL + 'window = "moving"\n', 21, ["expect[1].window", '"move", "rest"']),
+    ("window that ends first", SMALL + "window = [0.04, 0.02]\n", 21, ["expect[1].window"]),
+    ("window beyond the end", SMALL + "window = [0.04, 0.2]\n", 21,
+     ["expect[1].window", "end <= 0.05"]),
+    ("unknown base", 'base = "bendjedia-fig100"\n' + SMALL, 1,
+     ["base", "did you mean bendjedia-fig10"]),
+    ("base of itself", 'base = "./scenario.toml"\n' + SMALL, 1, ["base", "itself"]),
+]
+
+# name, text of the motor file, line, what the complaint must contain
+MOTORS = [
+    ("negative inductance", replaced("inductance_H = 0.9e-3", "inductance_H = -0.9e-3", MOTOR), 5,
+     ["inductance_H", "1e-06...10", "got -0.0009"]),
+    ("no inertia", replaced("inertia_kgm2 = 15.62e-5", "", MOTOR), None,
+     ["inertia_kgm2: is missing"]),
+    ("NaN", replaced("inertia_kgm2 = 15.62e-5", "inertia_kgm2 = nan", MOTOR), 8, ["got nan"]),
+    ("half a tooth", replaced("rotor_teeth = 50", "rotor_teeth = 50.5", MOTOR), 11,
+     ["rotor_teeth", "integer in 1...1000"]),
+    ("unknown key", MOTOR + "resistance_mohm = 3\n", 12,
+     ["resistance_mohm", "did you mean resistance_ohm?"]),
+    ("another's name", replaced('id = "bendjedia-2012"', 'id = "kim"', MOTOR), 1,
+     ["id", "the name of the file"]),
+    ("no TOML", "id = \n", 1, ["not valid TOML"]),
+]
+
+# name, arguments after a good scenario, what the complaint must contain
+ARGUMENTS = [
+    ("a key set twice", ["--set", "plant.bus_V=24", "--set", "plant.bus_V=30"],
+     ["--set plant.bus_V=30", "twice"]),
+    ("no value", ["--set", "plant.bus_V"], ["--set plant.bus_V", "table.key=value"]),
+    ("out of range", ["--set", "plant.resistance_scale=-1"],
+     ["--set plant.resistance_scale=-1", "0.01...100", "got -1"]),
+    ("wrong type", ["--set", "plant.resistance_scale=much"], ["resistance_scale", '"much"']),
+    ("NaN", ["--set", "plant.bus_V=nan"], ["--set plant.bus_V=nan", "got nan"]),
+    ("unknown key", ["--set", "drive.lay=pid"], ["drive.lay", "did you mean law?"]),
+    ("unknown law", ["--set", "drive.law=lqr"], ["--set drive.law=lqr", "state-feedback, pid"]),
+    ("below a value", ["--set", "duration_s.x=1"], ["duration_s", "no keys"]),
+    ("unknown motor", ["--set", "motor=kim-2017"], ["unknown motor", "kim-2016"]),
+    ("unknown format", ["--numeric", "half"], ["--numeric", "half"]),
+    ("negative seed", ["--seed", "-1"], ["--seed"]),
+    ("seeds backwards", ["--seeds", "4-1"], ["--seeds 4-1", "A-B"]),
+    ("seeds of letters", ["--seeds", "a-b"], ["--seeds a-b"]),
+    ("seed and seeds", ["--seed", "1", "--seeds", "1-4"], ["--seed"]),
+    ("no jobs", ["--jobs", "0"], ["--jobs"]),
+    ("unknown option", ["--fast"], ["--fast"]),
+    ("a scenario twice", ["scenario.toml"], ["scenario.toml", "twice"]),
+    ("a missing file beside a good one", ["missing.toml"], ["missing.toml", "no such file"]),
+    ("an unknown name", ["bendjedia-fig9"], ["unknown scenario", "bendjedia-fig"]),
+]
+
+
+def complains(name, folder, arguments, expected, prefix=""):
+    before = sorted(folder.rglob("*"))
+    result = run("run", *arguments, "--out", "out", cwd=folder)
+    lines = result.stderr.splitlines()
+    text = lines[0] if lines else ""
+    CHECKS.that(result.returncode == 2, f"{name}: exit code {result.returncode}, expected 2")
+    CHECKS.that(len(lines) == 1, f"{name}: one line, got {lines}")
+    CHECKS.that(result.stdout == "", f"{name}: standard output is empty")
+    CHECKS.that(text.startswith("steadystep-sil: " + prefix), f"{name}: starts with {prefix}: {text}")
+    for part in expected:
+        CHECKS.that(part in text, f"{name}: names '{part}': {text}")
+    CHECKS.that(sorted(folder.rglob("*")) == before, f"{name}: nothing written")
+
+
+def scenario_files(folder):
+    for name, text, line, expected in SCENARIOS:
+        (folder / "scenario.toml").write_text(text, encoding="utf-8")
+        prefix = f"scenario.toml:{line}: " if line else "scenario.toml"
+        complains(name, folder, ["scenario.toml"], expected, prefix)
+
+
+def motor_files(folder):
+    (folder / "scenario.toml").write_text(
+        replaced('"bendjedia-2012"', '"./bendjedia-2012.toml"'), encoding="utf-8")
+    for name, text, line, expected in MOTORS:
+        (folder / "bendjedia-2012.toml").write_text(text, encoding="utf-8")
+        prefix = "./bendjedia-2012.toml" + (f":{line}: " if line else "")
+        complains("motor: " + name, folder, ["scenario.toml"], expected, prefix)
+
+
+def arguments(folder):
+    (folder / "scenario.toml").write_text(SMALL, encoding="utf-8")
+    for name, more, expected in ARGUMENTS:
+        complains("argument: " + name, folder, ["scenario.toml", *more], expected)
+    for name, command in [("no scenario", ["run"]), ("no command", []), ("unknown", ["walk"]),
+                          ("unknown sweep", ["sweep", "bendjedia"])]:
+        result = run(*command, cwd=folder)
+        CHECKS.that(result.returncode == 2, f"{name}: exit code {result.returncode}")
+        CHECKS.that(len(result.stderr.splitlines()) == 1, f"{name}: one line: {result.stderr}")
+
+
+def output_folder(folder):
+    (folder / "scenario.toml").write_text(SMALL, encoding="utf-8")
+    (folder / "taken").write_text("a file", encoding="utf-8")
+    places = ["taken", "taken/below", "/proc/steadystep"]
+    if os.geteuid() != 0:  # root may write anywhere
+        (folder / "locked").mkdir(mode=0o500)
+        places.append("locked")
+    for place in places:
+        result = run("run", "scenario.toml", "--out", place, cwd=folder)
+        CHECKS.that(result.returncode == 2, f"--out {place}: exit code {result.returncode}")
+        CHECKS.that(result.stderr.startswith(f"steadystep-sil: --out {place}: "),
+                    f"--out {place}: {result.stderr}")
+        CHECKS.that(result.stdout == "", f"--out {place}: nothing has run: {result.stdout}")
+
+
+def good_input(folder):
+    """What the cases above break works when it is whole."""
+    (folder / "scenario.toml").write_text(SMALL, encoding="utf-8")
+    (folder / "bendjedia-2012.toml").write_text(MOTOR, encoding="utf-8")
+    for name, command in [("run", ["run", "scenario.toml"]),
+                          ("motor by path", ["run", "scenario.toml", "--set",
+                                             "motor=./bendjedia-2012.toml"]),
+                          ("list", ["list"]), ("help", ["--help"]), ("version", ["--version"])]:
+        result = run(*command, cwd=folder)
+        CHECKS.that(result.returncode == 0, f"{name}: exit code {result.returncode}")
+        CHECKS.that(result.stderr == "", f"{name}: {result.stderr}")
+
+
+def broken_expectation(folder):
+    """An expectation that does not hold: exit code 1, and a line that repeats it."""
+    text = SMALL + '\n[[expect]]\nmetric = "current_peak_A"\nmax = 1e-6\n'
+    (folder / "scenario.toml").write_text(text, encoding="utf-8")
+    result = run("run", "scenario.toml", "--seed", "7", "--numeric", "fixed", "--set",
+                 "plant.bus_V=23", cwd=folder)
+    CHECKS.that(result.returncode == 1, f"broken: exit code {result.returncode}")
+    command = ("steadystep-sil run scenario.toml --numeric fixed --seed 7 --set plant.bus_V=23")
+    CHECKS.that(command in result.stdout, f"broken: how to reproduce it: {result.stdout}")
+    line = [text for text in result.stdout.splitlines() if "current_peak_A" in text]
+    CHECKS.that(len(line) == 1 and "<= 1e-06" in line[0] and "NOT HELD" in line[0],
+                f"broken: named with its bound: {line}")
+
+
+for part in (scenario_files, motor_files, arguments, output_folder, good_input,
+             broken_expectation):
+    with scratch() as name:
+        part(pathlib.Path(name))
+CHECKS.end()

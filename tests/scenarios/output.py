@@ -1,0 +1,147 @@
+"""What --out receives: complete, consistent, and readable by others."""
+import csv
+import json
+import math
+import pathlib
+
+from program import SMALL, Checks, run, scratch
+
+CHECKS = Checks()
+
+COLUMNS = """time_s theta_ref_rad theta_rad theta_est_rad omega_rad_s omega_est_rad_s load_torque_Nm
+load_torque_est_Nm i_a_A i_b_A u_a_V u_b_V drive_state i_d_A i_q_A i_d_ref_A i_q_ref_A u_d_V u_q_V
+omega_ref_rad_s resistance_est_ohm""".split()
+
+METRICS = """position_error_max_rad position_error_rms_rad position_error_final_rad
+estimate_error_max_rad estimate_error_rms_rad estimate_error_final_rad speed_error_rms_rad_s
+load_torque_error_rms_Nm load_torque_error_final_Nm overshoot_rad settling_time_s current_peak_A
+current_rms_A voltage_peak_V voltage_rms_V slip_full_steps fault""".split()
+
+SUMMARY = """scenario description motor numeric seed set version reproduce passed failure simulated_s
+cpu_s trace_hash drive_hash metrics expectations""".split()
+
+
+def table(folder, place="out/small"):
+    with open(folder / place / "trace.csv", encoding="utf-8", newline="") as file:
+        rows = list(csv.reader(file))
+    return rows[0], [[float(cell) for cell in row] for row in rows[1:]]
+
+
+def summary_of(folder, place="out/small"):
+    return json.loads((folder / place / "summary.json").read_text(encoding="utf-8"))
+
+
+def run_small(folder, text, *arguments):
+    (folder / "small.toml").write_text(text, encoding="utf-8")
+    return run("run", "small.toml", *arguments, "--out", "out", cwd=folder)
+
+
+def files_are_complete(folder):
+    run_small(folder, SMALL)
+    names = sorted(path.name for path in (folder / "out/small").iterdir())
+    CHECKS.that(names == ["summary.json", "trace.csv"], f"two files, nothing aside: {names}")
+    summary = summary_of(folder)
+    for key in SUMMARY:
+        CHECKS.that(key in summary, f"summary has {key}")
+    for window in ("move", "rest", "all"):
+        for key in METRICS:
+            value = summary["metrics"][window].get(key, "absent")
+            CHECKS.that(value != "absent", f"{window} has {key}")
+    CHECKS.that(summary["passed"] is True and summary["failure"] is None, "summary says passed")
+    CHECKS.that(summary["expectations"] == [{"metric": "fault", "window": "all", "equals": "none",
+                                             "value": "none", "passed": True}],
+                f"expectations: {summary['expectations']}")
+    CHECKS.that(len(summary["trace_hash"]) == 16 and int(summary["trace_hash"], 16) > 0,
+                "a trace hash of 64 bits")
+
+
+def trace_is_complete(folder):
+    run_small(folder, SMALL)
+    head, rows = table(folder)
+    for column in COLUMNS:
+        CHECKS.that(column in head, f"trace has {column}")
+    CHECKS.that(len(rows) == 501, f"0...0.05 s at 10 kHz are 501 rows, got {len(rows)}")
+    times = [row[0] for row in rows]
+    CHECKS.that(times == [n / 10000 for n in range(501)], "times are the nearest to the decimals")
+    state = head.index("drive_state")
+    CHECKS.that({row[state] for row in rows} == {3.0}, "the drive is ready from time zero on")
+
+
+def metrics_agree_with_the_trace(folder):
+    run_small(folder, SMALL)
+    head, rows = table(folder)
+    column = {name: [row[i] for row in rows] for i, name in enumerate(head)}
+    errors = [a - b for a, b in zip(column["theta_rad"], column["theta_est_rad"])]
+    figures = summary_of(folder)["metrics"]["all"]
+    rms = math.sqrt(sum(error * error for error in errors) / len(errors))
+    CHECKS.that(figures["estimate_error_max_rad"] == max(map(abs, errors)), "largest error")
+    CHECKS.that(math.isclose(figures["estimate_error_rms_rad"], rms, rel_tol=1e-12), "rms error")
+    CHECKS.that(figures["estimate_error_final_rad"] == abs(errors[-1]), "last error")
+
+
+def enabling_is_recorded_on_request(folder):
+    run_small(folder, "record_enabling = true\n" + SMALL)
+    _, rows = table(folder)
+    CHECKS.that(rows[0][0] < 0 and rows[-1][0] == 0.05, "times run from before zero to the end")
+    (time_zero,) = [i for i, row in enumerate(rows) if row[0] == 0]
+    run_small(folder, SMALL)
+    _, plain = table(folder)
+    CHECKS.that(rows[time_zero:] == plain, "from time zero on the trace is the same")
+
+
+def events_act_at_their_time(folder):
+    load = "\n[[event]]\ntime_s = 0.03\nload_torque_Nm = 0.02\n"
+    drift = "\n[[event]]\ntime_s = 0.01\nplant.resistance_scale = 1.5\nramp_s = 0.02\n"
+    run_small(folder, SMALL + load + drift)
+    head, rows = table(folder)
+    load = [row[head.index("load_torque_Nm")] for row in rows]
+    ohm = [row[head.index("resistance_ohm")] for row in rows]
+    CHECKS.that(load == [0.0] * 300 + [0.02] * 201, "load from 0.03 s on")
+    CHECKS.that(ohm[99] == 0.37 and math.isclose(ohm[199], 0.37 * 1.25)
+                and math.isclose(ohm[299], 0.37 * 1.5) and ohm[-1] == ohm[299],
+                "resistance drifts between 0.01 and 0.03 s")
+    moving = [row[head.index("reference_moving")] for row in rows]
+    CHECKS.that(moving[0] == 0 and moving[2] == 1 and moving[210] == 0,
+                "a move at time zero begins in the next period and takes its 0.02 s")
+
+
+def a_drive_that_does_not_get_ready_fails(folder):
+    result = run_small(folder, SMALL, "--set", "plant.current_offset_a_A=4.0")
+    CHECKS.that(result.returncode == 1, f"exit code {result.returncode}")
+    CHECKS.that("did not become ready" in result.stdout, f"says why: {result.stdout}")
+    CHECKS.that("did not become ready" in (summary_of(folder)["failure"] or ""), "in the summary")
+
+
+def base_and_set_change_only_what_they_name(folder):
+    run_small(folder, SMALL)
+    plain = summary_of(folder)
+    (folder / "child.toml").write_text('base = "./small.toml"\n[drive]\nlaw = "pid"\n',
+                                       encoding="utf-8")
+    run("run", "child.toml", "--out", "out", cwd=folder)
+    run("run", "small.toml", "--set", "drive.law=pid", "--out", "set", cwd=folder)
+    child, with_set = summary_of(folder, "out/child"), summary_of(folder, "set/small")
+    CHECKS.that(child["trace_hash"] == with_set["trace_hash"], "base and --set mean the same")
+    CHECKS.that(child["trace_hash"] != plain["trace_hash"], "and they do change the law")
+    CHECKS.that(with_set["set"] == ["drive.law=pid"], "the summary names the setting")
+
+
+def sweep_writes_its_table(folder):
+    (folder / "small.toml").write_text(SMALL, encoding="utf-8")
+    (folder / "sweep.toml").write_text(
+        'description = "two scales"\n[[row]]\nfigure = "none"\nparameter = "resistance_scale"\n'
+        'scales = [0.9, 1.1]\nscenario = "./small.toml"\npaper = "nothing"\nbound_max_rad = 1.0\n',
+        encoding="utf-8")
+    result = run("sweep", "./sweep.toml", "--seeds", "1-2", "--out", "swept", cwd=folder)
+    rows = json.loads((folder / "swept/table.json").read_text(encoding="utf-8"))["rows"]
+    CHECKS.that(result.returncode == 0, f"exit code {result.returncode}")
+    CHECKS.that([row["scale"] for row in rows] == [0.9, 1.1], "a row per scale")
+    CHECKS.that(all(row["held"] and row["estimate_error_max_rad"] > 0 for row in rows), "figures")
+
+
+for check in (files_are_complete, trace_is_complete, metrics_agree_with_the_trace,
+              enabling_is_recorded_on_request, events_act_at_their_time,
+              a_drive_that_does_not_get_ready_fails, base_and_set_change_only_what_they_name,
+              sweep_writes_its_table):
+    with scratch() as name:
+        check(pathlib.Path(name))
+CHECKS.end()

@@ -1,0 +1,13 @@
+# record_input_<numeric>, and the replay of each recording on the host.
+add_custom_target(record_input)
+foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
+  add_executable(record_input_${numeric} record_input.cpp)
+  target_link_libraries(record_input_${numeric} PRIVATE sil_board drive_interface)
+  target_compile_definitions(record_input_${numeric} PRIVATE REPLAY_NUMERIC=${numeric})
+  add_dependencies(record_input record_input_${numeric})
+  foreach(case IN LISTS replay_cases)
+    add_replay(${case} ${numeric} record_input_${numeric})
+    target_link_libraries(replay_${case}_${numeric} PRIVATE sil_board drive_interface)
+    add_test(NAME replay.${case}.${numeric} COMMAND replay_${case}_${numeric})
+  endforeach()
+endforeach()

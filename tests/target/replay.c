@@ -1,0 +1,68 @@
+/*
+ * Replays a recorded closed-loop input through the firmware image and compares drive_hash with the
+ * one the host reached. Runs on the target (and on the host, where it proves the recording).
+ */
+#include <stdalign.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "tests/target/replay_case.h"
+#include REPLAY_DATA /* replay_facts, replay_case_name, replay_input, replay_drive_hash */
+#include "tests/target/report.h"
+
+enum { DRIVE_BYTES_LIMIT = 4096 };
+
+static bool always(void *context)
+{
+    (void)context;
+    return true;
+}
+
+static void nothing(void *context)
+{
+    (void)context;
+}
+
+static const struct hal board = {
+    .facts = &replay_facts, .bridge_enable = always, .bridge_disable = nothing};
+
+static int fail(const char *reason)
+{
+    report_text(reason);
+    report_text("\n");
+    return 1;
+}
+
+int main(void)
+{
+    static alignas(max_align_t) unsigned char drive[DRIVE_BYTES_LIMIT];
+    static struct drive_settings settings;
+    static char error[DRIVE_ERROR_TEXT];
+    const struct firmware_image *image = &REPLAY_IMAGE;
+
+    if (image->drive_bytes > sizeof drive)
+        return fail("the drive is larger than its memory");
+    replay_settings(replay_case_named(replay_case_name), &settings);
+    if (!image->init(drive, &board, &settings, error))
+        return fail(error);
+
+    int next_command = 0;
+    for (uint32_t k = 0; k < REPLAY_PERIODS; ++k) {
+        while (next_command < REPLAY_COMMANDS && replay_commands[next_command].at_period <= k + 1)
+            if (!image->command(drive, &replay_commands[next_command++], error))
+                return fail(error);
+        const struct replay_samples *input = &replay_input[k];
+        struct hal_samples samples = {.current_a = input->current_a,
+                                      .current_b = input->current_b,
+                                      .bus_voltage = input->bus_voltage,
+                                      .phase_voltage_a = input->phase_voltage_a,
+                                      .phase_voltage_b = input->phase_voltage_b};
+        (void)image->control_cycle(drive, &samples);
+    }
+
+    uint64_t hash = image->hash(drive);
+    report_number("drive_bytes ", image->drive_bytes);
+    report_number("drive_hash ", hash);
+    report_number("host       ", replay_drive_hash);
+    return hash == replay_drive_hash ? 0 : fail("drive_hash differs from the host's");
+}

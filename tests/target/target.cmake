@@ -1,0 +1,73 @@
+# Programs for the ARM core, run by ctest under CMAKE_CROSSCOMPILING_EMULATOR.
+include(Unity)
+set(CMAKE_EXECUTABLE_SUFFIX .elf)
+
+add_library(target_startup OBJECT startup.c)
+target_link_options(target_startup INTERFACE -T ${CMAKE_CURRENT_SOURCE_DIR}/qemu.ld)
+set_target_properties(target_startup PROPERTIES
+  INTERFACE_LINK_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/qemu.ld)
+
+# The recorder runs on the host: the host build of this project, in a folder of its own, unless
+# STEADYSTEP_HOST_BUILD names one that has it.
+set(STEADYSTEP_HOST_BUILD "" CACHE PATH "Host build folder that holds record_input; empty: make one")
+if(STEADYSTEP_HOST_BUILD)
+  set(host_build ${STEADYSTEP_HOST_BUILD})
+  add_custom_target(host_recorder)
+else()
+  include(ExternalProject)
+  set(host_build ${PROJECT_BINARY_DIR}/host)
+  set(recorders)
+  foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
+    list(APPEND recorders ${host_build}/tests/target/record_input_${numeric})
+  endforeach()
+  ExternalProject_Add(host_recorder
+    SOURCE_DIR ${PROJECT_SOURCE_DIR}
+    BINARY_DIR ${host_build}
+    CMAKE_ARGS -DCMAKE_BUILD_TYPE=Release -DCMAKE_C_FLAGS_RELEASE=-O2 -DCMAKE_CXX_FLAGS_RELEASE=-O2
+               -DUNITY_DIR=${UNITY_DIR}
+               -DSTEADYSTEP_ALLOW_MISSING_ROOMS=${STEADYSTEP_ALLOW_MISSING_ROOMS}
+    BUILD_COMMAND ${CMAKE_COMMAND} --build ${host_build} --target record_input
+    BUILD_ALWAYS ON
+    BUILD_BYPRODUCTS ${recorders}
+    INSTALL_COMMAND ""
+    USES_TERMINAL_BUILD ON)
+endif()
+
+add_custom_target(replays) # what tools/cycles counts
+foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
+  add_library(firmware_image_${numeric} OBJECT ${PROJECT_SOURCE_DIR}/hal/sil/firmware_image.c)
+  target_link_libraries(firmware_image_${numeric} PUBLIC firmware_${numeric})
+  target_compile_definitions(firmware_image_${numeric} PRIVATE FIRMWARE_IMAGE_NUMERIC=${numeric})
+
+  file(GLOB unit_tests CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/../unit/test_*.c)
+  foreach(source IN LISTS unit_tests)
+    cmake_path(GET source STEM stem)
+    string(REGEX REPLACE "^test_" "" name ${stem})
+    set(target unit_${name}_${numeric})
+    add_executable(${target} ${source})
+    target_link_libraries(${target} PRIVATE target_startup firmware_${numeric} unity m)
+    add_test(NAME target.unit.${name}.${numeric} COMMAND ${target})
+    set_tests_properties(target.unit.${name}.${numeric} PROPERTIES LABELS target TIMEOUT 120)
+  endforeach()
+
+  foreach(case IN LISTS replay_cases)
+    add_replay(${case} ${numeric} ${host_build}/tests/target/record_input_${numeric})
+    set(target replay_${case}_${numeric})
+    add_dependencies(${target} host_recorder)
+    add_dependencies(replays ${target})
+    target_link_libraries(${target} PRIVATE target_startup firmware_image_${numeric})
+    target_link_options(${target} PRIVATE -Wl,-Map=$<TARGET_FILE:${target}>.map)
+    add_test(NAME target.replay.${case}.${numeric} COMMAND ${target})
+    set_tests_properties(target.replay.${case}.${numeric} PROPERTIES LABELS target TIMEOUT 120)
+  endforeach()
+
+  add_test(NAME target.interrupt-is-clean.${numeric}
+    COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/interrupt_is_clean.py
+            $<TARGET_FILE:replay_default-sensorless_${numeric}>)
+  set_tests_properties(target.interrupt-is-clean.${numeric} PROPERTIES LABELS target)
+endforeach()
+
+separate_arguments(core_flags UNIX_COMMAND "${CMAKE_C_FLAGS}")
+add_test(NAME target.interrupt-is-clean.self-test
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/interrupt_is_clean.py --self-test ${CMAKE_C_COMPILER} ${core_flags})
+set_tests_properties(target.interrupt-is-clean.self-test PROPERTIES LABELS target)

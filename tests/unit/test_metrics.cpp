@@ -1,0 +1,338 @@
+/* Figures of merit on records whose answer is known by hand. */
+#include <cmath>
+#include <limits>
+
+#include "sil/scenario/metrics.h"
+#include "sil/scenario/result.h"
+#include "unity.h"
+
+using namespace scenario;
+
+namespace
+{
+
+constexpr double period_s = 1e-4;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double full_step_rad = 1.5707963267948966 / 50;
+
+bool has_no_value(double figure)
+{
+    return figure != figure;
+}
+
+/* Seconds as rows. */
+std::size_t at(double time_s)
+{
+    return static_cast<std::size_t>(time_s / period_s + 0.5);
+}
+
+/* Rows that `shape(row, n)` fills in, n from 0 at time zero. */
+template <typename Shape> Record make_record(double duration_s, Shape shape)
+{
+    Record record(period_s);
+    for (std::size_t n = 0; n <= at(duration_s); ++n) {
+        Row row{};
+        row[RESISTANCE] = row[RESISTANCE_EST] = 1;
+        shape(row, n);
+        record.append(row);
+    }
+    return record;
+}
+
+/* 0...0.1 s at 10 rad/s to 1 rad, then rest; the rotor follows 0.01 s behind. */
+void lagging_move(Row &row, std::size_t n)
+{
+    const double time_s = static_cast<double>(n) * period_s;
+    row[REFERENCE_MOVING] = n < at(0.1) ? 1 : 0;
+    row[OMEGA_REF] = n < at(0.1) ? 10 : 0;
+    row[THETA_REF] = std::fmin(10 * time_s, 1);
+    row[THETA] = row[THETA_EST] = std::fmin(std::fmax(10 * (time_s - 0.01), 0), 1);
+}
+
+Metrics over(const Record &record, const Window &window)
+{
+    return evaluate(record, rows_of(record, window), MetricSettings{});
+}
+
+void move_ends_with_the_profile_and_rest_follows()
+{
+    const Record record = make_record(0.2, lagging_move);
+    const RowRange move = rows_of(record, {Window::Kind::move});
+    const RowRange rest = rows_of(record, {Window::Kind::rest});
+    TEST_ASSERT_EQUAL_size_t(0, move.first);
+    TEST_ASSERT_EQUAL_size_t(at(0.1), move.last);
+    TEST_ASSERT_EQUAL_size_t(at(0.1), rest.first);
+    TEST_ASSERT_EQUAL_size_t(record.rows(), rest.last);
+}
+
+void a_step_counts_as_motion_until_the_rotor_rests()
+{
+    const Record record = make_record(0.1, [](Row &row, std::size_t n) {
+        row[THETA_REF] = n >= at(0.01) ? 0.1 : 0;
+        /* Starts two periods late, and passes through zero speed at the peak of its overshoot. */
+        const bool moving = n >= at(0.0102) && n < at(0.05) && n != at(0.03);
+        row[OMEGA] = moving ? 5 : 0;
+    });
+    TEST_ASSERT_EQUAL_size_t(at(0.05), rows_of(record, {Window::Kind::move}).last);
+}
+
+void without_motion_everything_is_rest()
+{
+    const Record record = make_record(0.01, [](Row &, std::size_t) {});
+    TEST_ASSERT_TRUE(rows_of(record, {Window::Kind::move}).empty());
+    TEST_ASSERT_EQUAL_size_t(record.rows(), rows_of(record, {Window::Kind::rest}).last);
+}
+
+void enabling_before_time_zero_is_in_no_window()
+{
+    Record record(period_s);
+    Row row{};
+    row[THETA] = 100;
+    record.append(row);
+    record.start_time_here();
+    row[THETA] = 0;
+    record.append(row);
+    TEST_ASSERT_EQUAL_DOUBLE(0, over(record, {Window::Kind::all}).position_error_max_rad);
+    TEST_ASSERT_EQUAL_DOUBLE(-period_s, record.time_s(0));
+}
+
+void explicit_times_include_both_ends()
+{
+    const Record record = make_record(0.1, lagging_move);
+    const RowRange rows = rows_of(record, {Window::Kind::times, 0.02, 0.05});
+    TEST_ASSERT_EQUAL_size_t(at(0.02), rows.first);
+    TEST_ASSERT_EQUAL_size_t(at(0.05) + 1, rows.last);
+}
+
+void errors_have_their_largest_mean_square_and_last_value()
+{
+    const Record record = make_record(3 * period_s, [](Row &row, std::size_t n) {
+        const double values[] = {0, -4, 2, -2};
+        row[THETA] = values[n];
+        row[OMEGA] = -values[n];
+        row[LOAD_TORQUE_EST] = values[n];
+    });
+    const Metrics metrics = over(record, {Window::Kind::all});
+    TEST_ASSERT_EQUAL_DOUBLE(4, metrics.position_error_max_rad);
+    TEST_ASSERT_EQUAL_DOUBLE(std::sqrt(6.0), metrics.position_error_rms_rad);
+    TEST_ASSERT_EQUAL_DOUBLE(2, metrics.position_error_final_rad);
+    TEST_ASSERT_EQUAL_DOUBLE(4, metrics.estimate_error_max_rad);
+    TEST_ASSERT_EQUAL_DOUBLE(std::sqrt(6.0), metrics.speed_error_rms_rad_s);
+    TEST_ASSERT_EQUAL_DOUBLE(2, metrics.load_torque_error_final_Nm);
+}
+
+void the_lag_of_a_move_is_found()
+{
+    const Metrics metrics = over(make_record(0.2, lagging_move), {Window::Kind::move});
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.1, metrics.position_error_steady_rad);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.01, metrics.lag_s);
+}
+
+void settling_counts_from_the_end_of_the_reference()
+{
+    const Metrics metrics = over(make_record(0.2, lagging_move), {Window::Kind::all});
+    /* 2 mrad at 10 rad/s are 0.2 ms before the rotor arrives at 0.11 s. */
+    TEST_ASSERT_DOUBLE_WITHIN(2.5e-4, 0.0098, metrics.settling_time_s);
+}
+
+void what_does_not_settle_has_no_settling_time()
+{
+    const Record record = make_record(0.1, [](Row &row, std::size_t n) {
+        row[THETA_REF] = n > 0 ? 1 : 0;
+        row[OMEGA] = 1;
+    });
+    TEST_ASSERT_TRUE(has_no_value(over(record, {Window::Kind::all}).settling_time_s));
+}
+
+void overshoot_is_measured_beyond_the_target_in_either_direction()
+{
+    for (const double direction : {1.0, -1.0}) {
+        const Record record = make_record(0.1, [&](Row &row, std::size_t n) {
+            row[THETA_REF] = n > 0 ? direction : 0;
+            row[THETA] = direction * (n > at(0.02) && n < at(0.03) ? 1.05 : 1.0);
+        });
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.05, over(record, {Window::Kind::all}).overshoot_rad);
+    }
+}
+
+void a_move_that_does_not_pass_its_target_has_no_overshoot()
+{
+    TEST_ASSERT_EQUAL_DOUBLE(
+        0, over(make_record(0.2, lagging_move), {Window::Kind::all}).overshoot_rad);
+}
+
+void a_load_step_is_timed_until_90_percent_are_estimated()
+{
+    const Record record = make_record(0.2, [](Row &row, std::size_t n) {
+        row[LOAD_TORQUE] = n < at(0.1) ? 0.1 : 0.0;
+        row[LOAD_TORQUE_EST] = n < at(0.005) ? 0.0 : n < at(0.103) ? 0.0901 : 0.0099;
+    });
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.005,
+                              over(record, {Window::Kind::times, 0, 0.05}).load_torque_t90_s);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.003,
+                              over(record, {Window::Kind::times, 0.05, 0.2}).load_torque_t90_s);
+    TEST_ASSERT_TRUE(has_no_value(over(record, {Window::Kind::times, 0, 0.004}).load_torque_t90_s));
+}
+
+void slip_is_counted_in_full_steps_from_where_the_window_begins()
+{
+    const Record record = make_record(0.1, [](Row &row, std::size_t n) {
+        row[THETA] = 0.2 + (n < at(0.05) ? 0.3 : 4.2) * full_step_rad;
+    });
+    TEST_ASSERT_EQUAL_DOUBLE(4, over(record, {Window::Kind::all}).slip_full_steps);
+    TEST_ASSERT_EQUAL_DOUBLE(0, over(record, {Window::Kind::times, 0, 0.04}).slip_full_steps);
+    TEST_ASSERT_EQUAL_DOUBLE(0, over(record, {Window::Kind::times, 0.06, 0.1}).slip_full_steps);
+}
+
+void currents_are_those_of_one_phase()
+{
+    const Record record = make_record(1, [](Row &row, std::size_t n) {
+        const double angle = 6.283185307179586 * static_cast<double>(n) / 10000.0 * 5;
+        row[I_A] = 3 * std::cos(angle);
+        row[I_B] = 3 * std::sin(angle);
+    });
+    const Metrics metrics = over(record, {Window::Kind::all});
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3, metrics.current_peak_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3 / std::sqrt(2.0), metrics.current_rms_A);
+}
+
+void the_first_fault_of_a_window_is_named()
+{
+    const Record record = make_record(0.1, [](Row &row, std::size_t n) {
+        row[DRIVE_FAULT_CODE] = n < at(0.05) ? DRIVE_FAULT_NONE : DRIVE_FAULT_OVERCURRENT;
+    });
+    TEST_ASSERT_EQUAL_STRING(drive_fault_name(DRIVE_FAULT_OVERCURRENT),
+                             over(record, {Window::Kind::all}).fault.c_str());
+    TEST_ASSERT_EQUAL_STRING("none", over(record, {Window::Kind::times, 0, 0.04}).fault.c_str());
+}
+
+void an_estimate_that_is_not_finite_gives_no_figure()
+{
+    const Record record =
+        make_record(0.1, [](Row &row, std::size_t n) { row[THETA_EST] = n == at(0.05) ? nan : 0; });
+    const Metrics metrics = over(record, {Window::Kind::all});
+    TEST_ASSERT_TRUE(has_no_value(metrics.estimate_error_max_rad));
+    TEST_ASSERT_TRUE(has_no_value(metrics.estimate_error_rms_rad));
+    TEST_ASSERT_TRUE(has_no_value(metrics.slip_full_steps));
+}
+
+void an_empty_window_gives_no_figure()
+{
+    const Record record = make_record(0.01, [](Row &, std::size_t) {});
+    TEST_ASSERT_TRUE(has_no_value(over(record, {Window::Kind::move}).position_error_max_rad));
+}
+
+void the_hash_sees_every_bit_and_treats_all_nan_alike()
+{
+    Row row{};
+    Record a(period_s), b(period_s), c(period_s), d(period_s);
+    a.append(row);
+    row[BUS] = std::numeric_limits<double>::denorm_min();
+    b.append(row);
+    row[BUS] = nan;
+    c.append(row);
+    row[BUS] = -nan;
+    d.append(row);
+    TEST_ASSERT_TRUE(a.hash() != b.hash());
+    TEST_ASSERT_TRUE(b.hash() != c.hash());
+    TEST_ASSERT_TRUE(c.hash() == d.hash());
+}
+
+void time_is_the_number_nearest_to_the_decimal()
+{
+    const Record record = make_record(0.1, [](Row &, std::size_t) {});
+    TEST_ASSERT_TRUE(record.time_s(3) == 0.0003);
+    TEST_ASSERT_TRUE(record.time_s(567) == 0.0567);
+}
+
+void up_to_19_seeds_the_worst_decides_then_95_percent()
+{
+    std::vector<double> values;
+    for (int i = 1; i <= 19; ++i) {
+        values.push_back(i);
+    }
+    TEST_ASSERT_EQUAL_DOUBLE(19, percentile_95(values));
+    values.push_back(1000);
+    TEST_ASSERT_EQUAL_DOUBLE(19, percentile_95(values));
+    values.back() = nan;
+    TEST_ASSERT_EQUAL_DOUBLE(19, percentile_95(values));
+    values.pop_back();
+    values.back() = nan;
+    TEST_ASSERT_TRUE(has_no_value(percentile_95(values)));
+}
+
+/* Results of one expectation on as many seeds as there are values. */
+std::vector<Result> results_with(const Expectation &expectation, const std::vector<double> &values)
+{
+    std::vector<Result> results;
+    for (const double value : values) {
+        Result result;
+        result.seed = results.size() + 1;
+        const bool held = (!expectation.max || value <= *expectation.max) &&
+                          (!expectation.min || value >= *expectation.min);
+        result.observations = {{value, "", held}};
+        results.push_back(result);
+    }
+    return results;
+}
+
+void the_worst_seed_is_named()
+{
+    Expectation at_most, at_least;
+    at_most.max = 5;
+    at_least.min = 5;
+    const Judgement high = judge(at_most, 0, results_with(at_most, {1, 9, 3}));
+    const Judgement low = judge(at_least, 0, results_with(at_least, {9, 8, 1, 7}));
+    TEST_ASSERT_FALSE(high.held);
+    TEST_ASSERT_EQUAL_UINT64(2, high.worst_seed);
+    TEST_ASSERT_EQUAL_DOUBLE(9, high.worst.value);
+    TEST_ASSERT_FALSE(low.held);
+    TEST_ASSERT_EQUAL_UINT64(3, low.worst_seed);
+}
+
+void a_run_without_a_value_is_the_worst()
+{
+    Expectation at_most;
+    at_most.max = 5;
+    const Judgement judgement = judge(at_most, 0, results_with(at_most, {1, nan, 3}));
+    TEST_ASSERT_FALSE(judgement.held);
+    TEST_ASSERT_EQUAL_UINT64(2, judgement.worst_seed);
+}
+
+} // namespace
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+int main()
+{
+    UNITY_BEGIN();
+    RUN_TEST(move_ends_with_the_profile_and_rest_follows);
+    RUN_TEST(a_step_counts_as_motion_until_the_rotor_rests);
+    RUN_TEST(without_motion_everything_is_rest);
+    RUN_TEST(enabling_before_time_zero_is_in_no_window);
+    RUN_TEST(explicit_times_include_both_ends);
+    RUN_TEST(errors_have_their_largest_mean_square_and_last_value);
+    RUN_TEST(the_lag_of_a_move_is_found);
+    RUN_TEST(settling_counts_from_the_end_of_the_reference);
+    RUN_TEST(what_does_not_settle_has_no_settling_time);
+    RUN_TEST(overshoot_is_measured_beyond_the_target_in_either_direction);
+    RUN_TEST(a_move_that_does_not_pass_its_target_has_no_overshoot);
+    RUN_TEST(a_load_step_is_timed_until_90_percent_are_estimated);
+    RUN_TEST(slip_is_counted_in_full_steps_from_where_the_window_begins);
+    RUN_TEST(currents_are_those_of_one_phase);
+    RUN_TEST(the_first_fault_of_a_window_is_named);
+    RUN_TEST(an_estimate_that_is_not_finite_gives_no_figure);
+    RUN_TEST(an_empty_window_gives_no_figure);
+    RUN_TEST(the_hash_sees_every_bit_and_treats_all_nan_alike);
+    RUN_TEST(time_is_the_number_nearest_to_the_decimal);
+    RUN_TEST(up_to_19_seeds_the_worst_decides_then_95_percent);
+    RUN_TEST(the_worst_seed_is_named);
+    RUN_TEST(a_run_without_a_value_is_the_worst);
+    return UNITY_END();
+}

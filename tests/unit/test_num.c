@@ -1,0 +1,390 @@
+/*
+ * Arithmetic of the three number formats. Float and double answer for being what the interface
+ * says; fixed point is compared bit for bit with 64-bit integers.
+ */
+#include <unity.h>
+
+#include "firmware/numeric/num.h"
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+/* Pseudo-random bits (xorshift, Marsaglia 2003), the same on every machine. */
+static uint64_t random_state;
+
+static uint32_t random_bits(void)
+{
+    random_state ^= random_state << 13;
+    random_state ^= random_state >> 7;
+    random_state ^= random_state << 17;
+    return (uint32_t)(random_state >> 32);
+}
+
+static double random_within(double limit)
+{
+    return ((double)random_bits() / 2147483648.0 - 1.0) * limit;
+}
+
+static double magnitude(double x)
+{
+    return x < 0.0 ? -x : x;
+}
+
+/* Weight of the last bit of a result of the given magnitude. */
+static double resolution(double x)
+{
+#if STEADYSTEP_NUM == NUM_FIXED
+    (void)x;
+    return 1.0 / 67108864.0;
+#elif STEADYSTEP_NUM == NUM_FLOAT
+    return (magnitude(x) + 1e-9) / 8388608.0;
+#else
+    return (magnitude(x) + 1e-9) / 4503599627370496.0;
+#endif
+}
+
+#if STEADYSTEP_NUM == NUM_FIXED
+
+static const int32_t extremes[] = {INT32_MIN,  INT32_MIN + 1, -65537,   -65536, -65535, -32769,
+                                   -32768,     -32767,        -2,       -1,     0,      1,
+                                   2,          32767,         32768,    65535,  65536,  65537,
+                                   0x40000000, INT32_MAX - 1, INT32_MAX};
+enum { EXTREMES = sizeof extremes / sizeof extremes[0] };
+
+/* floor(a / 2^bits), without a shift of a negative number. */
+static int64_t floor_of(int64_t a, unsigned bits)
+{
+    int64_t divisor = (int64_t)1 << bits;
+
+    return a / divisor - (a % divisor < 0 ? 1 : 0);
+}
+
+static void product_is_the_floor_of_the_exact_one(int32_t a, int32_t b)
+{
+    int64_t product = floor_of((int64_t)a * b, NUM_FRACTION_BITS);
+
+    if (product >= INT32_MIN && product <= INT32_MAX) {
+        TEST_ASSERT_EQUAL_INT32((int32_t)product, num_mul(a, b));
+    }
+}
+
+static void test_a_product_is_the_floor_of_the_exact_one(void)
+{
+    random_state = 1;
+    for (int i = 0; i < EXTREMES; i++) {
+        for (int j = 0; j < EXTREMES; j++) {
+            product_is_the_floor_of_the_exact_one(extremes[i], extremes[j]);
+        }
+    }
+    for (int i = 0; i < 1000000; i++) {
+        /* The second factor gets every magnitude, so that most products are in range. */
+        int32_t a = (int32_t)random_bits();
+        int32_t b = (int32_t)random_bits() >> (random_bits() % 32u);
+
+        product_is_the_floor_of_the_exact_one(a, b);
+        product_is_the_floor_of_the_exact_one(b, a);
+    }
+}
+
+static void test_the_upper_half_of_a_16_bit_product_is_its_floor(void)
+{
+    random_state = 2;
+    for (int i = 0; i < EXTREMES; i++) {
+        for (int32_t m = -32768; m <= 32768; m++) {
+            TEST_ASSERT_EQUAL_INT32((int32_t)floor_of((int64_t)extremes[i] * m, 16),
+                                    num_mul_high16(extremes[i], m));
+        }
+    }
+    for (int i = 0; i < 1000000; i++) {
+        int32_t a = (int32_t)random_bits();
+        int32_t m = (int16_t)(random_bits() & 0xffffu);
+
+        TEST_ASSERT_EQUAL_INT32((int32_t)floor_of((int64_t)a * m, 16), num_mul_high16(a, m));
+    }
+}
+
+static void test_a_gain_is_rounded_down_once_and_shifted(void)
+{
+    random_state = 3;
+    for (int i = 0; i < 1000000; i++) {
+        int32_t a = (int32_t)random_bits();
+        coef_t k = {.mantissa = (int16_t)(random_bits() & 0xffffu)};
+        int64_t high = floor_of((int64_t)a * k.mantissa, 16);
+        unsigned shift = random_bits() % 16u;
+
+        if ((random_bits() & 1u) != 0u) {
+            k.right = (uint8_t)shift;
+            TEST_ASSERT_EQUAL_INT32((int32_t)floor_of(high, shift), num_mul_coef(a, k));
+        } else if (high * (1 << shift) >= INT32_MIN && high * (1 << shift) <= INT32_MAX) {
+            k.left = (uint8_t)shift;
+            TEST_ASSERT_EQUAL_INT32((int32_t)(high * (1 << shift)), num_mul_coef(a, k));
+        }
+    }
+}
+
+static void test_a_ratio_never_rounds_up_and_less_than_two_steps_down(void)
+{
+    random_state = 4;
+    for (int i = 0; i < 1000000; i++) {
+        int32_t a = (int32_t)random_bits();
+        int32_t u = (int32_t)(random_bits() % 65537u) - 32768;
+        int64_t lost = (int64_t)a * u - (int64_t)num_mul_unit(a, u) * 32768;
+
+        if (a != INT32_MIN) { /* times -1 it has no place in the range */
+            TEST_ASSERT_TRUE(lost >= 0 && lost < 2 * 32768);
+        }
+    }
+    TEST_ASSERT_EQUAL_INT32(NUM(-31.5), num_mul_unit(NUM(31.5), UNIT(-1.0)));
+    TEST_ASSERT_EQUAL_INT32(NUM(31.5), num_mul_unit(NUM(31.5), UNIT(1.0)));
+}
+
+static void test_halves_and_ratios_are_floors(void)
+{
+    TEST_ASSERT_EQUAL_INT32(-1, num_half(-1));
+    TEST_ASSERT_EQUAL_INT32(0, num_half(1));
+    TEST_ASSERT_EQUAL_INT32(INT32_MIN / 2, num_half(INT32_MIN));
+    TEST_ASSERT_EQUAL_INT32(-1, unit_from_num(-1));
+    TEST_ASSERT_EQUAL_INT32(UNIT(1.0), unit_from_num(NUM(1.0)));
+}
+
+static void test_literals_are_rounded_to_the_nearest(void)
+{
+    TEST_ASSERT_EQUAL_INT32(1 << 26, NUM(1.0));
+    TEST_ASSERT_EQUAL_INT32(-(1 << 26), NUM(-1.0));
+    TEST_ASSERT_EQUAL_INT32(6710886, NUM(0.1));
+    TEST_ASSERT_EQUAL_INT32(-6710886, NUM(-0.1));
+    TEST_ASSERT_EQUAL_INT32(1, NUM(0.6 / 67108864.0));
+    TEST_ASSERT_EQUAL_INT32(-1, NUM(-0.6 / 67108864.0));
+    TEST_ASSERT_EQUAL_INT32(32768, UNIT(1.0));
+    TEST_ASSERT_EQUAL_INT32(-23170, UNIT(-0.70710678));
+}
+
+static void test_conversions_saturate_and_a_nan_is_a_number(void)
+{
+    static const double beyond[] = {32.0, 33.0, 1e9, 1e300};
+
+    for (unsigned i = 0; i < sizeof beyond / sizeof beyond[0]; i++) {
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 32.0, num_to_double(num_from_double(beyond[i])));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, -32.0, num_to_double(num_from_double(-beyond[i])));
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 32.0, num_to_double(num_from_double(__builtin_inf())));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -32.0, num_to_double(num_from_double(-__builtin_inf())));
+    TEST_ASSERT_TRUE(magnitude(num_to_double(num_from_double(__builtin_nan("")))) <= 32.0);
+    TEST_ASSERT_EQUAL_INT32(NUM(31.999), num_from_double(31.999));
+
+    TEST_ASSERT_EQUAL_DOUBLE(32767.0, coef_to_double(coef_from_double(1e9)));
+    TEST_ASSERT_EQUAL_DOUBLE(-32767.0, coef_to_double(coef_from_double(-1e9)));
+    TEST_ASSERT_TRUE(magnitude(coef_to_double(coef_from_double(__builtin_nan("")))) <= 32767.0);
+}
+
+static void test_only_a_gain_of_16_bits_is_kept(void)
+{
+    TEST_ASSERT_EQUAL_DOUBLE(0.75, coef_to_double(coef_from_double(0.75)));
+    TEST_ASSERT_EQUAL_DOUBLE(-3.0, coef_to_double(coef_from_double(-3.0)));
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, coef_to_double(coef_from_double(0.999999)));
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, coef_to_double(coef_from_double(1e-12)));
+}
+
+#else
+
+static void test_a_nan_or_an_infinity_is_not_finite(void)
+{
+    TEST_ASSERT_TRUE(num_is_finite(NUM(0.0)));
+    TEST_ASSERT_TRUE(num_is_finite(NUM(-3e38)));
+    TEST_ASSERT_FALSE(num_is_finite((num_t)__builtin_nan("")));
+    TEST_ASSERT_FALSE(num_is_finite((num_t)__builtin_inf()));
+    TEST_ASSERT_FALSE(num_is_finite(-(num_t)__builtin_inf()));
+}
+
+static void test_a_nan_becomes_the_upper_bound(void)
+{
+    TEST_ASSERT_TRUE(num_clamp((num_t)__builtin_nan(""), NUM(-2.0), NUM(3.0)) == NUM(3.0));
+    TEST_ASSERT_TRUE(num_clamp((num_t)__builtin_inf(), NUM(-2.0), NUM(3.0)) == NUM(3.0));
+    TEST_ASSERT_TRUE(num_clamp(-(num_t)__builtin_inf(), NUM(-2.0), NUM(3.0)) == NUM(-2.0));
+}
+
+#endif
+
+static void test_products_are_right_to_their_resolution(void)
+{
+    random_state = 5;
+    for (int i = 0; i < 20000; i++) {
+        double a = num_to_double(num_from_double(random_within(5.0)));
+        double b = num_to_double(num_from_double(random_within(5.0)));
+        double u = magnitude(b) / 5.0;
+        num_t x = num_from_double(a);
+
+        TEST_ASSERT_DOUBLE_WITHIN(resolution(a * b), a * b,
+                                  num_to_double(num_mul(x, num_from_double(b))));
+        u = num_to_double(num_from_unit(unit_from_num(num_from_double(u))));
+        TEST_ASSERT_DOUBLE_WITHIN(
+            2.0 * resolution(a * u), a * u,
+            num_to_double(num_mul_unit(x, unit_from_num(num_from_double(u)))));
+        TEST_ASSERT_DOUBLE_WITHIN(resolution(a), a / 2.0, num_to_double(num_half(x)));
+    }
+}
+
+static void test_a_gain_of_any_size_keeps_15_bits(void)
+{
+    random_state = 6;
+    for (double size = 32767.0; size > 1e-9; size /= 1.7) {
+        for (int i = 0; i < 200; i++) {
+            double gain = size * (1.0 - 0.4 * (double)random_bits() / 4294967296.0);
+
+            gain = (i % 2) == 0 ? gain : -gain;
+            TEST_ASSERT_DOUBLE_WITHIN(magnitude(gain) / 32768.0, gain,
+                                      coef_to_double(coef_from_double(gain)));
+        }
+    }
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, coef_to_double(coef_from_double(0.0)));
+}
+
+static void test_a_gain_applied_is_the_gain_asked_for(void)
+{
+    random_state = 7;
+    for (double gain = 2000.0; gain > 1e-5; gain /= 2.3) {
+        for (int i = 0; i < 100; i++) {
+            double x =
+                num_to_double(num_from_double(random_within(gain > 1.0 ? 30.0 / gain : 30.0)));
+            /* A gain above one magnifies the last bits dropped: 16 bits below the product's top. */
+            double last_bit = resolution(x * gain) * (gain > 1.0 ? 4.0 * gain : 2.0);
+
+            TEST_ASSERT_DOUBLE_WITHIN(
+                magnitude(x * gain) / 32768.0 + last_bit, x * gain,
+                num_to_double(num_mul_coef(num_from_double(x), coef_from_double(gain))));
+        }
+    }
+}
+
+static void test_a_converter_code_becomes_a_number(void)
+{
+    /* 12-bit currents, and the largest code the interface allows. */
+    const double current = 1.0 / 2048.0;
+    const double fine = 1.0 / 2097152.0;
+    const coef_t per_code = coef_from_double(current * NUM_CODE_SCALE);
+    const coef_t per_fine_code = coef_from_double(fine * NUM_CODE_SCALE);
+
+    for (int32_t code = -2048; code < 2048; code++) {
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, code * current,
+                                  num_to_double(num_from_code(code, per_code)));
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 2097151 * fine,
+                              num_to_double(num_from_code(2097151, per_fine_code)));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -2097151 * fine,
+                              num_to_double(num_from_code(-2097151, per_fine_code)));
+}
+
+static void test_a_number_becomes_the_nearest_count(void)
+{
+    const coef_t half_period = coef_from_double(4250.0 * NUM_COUNT_SCALE);
+
+    for (double modulation = -0.92; modulation <= 0.92; modulation += 0.00037) {
+        double exact = 4250.0 * modulation;
+
+        TEST_ASSERT_DOUBLE_WITHIN(
+            0.501 + magnitude(exact) / 32768.0, exact,
+            (double)counts_from_num(num_from_double(modulation), half_period));
+    }
+    TEST_ASSERT_EQUAL_INT32(0, counts_from_num(NUM(0.0), half_period));
+    TEST_ASSERT_EQUAL_INT32(2125, counts_from_num(NUM(0.5), half_period));
+    TEST_ASSERT_EQUAL_INT32(-2125, counts_from_num(NUM(-0.5), half_period));
+}
+
+static void test_a_square_root_keeps_16_bits(void)
+{
+    random_state = 8;
+    for (double size = 30.0; size > 1e-7; size /= 1.9) {
+        for (int i = 0; i < 500; i++) {
+            double x = num_to_double(
+                num_from_double(size * (1.0 - 0.5 * (double)random_bits() / 4294967296.0)));
+            double root = num_to_double(num_sqrt(num_from_double(x)));
+
+            TEST_ASSERT_DOUBLE_WITHIN(x / 16384.0 + 2.0 * root * resolution(root), x, root * root);
+        }
+    }
+    TEST_ASSERT_TRUE(num_sqrt(NUM(4.0)) == NUM(2.0));
+    TEST_ASSERT_TRUE(num_sqrt(NUM(0.25)) == NUM(0.5));
+    TEST_ASSERT_TRUE(num_sqrt(NUM(0.0)) == NUM(0.0));
+    TEST_ASSERT_TRUE(num_sqrt(NUM(-1.0)) == NUM(0.0));
+}
+
+static void test_clamps_and_magnitudes(void)
+{
+    TEST_ASSERT_TRUE(num_clamp(NUM(1.0), NUM(-2.0), NUM(3.0)) == NUM(1.0));
+    TEST_ASSERT_TRUE(num_clamp(NUM(9.0), NUM(-2.0), NUM(3.0)) == NUM(3.0));
+    TEST_ASSERT_TRUE(num_clamp(NUM(-9.0), NUM(-2.0), NUM(3.0)) == NUM(-2.0));
+    TEST_ASSERT_TRUE(num_abs(NUM(-1.5)) == NUM(1.5));
+    TEST_ASSERT_TRUE(num_abs(NUM(1.5)) == NUM(1.5));
+    TEST_ASSERT_TRUE(num_is_finite(NUM(31.0)));
+}
+
+static void test_numbers_survive_the_way_to_double_and_back(void)
+{
+    random_state = 9;
+    for (int i = 0; i < 20000; i++) {
+        num_t x = num_from_double(random_within(31.9));
+
+        TEST_ASSERT_TRUE(num_from_double(num_to_double(x)) == x);
+    }
+}
+
+static void test_a_double_becomes_the_nearest_number(void)
+{
+    random_state = 10;
+    for (int i = 0; i < 20000; i++) {
+        double x = random_within(31.9);
+
+        TEST_ASSERT_DOUBLE_WITHIN(0.5001 * resolution(x), x, num_to_double(num_from_double(x)));
+    }
+}
+
+static void test_every_bit_of_a_number_reaches_its_hash(void)
+{
+    num_t x = NUM(1.0);
+    double step = 1.0;
+
+    while (num_from_double(1.0 + step / 2.0) != x) {
+        step /= 2.0;
+        TEST_ASSERT_TRUE(num_bits(num_from_double(1.0 + step)) != num_bits(x));
+        TEST_ASSERT_TRUE(num_bits(num_from_double(-1.0 - step)) != num_bits(-x));
+    }
+    TEST_ASSERT_TRUE(num_bits(-x) != num_bits(x));
+    TEST_ASSERT_TRUE(coef_bits(coef_from_double(0.5)) != coef_bits(coef_from_double(0.25)));
+    TEST_ASSERT_TRUE(coef_bits(coef_from_double(0.5)) != coef_bits(coef_from_double(-0.5)));
+    TEST_ASSERT_TRUE(coef_bits(coef_from_double(4.0)) != coef_bits(coef_from_double(8.0)));
+    TEST_ASSERT_TRUE(coef_bits(coef_from_double(0.1)) != coef_bits(coef_from_double(0.05)));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+#if STEADYSTEP_NUM == NUM_FIXED
+    RUN_TEST(test_a_product_is_the_floor_of_the_exact_one);
+    RUN_TEST(test_the_upper_half_of_a_16_bit_product_is_its_floor);
+    RUN_TEST(test_a_gain_is_rounded_down_once_and_shifted);
+    RUN_TEST(test_a_ratio_never_rounds_up_and_less_than_two_steps_down);
+    RUN_TEST(test_halves_and_ratios_are_floors);
+    RUN_TEST(test_literals_are_rounded_to_the_nearest);
+    RUN_TEST(test_conversions_saturate_and_a_nan_is_a_number);
+    RUN_TEST(test_only_a_gain_of_16_bits_is_kept);
+#else
+    RUN_TEST(test_a_nan_or_an_infinity_is_not_finite);
+    RUN_TEST(test_a_nan_becomes_the_upper_bound);
+#endif
+    RUN_TEST(test_products_are_right_to_their_resolution);
+    RUN_TEST(test_a_gain_of_any_size_keeps_15_bits);
+    RUN_TEST(test_a_gain_applied_is_the_gain_asked_for);
+    RUN_TEST(test_a_converter_code_becomes_a_number);
+    RUN_TEST(test_a_number_becomes_the_nearest_count);
+    RUN_TEST(test_a_square_root_keeps_16_bits);
+    RUN_TEST(test_clamps_and_magnitudes);
+    RUN_TEST(test_numbers_survive_the_way_to_double_and_back);
+    RUN_TEST(test_a_double_becomes_the_nearest_number);
+    RUN_TEST(test_every_bit_of_a_number_reaches_its_hash);
+    return UNITY_END();
+}

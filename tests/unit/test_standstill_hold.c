@@ -1,0 +1,163 @@
+/* Holding at rest: when it begins, how the current ramps, what ends it. */
+#include "firmware/control/standstill_hold.h"
+#include "tests/unit/bench.h"
+#include "tests/unit/num_assert.h"
+
+#define HOLD_A        1.5
+#define RAMP_PERIODS  100u /* 10 ms */
+#define DELAY_PERIODS 150u /* 15 ms */
+#define RESTING       (DELAY_PERIODS + 1u)
+
+static const struct standstill_hold_task task = {
+    .current_A = HOLD_A,
+    .ramp_s = 0.010,
+    .delay_s = 0.015,
+    .current_limit_A = 3.0,
+    .speed_gain_As_rad = 0.39,
+    .period_s = PERIOD_S,
+};
+
+static struct per_unit base;
+static struct standstill_hold_params params;
+static struct standstill_hold hold;
+
+void setUp(void)
+{
+    base = per_unit_base(&bench_params, PERIOD_S);
+    params = standstill_hold_design(&base, &task);
+    standstill_hold_reset(&hold);
+}
+
+void tearDown(void)
+{
+}
+
+static void step(uint32_t rest_periods, double error_electrical_deg, double speed_rad_s)
+{
+    standstill_hold_step(&hold, &params, rest_periods,
+                         num_from_double(error_electrical_deg / 360.0),
+                         num_from_double(speed_rad_s / base.speed_rad_s));
+}
+
+static double i_d_A(void)
+{
+    return num_to_double(hold.i_d) * base.current_A;
+}
+
+static void hold_with_full_current(void)
+{
+    for (uint32_t k = 0; k < 2u * RAMP_PERIODS; k++) {
+        step(RESTING + k, 0.0, 0.0);
+    }
+}
+
+static void test_the_hold_begins_when_the_reference_has_rested_for_its_delay(void)
+{
+    for (uint32_t k = 0; k <= DELAY_PERIODS; k++) {
+        step(k, 0.0, 0.0);
+        TEST_ASSERT_FALSE(hold.active);
+        TEST_ASSERT_TRUE(hold.i_d == NUM(0.0));
+    }
+    step(RESTING, 0.0, 0.0);
+    TEST_ASSERT_TRUE(hold.active);
+}
+
+/* 18 degrees electrical, from either side. */
+static void test_the_hold_waits_until_the_rotor_is_near(void)
+{
+    static const double far[] = {19.0, -19.0, 90.0, -180.0};
+
+    for (unsigned i = 0; i < sizeof far / sizeof far[0]; i++) {
+        step(UINT32_MAX, far[i], 0.0);
+        TEST_ASSERT_FALSE(hold.active);
+    }
+    step(UINT32_MAX, -17.0, 0.0);
+    TEST_ASSERT_TRUE(hold.active);
+}
+
+/* Not faster than 1/16 electrical turn within the 10 ms ramp: 0.785 rad/s. */
+static void test_the_hold_waits_until_the_rotor_is_slow(void)
+{
+    step(UINT32_MAX, 0.0, 0.80);
+    TEST_ASSERT_FALSE(hold.active);
+    step(UINT32_MAX, 0.0, -0.80);
+    TEST_ASSERT_FALSE(hold.active);
+    step(UINT32_MAX, 0.0, -0.77);
+    TEST_ASSERT_TRUE(hold.active);
+}
+
+static void test_a_hold_once_begun_lasts_whatever_the_rotor_does(void)
+{
+    step(RESTING, 0.0, 0.0);
+    step(RESTING + 1u, 60.0, 20.0);
+    TEST_ASSERT_TRUE(hold.active);
+}
+
+static void test_the_current_ramps_in_within_ten_milliseconds(void)
+{
+    for (uint32_t k = 1; k <= RAMP_PERIODS; k++) {
+        step(RESTING + k, 0.0, 0.0);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-4, HOLD_A * k / RAMP_PERIODS, i_d_A());
+    }
+    step(RESTING + RAMP_PERIODS + 1u, 0.0, 0.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, HOLD_A, i_d_A());
+}
+
+static void test_a_reference_that_moves_ends_the_hold_at_once_and_ramps_the_current_out(void)
+{
+    hold_with_full_current();
+    for (uint32_t k = 1; k <= RAMP_PERIODS; k++) {
+        step(0, 0.0, 0.0);
+        TEST_ASSERT_FALSE(hold.active);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-4, HOLD_A * (1.0 - (double)k / RAMP_PERIODS), i_d_A());
+    }
+    step(0, 0.0, 0.0);
+    TEST_ASSERT_TRUE(hold.i_d == NUM(0.0));
+}
+
+static void test_the_torque_current_carries_the_load_and_damps(void)
+{
+    const num_t load = num_from_double(0.1 / base.torque_Nm);
+    const num_t speed = num_from_double(0.5 / base.speed_rad_s);
+
+    TEST_ASSERT_DOUBLE_WITHIN(
+        1e-5, 0.1 / 0.157,
+        num_to_double(standstill_hold_torque_current(&params, NUM(0.0), load)) * base.current_A);
+    TEST_ASSERT_DOUBLE_WITHIN(
+        1e-4, 0.1 / 0.157 - 2.0 * 0.39 * 0.5,
+        num_to_double(standstill_hold_torque_current(&params, speed, load)) * base.current_A);
+    TEST_ASSERT_DOUBLE_WITHIN(
+        1e-4, 0.1 / 0.157 + 2.0 * 0.39 * 0.5,
+        num_to_double(standstill_hold_torque_current(&params, -speed, load)) * base.current_A);
+}
+
+static void test_the_torque_current_is_limited(void)
+{
+    const num_t fast = num_from_double(50.0 / base.speed_rad_s);
+
+    TEST_ASSERT_NUM_WITHIN(1e-6, -0.5, standstill_hold_torque_current(&params, fast, NUM(0.0)));
+    TEST_ASSERT_NUM_WITHIN(1e-6, 0.5, standstill_hold_torque_current(&params, -fast, NUM(0.0)));
+}
+
+static void test_a_reset_ends_the_hold_without_a_ramp(void)
+{
+    hold_with_full_current();
+    standstill_hold_reset(&hold);
+    TEST_ASSERT_FALSE(hold.active);
+    TEST_ASSERT_TRUE(hold.i_d == NUM(0.0));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_the_hold_begins_when_the_reference_has_rested_for_its_delay);
+    RUN_TEST(test_the_hold_waits_until_the_rotor_is_near);
+    RUN_TEST(test_the_hold_waits_until_the_rotor_is_slow);
+    RUN_TEST(test_a_hold_once_begun_lasts_whatever_the_rotor_does);
+    RUN_TEST(test_the_current_ramps_in_within_ten_milliseconds);
+    RUN_TEST(test_a_reference_that_moves_ends_the_hold_at_once_and_ramps_the_current_out);
+    RUN_TEST(test_the_torque_current_carries_the_load_and_damps);
+    RUN_TEST(test_the_torque_current_is_limited);
+    RUN_TEST(test_a_reset_ends_the_hold_without_a_ramp);
+    return UNITY_END();
+}

@@ -1,0 +1,160 @@
+/* Sine and cosine of a binary angle, compared with the C library's. */
+#include <math.h>
+#include <unity.h>
+
+#include "firmware/numeric/trig.h"
+
+static const double two_pi = 6.283185307179586476925;
+
+#define QUARTER_TURN 0x40000000u
+#define STRIDE       10007u /* prime: visits every phase of every eighth of a turn */
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+/* The bound trig.h states; in fixed point half of it, which is what the polynomials reach. */
+static double error_bound(void)
+{
+#if STEADYSTEP_NUM == NUM_FIXED
+    return 5e-5;
+#else
+    return 1.3e-7;
+#endif
+}
+
+static double ratio(unit_t u)
+{
+    return (double)u / (double)UNIT(1.0);
+}
+
+static void is_within_the_bound(angle_t angle)
+{
+    struct sincos r = sincos_of(angle);
+    double rad = (double)angle / 4294967296.0 * two_pi;
+
+    TEST_ASSERT_DOUBLE_WITHIN(error_bound(), sin(rad), ratio(r.sin));
+    TEST_ASSERT_DOUBLE_WITHIN(error_bound(), cos(rad), ratio(r.cos));
+}
+
+static void test_the_error_stays_below_its_bound_all_around(void)
+{
+    angle_t angle = 0;
+
+    do {
+        is_within_the_bound(angle);
+        angle += STRIDE;
+    } while (angle >= STRIDE);
+}
+
+static void test_the_seams_of_the_eighths_are_as_good_as_the_rest(void)
+{
+    for (uint32_t eighth = 0; eighth < 8u; eighth++) {
+        for (uint32_t i = 0; i < 2000u; i++) {
+            is_within_the_bound(eighth * (QUARTER_TURN / 2u) + (i - 1000u) * 17u);
+        }
+    }
+}
+
+static void test_the_quarter_turns_are_exact(void)
+{
+    static const double cosine[] = {1.0, 0.0, -1.0, 0.0};
+
+    for (uint32_t quarter = 0; quarter < 4u; quarter++) {
+        struct sincos r = sincos_of(quarter * QUARTER_TURN);
+
+        TEST_ASSERT_TRUE(ratio(r.cos) == cosine[quarter]);
+        TEST_ASSERT_TRUE(ratio(r.sin) == cosine[(quarter + 3u) % 4u]);
+    }
+}
+
+static void test_a_vector_keeps_its_length(void)
+{
+    angle_t angle = 0;
+
+    do {
+        struct sincos r = sincos_of(angle);
+        double square = ratio(r.cos) * ratio(r.cos) + ratio(r.sin) * ratio(r.sin);
+
+        TEST_ASSERT_DOUBLE_WITHIN(2.5 * error_bound(), 1.0, square);
+        angle += STRIDE;
+    } while (angle >= STRIDE);
+}
+
+static void test_a_sine_never_exceeds_one(void)
+{
+    for (uint32_t i = 0; i < 400000u; i++) {
+        for (uint32_t quarter = 0; quarter < 4u; quarter++) {
+            struct sincos r = sincos_of(quarter * QUARTER_TURN + (i - 200000u) * 211u);
+
+            TEST_ASSERT_TRUE(r.cos <= UNIT(1.0) && r.cos >= UNIT(-1.0));
+            TEST_ASSERT_TRUE(r.sin <= UNIT(1.0) && r.sin >= UNIT(-1.0));
+        }
+    }
+}
+
+static void test_a_quarter_turn_on_the_sine_is_the_cosine(void)
+{
+    angle_t angle = 0;
+
+    do {
+        struct sincos here = sincos_of(angle);
+        struct sincos on = sincos_of(angle + QUARTER_TURN);
+
+        TEST_ASSERT_TRUE(on.sin == here.cos);
+        TEST_ASSERT_TRUE(on.cos == -here.sin);
+        angle += 10u * STRIDE;
+    } while (angle >= 10u * STRIDE);
+}
+
+static void test_backwards_the_sine_is_odd_and_the_cosine_even(void)
+{
+#if STEADYSTEP_NUM == NUM_FIXED
+    const double bound = 2.0 / 32768.0; /* the last bit is rounded down on either side */
+#else
+    const double bound = 1.2e-7;
+#endif
+    angle_t angle = 0;
+
+    do {
+        struct sincos forth = sincos_of(angle);
+        struct sincos back = sincos_of(0u - angle);
+
+        TEST_ASSERT_DOUBLE_WITHIN(bound, ratio(forth.cos), ratio(back.cos));
+        TEST_ASSERT_DOUBLE_WITHIN(bound, -ratio(forth.sin), ratio(back.sin));
+        angle += 10u * STRIDE;
+    } while (angle >= 10u * STRIDE);
+}
+
+static void test_sines_of_many_angles_are_without_bias(void)
+{
+    double sine = 0.0;
+    double cosine = 0.0;
+
+    for (uint32_t i = 0; i < 65536u; i++) {
+        struct sincos r = sincos_of(i << 16);
+
+        sine += ratio(r.sin);
+        cosine += ratio(r.cos);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.0, sine / 65536.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.0, cosine / 65536.0);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_the_error_stays_below_its_bound_all_around);
+    RUN_TEST(test_the_seams_of_the_eighths_are_as_good_as_the_rest);
+    RUN_TEST(test_the_quarter_turns_are_exact);
+    RUN_TEST(test_a_vector_keeps_its_length);
+    RUN_TEST(test_a_sine_never_exceeds_one);
+    RUN_TEST(test_a_quarter_turn_on_the_sine_is_the_cosine);
+    RUN_TEST(test_backwards_the_sine_is_odd_and_the_cosine_even);
+    RUN_TEST(test_sines_of_many_angles_are_without_bias);
+    return UNITY_END();
+}

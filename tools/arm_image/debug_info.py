@@ -1,0 +1,93 @@
+"""What the image's debug information (DWARF) tells: source lines, constants of a type."""
+
+import bisect
+import os.path
+
+from elftools.elf.elffile import ELFFile
+
+DW_OP_ADDR = 0x03
+
+
+def _units(path):
+    with open(path, "rb") as file:
+        elf = ELFFile(file)
+        if not elf.has_dwarf_info():
+            raise ValueError(f"{path}: no debug information; build with -g")
+        dwarf = elf.get_dwarf_info()
+        for unit in dwarf.iter_CUs():
+            yield dwarf, unit
+
+
+class SourceLines:
+    """Source file and line of an instruction."""
+
+    def __init__(self, path, root):
+        rows = sorted(
+            row for dwarf, unit in _units(path) for row in self._rows(dwarf, unit, str(root))
+        )
+        self._addresses = [row[0] for row in rows]
+        self._places = [row[1] for row in rows]
+
+    @staticmethod
+    def _rows(dwarf, unit, root):
+        program = dwarf.line_program_for_CU(unit)
+        if program is None:
+            return
+        header = program.header
+        first = 0 if header["version"] >= 5 else 1
+        folder = unit.get_top_DIE().attributes["DW_AT_comp_dir"].value.decode()
+        folders = [entry.decode() for entry in header["include_directory"]]
+        names = []
+        for entry in header["file_entry"]:
+            place = folders[entry.dir_index - first] if entry.dir_index >= first else folder
+            full = os.path.normpath(os.path.join(folder, place, entry.name.decode()))
+            inside = full.startswith(root + os.sep)
+            names.append(os.path.relpath(full, root) if inside else os.path.basename(full))
+        for entry in program.get_entries():
+            state = entry.state
+            if state and not state.end_sequence:
+                yield state.address, f"{names[state.file - first]}:{state.line}"
+
+    def at(self, address):
+        k = bisect.bisect_right(self._addresses, address) - 1
+        return self._places[k] if k >= 0 else "?"
+
+
+def members(path, struct, member):
+    """(address of the object, offset of the member) of every object of type `struct`."""
+    found = []
+    for _, unit in _units(path):
+        for die in unit.iter_DIEs():
+            if die.tag != "DW_TAG_variable" or "DW_AT_location" not in die.attributes:
+                continue
+            location = die.attributes["DW_AT_location"].value
+            kind = _struct_of(die)
+            if kind is None or _name(kind) != struct or not isinstance(location, list):
+                continue
+            if location and location[0] == DW_OP_ADDR:
+                address = int.from_bytes(bytes(location[1:5]), "little")
+                offset = next(
+                    child.attributes["DW_AT_data_member_location"].value
+                    for child in kind.iter_children()
+                    if _name(child) == member
+                )
+                found.append((address, offset))
+    return found
+
+
+def _name(die):
+    return die.attributes["DW_AT_name"].value.decode() if "DW_AT_name" in die.attributes else None
+
+
+def _struct_of(variable):
+    """The structure type of a variable, behind const and volatile; None of other types."""
+    if "DW_AT_specification" in variable.attributes:
+        variable = variable.get_DIE_from_attribute("DW_AT_specification")
+    die = variable
+    while "DW_AT_type" in die.attributes:
+        die = die.get_DIE_from_attribute("DW_AT_type")
+        if die.tag == "DW_TAG_structure_type":
+            return die
+        if die.tag not in ("DW_TAG_const_type", "DW_TAG_volatile_type", "DW_TAG_typedef"):
+            return None
+    return None
