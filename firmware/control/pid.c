@@ -2,8 +2,8 @@
 
 #include "firmware/design/pid_design.h"
 
-static bool design(struct position_law_params *params, const struct position_law_task *task,
-                   char error[DESIGN_ERROR_TEXT])
+bool pid_law_design(struct position_law_params *params, const struct position_law_task *task,
+                    char error[DESIGN_ERROR_TEXT])
 {
     struct pid_gains k;
 
@@ -23,8 +23,8 @@ static bool design(struct position_law_params *params, const struct position_law
     return true;
 }
 
-static num_t step(struct position_law_state *state, const struct position_law_params *params,
-                  const struct position_law_input *input)
+num_t pid_law_step(struct position_law_state *state, const struct position_law_params *params,
+                   const struct position_law_input *input)
 {
     num_t position_error = num_clamp(input->position_error, -params->position_error_limit,
                                      params->position_error_limit);
@@ -39,5 +39,3 @@ static num_t step(struct position_law_state *state, const struct position_law_pa
     }
     return limited;
 }
-
-const struct position_law pid = {"pid", design, step};

@@ -10,6 +10,12 @@
 
 #include "firmware/control/position_law.h"
 
-extern const struct position_law pid;
+/* false: the loops cannot bear the bandwidth, the limit in error. */
+bool pid_law_design(struct position_law_params *params, const struct position_law_task *task,
+                    char error[DESIGN_ERROR_TEXT]);
+
+/* The q current, within +-current_limit. */
+num_t pid_law_step(struct position_law_state *state, const struct position_law_params *params,
+                   const struct position_law_input *input);
 
 #endif

@@ -1,32 +1,6 @@
 #include "firmware/control/position_law.h"
 
-#include "firmware/control/pid.h"
-#include "firmware/control/state_feedback.h"
 #include "firmware/numeric/angle.h"
-
-static const struct position_law *const registry[] = {
-    &state_feedback,
-    &pid,
-};
-
-static bool same_text(const char *a, const char *b)
-{
-    while (*a != '\0' && *a == *b) {
-        a++;
-        b++;
-    }
-    return *a == *b;
-}
-
-const struct position_law *position_law_find(const char *name)
-{
-    for (size_t i = 0; i < sizeof registry / sizeof registry[0]; i++) {
-        if (same_text(registry[i]->name, name)) {
-            return registry[i];
-        }
-    }
-    return NULL;
-}
 
 /* Per-unit bound of one of the error terms: twice this and the rest stay below NUM_MAX. */
 static const double term_limit = 10.0;

@@ -1,7 +1,7 @@
 /*
  * One interface for every position law: from the position error and the estimates at S(k+1), when
- * the answer begins to act, to the torque-producing current. A law is one file and one line of the
- * registry in position_law.c.
+ * the answer begins to act, to the torque-producing current. A law is a header and a source of its
+ * own and one line of the registry (position_laws.h).
  */
 #ifndef STEADYSTEP_POSITION_LAW_H
 #define STEADYSTEP_POSITION_LAW_H
@@ -48,18 +48,6 @@ struct position_law_input {
     num_t speed;
     num_t load_torque;
 };
-
-struct position_law {
-    const char *name;
-    bool (*design)(struct position_law_params *params, const struct position_law_task *task,
-                   char error[DESIGN_ERROR_TEXT]);
-    /* The q current, within +-current_limit. */
-    num_t (*step)(struct position_law_state *state, const struct position_law_params *params,
-                  const struct position_law_input *input);
-};
-
-/* NULL if no law has this name. */
-const struct position_law *position_law_find(const char *name);
 
 /* Gains that all laws share, SI. */
 struct position_law_gains {

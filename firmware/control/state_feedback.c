@@ -2,8 +2,8 @@
 
 #include "firmware/design/state_feedback_design.h"
 
-static bool design(struct position_law_params *params, const struct position_law_task *task,
-                   char error[DESIGN_ERROR_TEXT])
+bool state_feedback_law_design(struct position_law_params *params,
+                               const struct position_law_task *task, char error[DESIGN_ERROR_TEXT])
 {
     struct state_feedback_gains k;
 
@@ -22,13 +22,12 @@ static bool design(struct position_law_params *params, const struct position_law
 }
 
 /* K_L T_L: torque and q current are the same number in per-unit. */
-static num_t step(struct position_law_state *state, const struct position_law_params *params,
-                  const struct position_law_input *input)
+num_t state_feedback_law_step(struct position_law_state *state,
+                              const struct position_law_params *params,
+                              const struct position_law_input *input)
 {
     num_t current = position_law_proportional(params, input) + input->load_torque;
 
     (void)state;
     return num_clamp(current, -params->current_limit, params->current_limit);
 }
-
-const struct position_law state_feedback = {"state-feedback", design, step};

@@ -11,6 +11,13 @@
 
 #include "firmware/control/position_law.h"
 
-extern const struct position_law state_feedback;
+/* false: the loops cannot bear the bandwidth, the limit in error. */
+bool state_feedback_law_design(struct position_law_params *params,
+                               const struct position_law_task *task, char error[DESIGN_ERROR_TEXT]);
+
+/* The q current, within +-current_limit. */
+num_t state_feedback_law_step(struct position_law_state *state,
+                              const struct position_law_params *params,
+                              const struct position_law_input *input);
 
 #endif

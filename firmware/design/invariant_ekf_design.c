@@ -4,8 +4,9 @@
 #include "firmware/design/motor_check.h"
 #include "firmware/design/riccati.h"
 
-/* States of the error model. */
-enum { I_D, I_Q, SPEED, ANGLE, LOAD, BIAS_D, BIAS_Q, STATES_HOLD, STATES_MOTION = BIAS_D };
+/* States of the error model; in motion the first five. */
+enum { I_D, I_Q, SPEED, ANGLE, LOAD, BIAS_D, BIAS_Q };
+enum { STATES_MOTION = 5, STATES_HOLD = 7 };
 
 /*
  * What the filter is told about the drive, in ratios that follow the motor. Random walks are
@@ -13,9 +14,9 @@ enum { I_D, I_Q, SPEED, ANGLE, LOAD, BIAS_D, BIAS_Q, STATES_HOLD, STATES_MOTION 
  */
 struct tuning {
     int states;
-    int doublings;
-    double design_back_emf;  /* back-EMF at the design speed, of the supply */
-    double design_current;   /* A, i_d of the linearisation */
+    int doublings;           /* of the Riccati equation */
+    double back_emf;         /* at the design speed, of the supply */
+    double i_d_A;            /* of the linearisation */
     double current_variance; /* of a measured current, of the rated current squared */
     double voltage_noise;    /* rms of a period's mean voltage, of the supply */
     double torque_noise;     /* white torque, of the rated torque, sqrt(s) */
@@ -25,23 +26,26 @@ struct tuning {
 };
 
 /*
- * The ratios of the two studies' optimum on the motor bendjedia-2012 (24 V, 3 A, Km 0.157,
- * J 15.62e-5, N 50, T 100 us), where they were found by simulation over some 500 designs and 45
- * disturbed moves: each quotient is (value found) / (that motor's base). The optimum is flat.
+ * The values were found by simulation on the motor bendjedia-2012 (24 V, 3 A, Km 0.157,
+ * J 15.62e-5, N 50, period 100 us): some 500 designs, each on 45 disturbed moves; the optimum is
+ * flat. Each quotient below is a value found over that motor's base. Voltages go with the supply,
+ * because the voltage measurement and the dead time do; the angle is seen in the back-EMF against
+ * the voltage noise, so the design speed is a back-EMF.
  *
  * In motion the currents are trusted half as much as their noise (3 mA rms and a 12-bit step:
  * 9.7e-6 A^2) would allow, and the angle is given a walk of its own: both stand for parameter
- * errors. In hold R, the largest of them, is a state.
+ * errors. In hold R, the largest of them, is covered by the bias states.
  */
 #define SUPPLY_V        24.0
 #define RATED_A         3.0
 #define RATED_TORQUE_NM (0.157 * RATED_A)
-#define EMF_5_RAD_S     (5.0 * 0.157 / SUPPLY_V)
+#define BACK_EMF_V(w)   (0.157 * (w)) /* at w rad/s */
 
+/* 2^11 periods settle the gains of every motor file to 1e-6 at 50 us and more. */
 static const struct tuning motion_tuning = {
     .states = STATES_MOTION,
     .doublings = 11,
-    .design_back_emf = EMF_5_RAD_S,
+    .back_emf = BACK_EMF_V(5.0) / SUPPLY_V,
     .current_variance = 3.9e-5 / (RATED_A * RATED_A),
     .voltage_noise = 0.03 / SUPPLY_V,
     .torque_noise = 1.562e-5 / RATED_TORQUE_NM, /* 1e-3 rad/s per period */
@@ -49,28 +53,26 @@ static const struct tuning motion_tuning = {
     .angle_walk = 0.5,                          /* 1e-4 rad mechanical per period */
 };
 
-static const struct tuning hold_tunings[] = {
-    [INVARIANT_EKF_HOLD_ROBUST] = {.states = STATES_HOLD,
-                                   .doublings = 14,
-                                   .design_back_emf = EMF_5_RAD_S / 5.0,
-                                   .current_variance = 9.7e-6 / (RATED_A * RATED_A),
-                                   .voltage_noise = 0.03 / SUPPLY_V,
-                                   .torque_noise = 1.562e-5 / RATED_TORQUE_NM,
-                                   .load_walk = 0.1 / RATED_TORQUE_NM,
-                                   .angle_walk = 0.005, /* 1e-6 rad mechanical per period */
-                                   .bias_d = 0.05 / SUPPLY_V,
-                                   .bias_q = 0.02 / SUPPLY_V},
-    [INVARIANT_EKF_HOLD_FAST] = {.states = STATES_HOLD,
-                                 .doublings = 14,
-                                 .design_back_emf = EMF_5_RAD_S / 5.0,
-                                 .current_variance = 9.7e-6 / (RATED_A * RATED_A),
-                                 .voltage_noise = 0.03 / SUPPLY_V,
-                                 .torque_noise = 1.562e-5 / RATED_TORQUE_NM,
-                                 .load_walk = 0.316227766 / RATED_TORQUE_NM, /* variance x 10 */
-                                 .angle_walk = 0.005,
-                                 .bias_d = 0.05 / SUPPLY_V,
-                                 .bias_q = 0.005 / SUPPLY_V},
+/* The slowest mode of the hold's filter, load against displacement, decays with 4 1/s: 2^14. */
+static const struct tuning hold_tuning = {
+    .states = STATES_HOLD,
+    .doublings = 14,
+    .back_emf = BACK_EMF_V(1.0) / SUPPLY_V,
+    .current_variance = 9.7e-6 / (RATED_A * RATED_A),
+    .voltage_noise = 0.03 / SUPPLY_V,
+    .torque_noise = 1.562e-5 / RATED_TORQUE_NM,
+    .load_walk = 0.1 / RATED_TORQUE_NM,
+    .angle_walk = 0.005, /* 1e-6 rad mechanical per period */
+    .bias_d = 0.05 / SUPPLY_V,
+    .bias_q = 0.02 / SUPPLY_V,
 };
+
+/* The fast hold expects ten times the variance of the load and a quarter of the bias in q. */
+#define FAST_LOAD_WALK (0.316227766 / RATED_TORQUE_NM)
+#define FAST_BIAS_Q    (0.005 / SUPPLY_V)
+
+/* Speed at which the angle's odd gain acts in full, as a back-EMF of the supply. */
+#define FULL_ANGLE_BACK_EMF (BACK_EMF_V(1.0) / SUPPLY_V)
 
 /* Correlation times of the hold's voltage bias and of the fast hold's load estimate, s. */
 #define BIAS_TIME_S      0.05
@@ -83,9 +85,9 @@ static double square(double x)
     return x * x;
 }
 
-static double design_speed(const struct motor_params *motor, const struct tuning *tuning)
+static double speed_of_back_emf(const struct motor_params *motor, double back_emf)
 {
-    return tuning->design_back_emf * motor->supply_V / motor->torque_constant_Nm_A;
+    return back_emf * motor->supply_V / motor->torque_constant_Nm_A;
 }
 
 /* The header's error model times the period; its exponential is the transition. */
@@ -95,7 +97,7 @@ static void error_model(const struct motor_params *motor, double period_s,
     double per_inductance = period_s / motor->inductance_H;
     double per_inertia = period_s / motor->inertia_kgm2;
     double km = motor->torque_constant_Nm_A;
-    double electrical = motor->rotor_teeth * design_speed(motor, tuning);
+    double electrical = motor->rotor_teeth * speed_of_back_emf(motor, tuning->back_emf);
 
     *a = (struct matrix){{{0.0}}};
     a->at[I_D][I_D] = -per_inductance * motor->resistance_ohm;
@@ -106,7 +108,7 @@ static void error_model(const struct motor_params *motor, double period_s,
     a->at[I_Q][SPEED] = -per_inductance * km;
     a->at[SPEED][I_Q] = per_inertia * km;
     a->at[SPEED][SPEED] = -per_inertia * motor->viscous_friction_Nms_rad;
-    a->at[SPEED][ANGLE] = -per_inertia * km * motor->rotor_teeth * tuning->design_current;
+    a->at[SPEED][ANGLE] = -per_inertia * km * motor->rotor_teeth * tuning->i_d_A;
     a->at[SPEED][LOAD] = -per_inertia;
     a->at[ANGLE][SPEED] = period_s;
     if (tuning->states == STATES_HOLD) {
@@ -176,24 +178,29 @@ bool invariant_ekf_motion_design(const struct motor_params *motor, double period
         .k_angle_d_rad_A = solution.gain[ANGLE][I_D],
         .k_angle_q_rad_A = solution.gain[ANGLE][I_Q],
         .k_load_q_Nm_A = solution.gain[LOAD][I_Q],
-        .angle_d_full_speed_rad_s = design_speed(motor, &motion_tuning) / 5.0,
+        .angle_d_full_speed_rad_s = speed_of_back_emf(motor, FULL_ANGLE_BACK_EMF),
         .load_decay = 1.0,
     };
     return gains_plausible(gains) || design_refuse(error, no_gain);
 }
 
 bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s,
-                               double hold_current_A, enum invariant_ekf_hold kind,
+                               double hold_current_A, enum invariant_ekf_hold hold,
                                struct invariant_ekf_gains *gains, char error[DESIGN_ERROR_TEXT])
 {
-    struct tuning tuning = hold_tunings[kind];
+    bool fast = hold == INVARIANT_EKF_HOLD_FAST;
+    struct tuning tuning = hold_tuning;
     struct riccati_solution solution;
 
     if (!motor_check(motor, period_s, error) ||
         !design_require_positive(error, "hold current", hold_current_A, "A")) {
         return false;
     }
-    tuning.design_current = hold_current_A;
+    tuning.i_d_A = hold_current_A;
+    if (fast) {
+        tuning.load_walk = FAST_LOAD_WALK;
+        tuning.bias_q = FAST_BIAS_Q;
+    }
     if (!solve(motor, period_s, &tuning, &solution)) {
         return design_refuse(error, no_gain);
     }
@@ -203,12 +210,11 @@ bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s
         .k_speed_q_rad_As = solution.gain[SPEED][I_Q],
         .k_angle_q_rad_A = solution.gain[ANGLE][I_Q],
         .k_load_q_Nm_A = solution.gain[LOAD][I_Q],
-        .angle_d_full_speed_rad_s = design_speed(motor, &tuning),
+        .angle_d_full_speed_rad_s = speed_of_back_emf(motor, FULL_ANGLE_BACK_EMF),
         .k_bias_d_V_A = solution.gain[BIAS_D][I_D],
         .k_bias_q_V_A = solution.gain[BIAS_Q][I_Q],
         .bias_decay = exponential(-period_s / BIAS_TIME_S),
-        .load_decay =
-            kind == INVARIANT_EKF_HOLD_FAST ? exponential(-period_s / LOAD_LEAK_TIME_S) : 1.0,
+        .load_decay = fast ? exponential(-period_s / LOAD_LEAK_TIME_S) : 1.0,
         .k_resistance_ohm_AV = RESISTANCE_RATE * period_s / square(hold_current_A),
     };
     return gains_plausible(gains) || design_refuse(error, no_gain);

@@ -54,7 +54,7 @@ bool invariant_ekf_motion_design(const struct motor_params *motor, double period
 
 /* Gains in the d-axis hold with `hold_current_A` > 0. */
 bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s,
-                               double hold_current_A, enum invariant_ekf_hold tuning,
+                               double hold_current_A, enum invariant_ekf_hold hold,
                                struct invariant_ekf_gains *gains, char error[DESIGN_ERROR_TEXT]);
 
 #endif

@@ -66,32 +66,31 @@ static double angle_gain(const struct riccati_problem *problem,
         }
     }
     for (int doubling = 0; doubling < DOUBLINGS; doubling++) {
-        struct matrix half = phi;
-        double first[STATES];
+        struct matrix power = phi; /* Phi^(2^doubling) */
+        double sum[STATES];        /* of as many terms */
 
         for (int i = 0; i < STATES; i++) {
-            first[i] = p[i];
+            sum[i] = p[i];
         }
         for (int i = 0; i < STATES; i++) {
             for (int k = 0; k < STATES; k++) {
-                p[i] += half.at[i][k] * first[k];
+                p[i] += power.at[i][k] * sum[k];
             }
         }
-        matrix_multiply(STATES, &half, &half, &phi);
+        matrix_multiply(STATES, &power, &power, &phi);
     }
     return p[I_Q] / (solution->covariance.at[I_Q][I_Q] + problem->measurement_noise);
 }
 
-/* Largest period for which the Euler model (8) of a standing motor is stable. */
+/* Below it the rotor, swinging against its own EMF, is damped in the Euler model (8) too. */
 static double euler_period_max(const struct motor_params *motor)
 {
     double r = motor->resistance_ohm;
     double l = motor->inductance_H;
     double km = motor->torque_constant_Nm_A;
     double kv = motor->viscous_friction_Nms_rad;
-    double swing = (r * motor->inertia_kgm2 + kv * l) / (r * kv + km * km);
 
-    return swing < l / r ? swing : l / r;
+    return (r * motor->inertia_kgm2 + kv * l) / (r * kv + km * km);
 }
 
 bool steady_state_ekf_design(const struct motor_params *motor, double period_s,

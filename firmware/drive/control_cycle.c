@@ -7,6 +7,7 @@
  * What is computed from S(k) acts from S(k+1) on. So currents and rotor are predicted to S(k+1)
  * with the voltage already committed, and compared with the reference of S(k+1).
  */
+#include "firmware/control/position_law_dispatch.h"
 #include "firmware/drive/drive.h"
 #include "firmware/drive/state_machine.h"
 
@@ -45,9 +46,10 @@ static struct dq wanted_current(struct drive *drive, const struct rotor *rotor)
     standstill_hold_step(&drive->hold, &params->hold, drive->reference.rest_periods,
                          input.position_error, rotor->speed);
     current.d = drive->hold.i_d;
-    current.q = drive->hold.active ? standstill_hold_torque_current(&params->hold, rotor->speed,
-                                                                    rotor->load_torque)
-                                   : params->position_law->step(&drive->law, &params->law, &input);
+    current.q =
+        drive->hold.active
+            ? standstill_hold_torque_current(&params->hold, rotor->speed, rotor->load_torque)
+            : position_law_step(params->position_law, &drive->law, &params->law, &input);
     return current;
 }
 

@@ -1,5 +1,6 @@
 #include "firmware/drive/drive.h"
 
+#include "firmware/control/position_law_dispatch.h"
 #include "firmware/design/state_feedback_design.h"
 
 static bool design_estimator(struct drive *drive, const struct drive_settings *settings,
@@ -54,8 +55,8 @@ static bool design_law(struct drive *drive, const struct drive_settings *setting
         .current_limit_A = settings->current_limit_A,
     };
 
-    drive->params.position_law = position_law_find(drive_law_name(settings->law));
-    return drive->params.position_law->design(&drive->params.law, &task, error);
+    drive->params.position_law = settings->law;
+    return position_law_design(settings->law, &drive->params.law, &task, error);
 }
 
 static bool design_hold(struct drive *drive, const struct drive_settings *settings, double period_s,

@@ -29,7 +29,7 @@ struct drive_params {
     struct current_control_params current_control;
     struct modulator_params modulator;
     struct protection_params protection;
-    const struct position_law *position_law;
+    enum position_law position_law;
     struct position initial_position; /* as the drive is told it */
     uint32_t hold_on_enable_periods;
     bool calibrate_offsets;
@@ -74,11 +74,13 @@ struct drive {
  * Start-up: checks the settings and designs every gain. false: refused, reason in error.
  * Takes up to 50 ms on a Cortex-M4F, 500 ms on a Cortex-M0+.
  */
-bool drive_init(struct drive *drive, const struct hal *board, const struct drive_settings *settings,
-                char error[DRIVE_ERROR_TEXT]);
+__attribute__((noinline)) bool drive_init(struct drive *drive, const struct hal *board,
+                                          const struct drive_settings *settings,
+                                          char error[DRIVE_ERROR_TEXT]);
 
 /* The control interrupt: from the samples of S(k) to the duties of S(k+1)...S(k+2). */
-struct hal_outputs drive_control_cycle(struct drive *drive, const struct hal_samples *samples);
+__attribute__((noinline)) struct hal_outputs drive_control_cycle(struct drive *drive,
+                                                                 const struct hal_samples *samples);
 
 /* Background: plans and posts a command. false: refused, reason in error. */
 bool drive_command(struct drive *drive, const struct drive_command *command,

@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "firmware/control/position_laws.h"
 #include "firmware/motor/motor_params.h"
 
 /* States of the drive; names and order of CiA 402 (IEC 61800-7-201), substates of enabling apart.
@@ -35,8 +36,6 @@ enum drive_fault {
     DRIVE_FAULTS
 };
 
-enum drive_law { DRIVE_LAW_STATE_FEEDBACK, DRIVE_LAW_PID, DRIVE_LAWS };
-
 enum drive_estimator {
     DRIVE_ESTIMATOR_INVARIANT_EKF,    /* constant-gain invariant EKF, exact current prediction */
     DRIVE_ESTIMATOR_STEADY_STATE_EKF, /* Bendjedia 2012: constant gain, Euler predictor */
@@ -47,7 +46,7 @@ enum drive_estimator {
 struct drive_settings {
     struct motor_params motor;
 
-    enum drive_law law;
+    enum position_law law;
     enum drive_estimator estimator;
     double law_bandwidth_rad_s;     /* w0 of the position law, double pole; 200 */
     bool feed_forward;              /* reference speed and acceleration into the law; true */
@@ -132,7 +131,7 @@ bool drive_settings_check(const struct drive_settings *settings, char error[DRIV
 /* Name of a state, fault, law or estimator as scenarios and the serial line spell it. */
 const char *drive_state_name(enum drive_state state);
 const char *drive_fault_name(enum drive_fault fault);
-const char *drive_law_name(enum drive_law law);
+const char *drive_law_name(enum position_law law);
 const char *drive_estimator_name(enum drive_estimator estimator);
 
 #ifdef __cplusplus

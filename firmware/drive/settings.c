@@ -5,7 +5,7 @@ void drive_settings_default(struct drive_settings *settings, const struct motor_
 {
     const struct drive_settings defaults = {
         .motor = *motor,
-        .law = DRIVE_LAW_STATE_FEEDBACK,
+        .law = POSITION_LAW_STATE_FEEDBACK,
         .estimator = DRIVE_ESTIMATOR_INVARIANT_EKF,
         .law_bandwidth_rad_s = 200.0,
         .feed_forward = true,
@@ -114,12 +114,11 @@ const char *drive_fault_name(enum drive_fault fault)
     return names[fault];
 }
 
-const char *drive_law_name(enum drive_law law)
+const char *drive_law_name(enum position_law law)
 {
-    static const char *const names[DRIVE_LAWS] = {
-        [DRIVE_LAW_STATE_FEEDBACK] = "state-feedback",
-        [DRIVE_LAW_PID] = "pid",
-    };
+#define LAW_TEXT(constant, function, text) text,
+    static const char *const names[] = {POSITION_LAWS(LAW_TEXT)};
+#undef LAW_TEXT
     return names[law];
 }
 

@@ -39,10 +39,15 @@ static void place(struct reference *r, struct position position)
 
 void reference_reset(struct reference *r, struct position position)
 {
-    *r = (struct reference){.phase = REFERENCE_REST};
-    place(r, position);
-    r->next.position = position;
+    r->next = (struct reference_sample){.position = position};
     r->now = r->next;
+    r->rest_periods = 0;
+    r->phase = REFERENCE_REST;
+    r->periods_left = 0;
+    r->stop_requested = false;
+    r->speed = 0;
+    r->acceleration = 0;
+    place(r, position);
 }
 
 bool reference_load(struct reference *r, const struct profile *profile)

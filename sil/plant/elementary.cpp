@@ -11,9 +11,9 @@ Phases unit_vector(double angle_rad)
     /* pi/2 in two parts, the first with 33 bits, so that multiples of it are exact. */
     constexpr double half_pi_high = 1.57079632673412561417e+00;
     constexpr double half_pi_low = 6.07710050650619224932e-11;
-    const double quarters = angle_rad * (2.0 / pi);
-    const int quarter = static_cast<int>(quarters + (quarters < 0.0 ? -0.5 : 0.5));
-    const double r = (angle_rad - quarter * half_pi_high) - quarter * half_pi_low;
+    const double quarters = nearest_whole(angle_rad * (2.0 / pi));
+    const double r = (angle_rad - quarters * half_pi_high) - quarters * half_pi_low;
+    const std::int64_t quarter = static_cast<std::int64_t>(quarters) & 3;
 
     /* Taylor series of cos r and (sin r) / r in z = r^2, |r| <= pi/4, side by side. */
     const double z = r * r;
@@ -29,7 +29,14 @@ Phases unit_vector(double angle_rad)
 
     /* Turned back by whole quarters, without a branch. */
     static constexpr Phases axes[5] = {{1.0, 0.0}, {0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}, {1.0, 0.0}};
-    return cosine * axes[quarter & 3] + sine * axes[(quarter & 3) + 1];
+    return cosine * axes[quarter] + sine * axes[quarter + 1];
+}
+
+double nearest_whole(double x)
+{
+    constexpr double most = 1e15;
+    const double clamped = x < most ? (x > -most ? x : -most) : most;
+    return static_cast<double>(static_cast<std::int64_t>(clamped + (clamped < 0.0 ? -0.5 : 0.5)));
 }
 
 double natural_logarithm(double x)

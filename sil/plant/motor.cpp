@@ -21,6 +21,7 @@ constexpr int low_order = 3;
 constexpr int high_order = MotorCoefficients::highest_order;
 constexpr double low_order_step = 1.0 / 100.0;
 constexpr double longest_step = 0.2;
+constexpr double fastest_rate = 1e9; /* 1/s: a runaway motor ends, if not accurately */
 constexpr double least_progress = 1e-9; /* of a step to an event, however rounding falls */
 
 /* The unknowns as power series in the time since the start of the step. */
@@ -128,14 +129,14 @@ void add_energies(MotorIntegrals &integrals, const Series<order> &x,
 }
 
 /* The state at the end of the step. */
-template <int order>
+template <int order, bool track_energy>
 [[gnu::always_inline]] inline void accept(MotorState &state, MotorIntegrals &integrals,
                                           const Series<order> &x, const MotorCoefficients &motor,
                                           const Segment &segment, const Terminals &terminals,
                                           double h)
 {
     integrals.voltage_Vs += h * terminals.voltage_V;
-    if (integrals.track_energy) {
+    if constexpr (track_energy) {
         add_energies(integrals, x, motor, segment, terminals, h);
     }
     state.current_A = value<order>(x.current, h);
@@ -182,7 +183,7 @@ Event first_event(const Series<order> &x, const MotorCoefficients &motor, const 
 }
 
 /* A step in which a phase floats or a current ends: goes as far as the first event. */
-template <int order>
+template <int order, bool track_energy>
 [[gnu::noinline]] double step_to_event(MotorState &state, MotorIntegrals &integrals,
                                        const MotorCoefficients &motor, const Segment &segment,
                                        const Terminals &terminals, double h)
@@ -192,7 +193,7 @@ template <int order>
     const Event event = first_event(x, motor, segment, terminals, h);
     const Phases emf_Vs = motor.torque_constant * integral<order - 1>(x.omega_q, event.time_s);
     integrals.voltage_Vs += (1.0 - terminals.conducting) * emf_Vs;
-    accept(state, integrals, x, motor, segment, terminals, event.time_s);
+    accept<order, track_energy>(state, integrals, x, motor, segment, terminals, event.time_s);
     if (event.blocking >= 0) {
         state.current_A[event.blocking] = 0.0;
     }
@@ -200,7 +201,7 @@ template <int order>
 }
 
 /* Advances by h or to the first event before; returns the time that passed. */
-template <int order>
+template <int order, bool track_energy>
 [[gnu::always_inline]] inline double step(MotorState &state, MotorIntegrals &integrals,
                                           const MotorCoefficients &motor, const Segment &segment,
                                           double h)
@@ -209,7 +210,8 @@ template <int order>
     if (segment.dead_time) {
         terminals = terminals_of(segment, motor, state);
         if (terminals.floating) {
-            return step_to_event<order>(state, integrals, motor, segment, terminals, h);
+            return step_to_event<order, track_energy>(state, integrals, motor, segment, terminals,
+                                                      h);
         }
     }
     Series<order> x;
@@ -217,18 +219,40 @@ template <int order>
     if (segment.dead_time) {
         const Phases along = terminals.direction * value<order>(x.current, h);
         if (along[0] < 0.0 || along[1] < 0.0) {
-            return step_to_event<order>(state, integrals, motor, segment, terminals, h);
+            return step_to_event<order, track_energy>(state, integrals, motor, segment, terminals,
+                                                      h);
         }
     }
-    accept(state, integrals, x, motor, segment, terminals, h);
+    accept<order, track_energy>(state, integrals, x, motor, segment, terminals, h);
     return h;
+}
+
+template <bool track_energy>
+void advance_through(MotorState &state, MotorIntegrals &integrals, const MotorCoefficients &motor,
+                     const Timetable &timetable, double rate)
+{
+    for (const Segment &segment : timetable) {
+        double left_s = segment.duration_s;
+        if (rate * left_s < low_order_step) {
+            while (left_s > 0.0) {
+                left_s -=
+                    step<low_order, track_energy>(state, integrals, motor, segment, left_s);
+            }
+        } else {
+            const double longest_s = longest_step / rate;
+            while (left_s > 0.0) {
+                const double h = left_s < longest_s ? left_s : longest_s;
+                left_s -= step<high_order, track_energy>(state, integrals, motor, segment, h);
+            }
+        }
+    }
 }
 
 } // namespace
 
 Motor::Motor(const MotorConfig &config, double theta_rad, double omega_rad_s, bool track_energy)
+    : track_energy_(track_energy)
 {
-    integrals_.track_energy = track_energy;
     require(magnitude(theta_rad) <= 1e9, "initial_theta_rad", theta_rad, "-1e9...1e9 rad");
     require(magnitude(omega_rad_s) <= 1e4, "initial_omega_rad_s", omega_rad_s, "-1e4...1e4 rad/s");
     set_parameters(config);
@@ -279,7 +303,7 @@ void Motor::begin_period()
 {
     const MotorCoefficients &motor = coefficients_;
     if (magnitude(state_.electrical_rad) > pi) {
-        const double turns = std::floor(state_.electrical_rad * (0.5 / pi) + 0.5);
+        const double turns = nearest_whole(state_.electrical_rad * (0.5 / pi));
         state_.electrical_rad -= turns * (2.0 * pi);
         state_.electrical_turns += turns;
     }
@@ -290,31 +314,19 @@ void Motor::begin_period()
     const double current = magnitude(state_.current_A[0]) + magnitude(state_.current_A[1]);
     const double stiffness = motor.torque_constant * (motor.torque_constant *
                              motor.inverse_inductance + motor.teeth * current);
-    rate_ = motor.teeth * magnitude(state_.omega_rad_s) +
-            motor.resistance * motor.inverse_inductance +
-            std::sqrt(stiffness * motor.inverse_inertia);
+    const double rate = motor.teeth * magnitude(state_.omega_rad_s) +
+                        motor.resistance * motor.inverse_inductance +
+                        std::sqrt(stiffness * motor.inverse_inertia);
+    rate_ = rate < fastest_rate ? rate : fastest_rate; /* also if not a number */
 }
 
 void Motor::advance(const Timetable &timetable)
 {
-    MotorState state = state_;
-    MotorIntegrals &integrals = integrals_;
-    for (const Segment &segment : timetable) {
-        const double size = rate_ * segment.duration_s;
-        double left_s = segment.duration_s;
-        if (size < low_order_step) {
-            while (left_s > 0.0) {
-                left_s -= step<low_order>(state, integrals, coefficients_, segment, left_s);
-            }
-        } else {
-            const double longest_s = longest_step / rate_;
-            while (left_s > 0.0) {
-                const double h = left_s < longest_s ? left_s : longest_s;
-                left_s -= step<high_order>(state, integrals, coefficients_, segment, h);
-            }
-        }
+    if (track_energy_) {
+        advance_through<true>(state_, integrals_, coefficients_, timetable, rate_);
+    } else {
+        advance_through<false>(state_, integrals_, coefficients_, timetable, rate_);
     }
-    state_ = state;
 }
 
 double Motor::theta_rad() const

@@ -43,9 +43,8 @@ struct MotorCoefficients {
     } share[highest_order];
 };
 
-/* Integrals over time. */
+/* Integrals over time; the energies only if asked for. */
 struct MotorIntegrals {
-    bool track_energy = false;      /* keep the energies */
     Phases voltage_Vs = {0.0, 0.0}; /* since begin_period */
     double supplied_J = 0.0, diode_J = 0.0, copper_J = 0.0, friction_J = 0.0, load_J = 0.0;
 };
@@ -81,6 +80,7 @@ private:
     MotorCoefficients coefficients_ = {};
     MotorState state_;
     MotorIntegrals integrals_;
+    bool track_energy_;
     double rate_ = 0.0; /* 1/s: how fast the solution can change, bounds the step */
 };
 

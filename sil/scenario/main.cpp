@@ -242,9 +242,7 @@ void add_run_options(CLI::App &command, Options &options)
         ->capture_default_str();
 }
 
-} // namespace
-
-int main(int argc, char **argv)
+int run_program(int argc, char **argv)
 {
     Options options;
     std::error_code unknown;
@@ -283,8 +281,18 @@ int main(int argc, char **argv)
         return app.exit(asked); /* --help, --version */
     } catch (const CLI::ParseError &error) {
         std::fprintf(stderr, "steadystep-sil: %s (see --help)\n", error.what());
-    } catch (const std::exception &error) { /* InputError, and what the machine refuses */
-        std::fprintf(stderr, "steadystep-sil: %s\n", error.what());
     }
     return bad_input;
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    try {
+        return run_program(argc, argv);
+    } catch (const std::exception &error) { /* InputError, and what the machine refuses */
+        std::fprintf(stderr, "steadystep-sil: %s\n", error.what());
+        return bad_input;
+    }
 }

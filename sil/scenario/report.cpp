@@ -39,11 +39,13 @@ std::string heading(const std::vector<Result> &results)
     return text + "\n  " + first.scenario->description + "\n";
 }
 
+/* A line of the table; without a column for the worst of several runs if `worst` is empty. */
 std::string line(const std::string &metric, const std::string &window, const std::string &value,
                  const std::string &worst, const std::string &bound, const std::string &verdict)
 {
-    return format("  %-32s %-12s %-12s %-12s %-14s %s\n", metric.c_str(), window.c_str(),
-                  value.c_str(), worst.c_str(), bound.c_str(), verdict.c_str());
+    std::string text = format("  %-32s %-12s %-13s", metric.c_str(), window.c_str(), value.c_str());
+    text += worst.empty() ? "" : format("%-13s", worst.c_str());
+    return text + format("%-15s %s\n", bound.c_str(), verdict.c_str());
 }
 
 /* The main figures of one window, of one run. */

@@ -61,8 +61,8 @@ void read_drive(const Value &table, drive_settings &drive)
 {
     TableReader reader(table, "drive");
     std::size_t law = 0, estimator = 0;
-    if (reader.choice("law", law, names_of(drive_law_name, DRIVE_LAWS))) {
-        drive.law = static_cast<drive_law>(law);
+    if (reader.choice("law", law, names_of(drive_law_name, POSITION_LAW_COUNT))) {
+        drive.law = static_cast<position_law>(law);
     }
     if (reader.choice("estimator", estimator, names_of(drive_estimator_name, DRIVE_ESTIMATORS))) {
         drive.estimator = static_cast<drive_estimator>(estimator);

@@ -196,7 +196,9 @@ void TableReader::finish() const
 {
     for (const std::string &key : table_.keys) {
         if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
-            fail(key, "unknown key, expected " + one_of(key, known_));
+            const std::string guess = nearest(key, known_);
+            fail(key, guess.empty() ? "unknown key, expected " + one_of(key, known_)
+                                    : "unknown key (did you mean " + guess + "?)");
         }
     }
 }

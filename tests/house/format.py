@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Checks every source against .clang-format.
 
-usage: format.py ROOT    exit 1 with one line per difference; 77 (skipped) without clang-format 14,
-                         since other versions format differently
+usage: format.py [--fix] ROOT    exit 1 with one line per difference; 77 (skipped) without
+                                 clang-format 14, since other versions format differently
+       --fix                     formats the sources instead
 """
 import pathlib
 import re
@@ -26,10 +27,11 @@ def clang_format():
 
 
 def main(arguments):
-    if len(arguments) != 1:
+    fix = arguments[:1] == ["--fix"]
+    if len(arguments) != 1 + fix:
         print(__doc__, file=sys.stderr)
         return 2
-    root = pathlib.Path(arguments[0])
+    root = pathlib.Path(arguments[-1])
     tool = clang_format()
     if tool is None:
         print(f"clang-format {VERSION} is not installed")
@@ -37,8 +39,9 @@ def main(arguments):
     sources = sorted(str(path) for top in ("firmware", "hal", "sil", "tests", "tools")
                      for path in (root / top).rglob("*")
                      if path.suffix in {".c", ".h", ".cpp"})
-    result = subprocess.run([tool, "--dry-run", "-Werror", "--style=file", *sources], check=False)
-    print(f"{len(sources)} sources checked")
+    mode = ["-i"] if fix else ["--dry-run", "-Werror"]
+    result = subprocess.run([tool, *mode, "--style=file", *sources], check=False)
+    print(f"{len(sources)} sources {'formatted' if fix else 'checked'}")
     return 1 if result.returncode else 0
 
 

@@ -110,7 +110,8 @@ def self_test(compiler):
                 'static const struct position_law a = {"a", 0, plain}, b = {"b", 0, bad};\n'
                 "static const struct position_law *const registry[2] = {&a, &b};\n"
                 f"void {INTERRUPT}(float *s, int *n) {{ (void)registry; {body} }}\n"
-                f"int main(void) {{ static float s[100]; static int n[100]; {INTERRUPT}(s, n); return n[0]; }}\n"
+                "static float s[100];\nstatic int n[100];\n"
+                f"int main(void) {{ {INTERRUPT}(s, n); return n[0]; }}\n"
             )
             made = [
                 *compiler,

@@ -23,14 +23,14 @@ struct replay_samples {
 
 struct replay_case {
     const char *name;
-    enum drive_law law;
+    enum position_law law;
     enum drive_estimator estimator;
 };
 
 static const struct replay_case replay_cases[] = {
-    {"default-sensorless", DRIVE_LAW_STATE_FEEDBACK, DRIVE_ESTIMATOR_INVARIANT_EKF},
-    {"pid", DRIVE_LAW_PID, DRIVE_ESTIMATOR_INVARIANT_EKF},
-    {"steady-state-ekf", DRIVE_LAW_STATE_FEEDBACK, DRIVE_ESTIMATOR_STEADY_STATE_EKF},
+    {"default-sensorless", POSITION_LAW_STATE_FEEDBACK, DRIVE_ESTIMATOR_INVARIANT_EKF},
+    {"pid", POSITION_LAW_PID, DRIVE_ESTIMATOR_INVARIANT_EKF},
+    {"steady-state-ekf", POSITION_LAW_STATE_FEEDBACK, DRIVE_ESTIMATOR_STEADY_STATE_EKF},
 };
 
 enum { REPLAY_CASES = sizeof replay_cases / sizeof replay_cases[0] };

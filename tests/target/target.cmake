@@ -9,7 +9,8 @@ set_target_properties(target_startup PROPERTIES
 
 # The recorder runs on the host: the host build of this project, in a folder of its own, unless
 # STEADYSTEP_HOST_BUILD names one that has it.
-set(STEADYSTEP_HOST_BUILD "" CACHE PATH "Host build folder that holds record_input; empty: make one")
+set(STEADYSTEP_HOST_BUILD "" CACHE PATH
+  "Host build folder that holds record_input; empty: make one")
 if(STEADYSTEP_HOST_BUILD)
   set(host_build ${STEADYSTEP_HOST_BUILD})
   add_custom_target(host_recorder)
@@ -69,5 +70,6 @@ endforeach()
 
 separate_arguments(core_flags UNIX_COMMAND "${CMAKE_C_FLAGS}")
 add_test(NAME target.interrupt-is-clean.self-test
-  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/interrupt_is_clean.py --self-test ${CMAKE_C_COMPILER} ${core_flags})
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/interrupt_is_clean.py
+          --self-test ${CMAKE_C_COMPILER} ${core_flags})
 set_tests_properties(target.interrupt-is-clean.self-test PROPERTIES LABELS target)

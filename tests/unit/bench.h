@@ -128,6 +128,37 @@ static inline void bench_run(struct bench_motor *m, double u_a, double u_b)
     }
 }
 
+/*
+ * Phase voltages for the coming period that bring the currents towards i_d, i_q by three tenths a
+ * period: a control that knows the motor and its angle.
+ */
+static inline struct bench_vector bench_regulate(const struct bench_motor *m, double i_d,
+                                                 double i_q)
+{
+    const struct motor_params *p = &m->motor;
+    const struct bench_vector i = bench_to_rotor(m->i_a, m->i_b, bench_electrical_rad(m));
+    const double rotation = m->speed_rad_s * (double)p->rotor_teeth;
+    const double stiffness = 0.3 * p->inductance_H / PERIOD_S;
+    const double u_d =
+        p->resistance_ohm * i.a + stiffness * (i_d - i.a) - rotation * p->inductance_H * i.b;
+    const double u_q = p->resistance_ohm * i.b + stiffness * (i_q - i.b) +
+                       rotation * p->inductance_H * i.a + p->torque_constant_Nm_A * m->speed_rad_s;
+
+    return bench_to_phases(u_d, u_q, bench_electrical_rad(m) + 0.5 * rotation * PERIOD_S);
+}
+
+/* The q current that brings the rotor to a speed, with 2000 rad/s^2 at most, whatever the load. */
+static inline double bench_speed_current(const struct bench_motor *m, double speed_rad_s)
+{
+    const struct motor_params *p = &m->motor;
+    const double wanted = 500.0 * (speed_rad_s - m->speed_rad_s);
+    const double acceleration = fmin(fmax(wanted, -2000.0), 2000.0);
+
+    return (p->inertia_kgm2 * acceleration + p->viscous_friction_Nms_rad * m->speed_rad_s +
+            m->load_torque_Nm) /
+           p->torque_constant_Nm_A;
+}
+
 /* Per-unit phases of SI values. */
 static inline struct phases bench_phases(double a, double b, double base)
 {

@@ -128,6 +128,16 @@ void the_lag_of_a_move_is_found()
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.01, metrics.lag_s);
 }
 
+void only_the_cruise_counts_for_the_lag()
+{
+    const Record record = make_record(0.2, [](Row &row, std::size_t n) {
+        row[REFERENCE_MOVING] = 1;
+        row[OMEGA_REF] = n <= at(0.1) ? 10 : 5;
+        row[THETA_REF] = n <= at(0.1) ? 0.1 : 0.7;
+    });
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.01, over(record, {Window::Kind::all}).lag_s);
+}
+
 void settling_counts_from_the_end_of_the_reference()
 {
     const Metrics metrics = over(make_record(0.2, lagging_move), {Window::Kind::all});
@@ -238,6 +248,17 @@ void the_hash_sees_every_bit_and_treats_all_nan_alike()
     TEST_ASSERT_TRUE(c.hash() == d.hash());
 }
 
+void the_hash_is_fnv_1a_over_words()
+{
+    Row row;
+    for (std::size_t i = 0; i < COLUMNS; ++i) {
+        row[i] = static_cast<double>(i + 1);
+    }
+    Record record(period_s);
+    record.append(row);
+    TEST_ASSERT_EQUAL_HEX64(0x41d27f55662f817fu, record.hash()); /* computed apart */
+}
+
 void time_is_the_number_nearest_to_the_decimal()
 {
     const Record record = make_record(0.1, [](Row &, std::size_t) {});
@@ -254,10 +275,10 @@ void up_to_19_seeds_the_worst_decides_then_95_percent()
     TEST_ASSERT_EQUAL_DOUBLE(19, percentile_95(values));
     values.push_back(1000);
     TEST_ASSERT_EQUAL_DOUBLE(19, percentile_95(values));
-    values.back() = nan;
+    values.back() = 19;
+    values.front() = nan;
     TEST_ASSERT_EQUAL_DOUBLE(19, percentile_95(values));
     values.pop_back();
-    values.back() = nan;
     TEST_ASSERT_TRUE(has_no_value(percentile_95(values)));
 }
 
@@ -278,16 +299,21 @@ std::vector<Result> results_with(const Expectation &expectation, const std::vect
 
 void the_worst_seed_is_named()
 {
-    Expectation at_most, at_least;
+    Expectation at_most, at_least, between;
     at_most.max = 5;
     at_least.min = 5;
+    between.min = 3;
+    between.max = 5;
     const Judgement high = judge(at_most, 0, results_with(at_most, {1, 9, 3}));
-    const Judgement low = judge(at_least, 0, results_with(at_least, {9, 8, 1, 7}));
+    const Judgement low = judge(at_least, 0, results_with(at_least, {9, 1, 3, 7}));
+    const Judgement out = judge(between, 0, results_with(between, {4, 1, 5}));
     TEST_ASSERT_FALSE(high.held);
     TEST_ASSERT_EQUAL_UINT64(2, high.worst_seed);
     TEST_ASSERT_EQUAL_DOUBLE(9, high.worst.value);
     TEST_ASSERT_FALSE(low.held);
-    TEST_ASSERT_EQUAL_UINT64(3, low.worst_seed);
+    TEST_ASSERT_EQUAL_UINT64(2, low.worst_seed);
+    TEST_ASSERT_FALSE(out.held);
+    TEST_ASSERT_EQUAL_UINT64(2, out.worst_seed);
 }
 
 void a_run_without_a_value_is_the_worst()
@@ -319,6 +345,7 @@ int main()
     RUN_TEST(explicit_times_include_both_ends);
     RUN_TEST(errors_have_their_largest_mean_square_and_last_value);
     RUN_TEST(the_lag_of_a_move_is_found);
+    RUN_TEST(only_the_cruise_counts_for_the_lag);
     RUN_TEST(settling_counts_from_the_end_of_the_reference);
     RUN_TEST(what_does_not_settle_has_no_settling_time);
     RUN_TEST(overshoot_is_measured_beyond_the_target_in_either_direction);
@@ -330,6 +357,7 @@ int main()
     RUN_TEST(an_estimate_that_is_not_finite_gives_no_figure);
     RUN_TEST(an_empty_window_gives_no_figure);
     RUN_TEST(the_hash_sees_every_bit_and_treats_all_nan_alike);
+    RUN_TEST(the_hash_is_fnv_1a_over_words);
     RUN_TEST(time_is_the_number_nearest_to_the_decimal);
     RUN_TEST(up_to_19_seeds_the_worst_decides_then_95_percent);
     RUN_TEST(the_worst_seed_is_named);

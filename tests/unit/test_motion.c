@@ -453,6 +453,32 @@ static void test_a_move_planned_from_elsewhere_is_refused(void)
     TEST_ASSERT_FALSE(step().moving);
 }
 
+static void test_a_reset_in_full_motion_leaves_nothing_of_it(void)
+{
+    const struct position elsewhere = {-3, 0x12345678u};
+
+    begin(&smooth);
+    for (int k = 0; k < 500; k++) {
+        step();
+    }
+    reference_stop(&reference);
+    reference_reset(&reference, elsewhere);
+    TEST_ASSERT_EQUAL_INT64(angle_of(elsewhere), angle_of(reference.now.position));
+    for (int k = 0; k < 3; k++) {
+        struct reference_sample s = step();
+
+        TEST_ASSERT_EQUAL_INT64(angle_of(elsewhere), angle_of(reference.now.position));
+        TEST_ASSERT_EQUAL_INT64(angle_of(elsewhere), angle_of(s.position));
+        TEST_ASSERT_TRUE(s.speed == NUM(0.0) && s.acceleration == NUM(0.0) && !s.moving);
+    }
+    TEST_ASSERT_EQUAL_UINT32(3, reference.rest_periods);
+
+    begin(&smooth);
+    reference_stop(&reference);
+    reference_reset(&reference, elsewhere);
+    follows_the_continuous_profile(&trapezoid);
+}
+
 static void test_a_step_is_there_at_once(void)
 {
     const struct profile_move jump = {.shape = PROFILE_STEP, .position_rad = -0.03142};
@@ -645,6 +671,7 @@ int main(void)
     RUN_TEST(test_after_a_stop_a_move_starts_from_where_the_reference_rests);
     RUN_TEST(test_a_move_is_refused_while_another_one_runs);
     RUN_TEST(test_a_move_planned_from_elsewhere_is_refused);
+    RUN_TEST(test_a_reset_in_full_motion_leaves_nothing_of_it);
     RUN_TEST(test_a_step_is_there_at_once);
     RUN_TEST(test_each_step_hands_the_next_sample_on_as_the_present_one);
     RUN_TEST(test_the_time_at_rest_is_counted_from_the_end_of_the_move);

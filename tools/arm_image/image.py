@@ -10,9 +10,7 @@ from elftools.elf.elffile import ELFFile
 SHF_WRITE, SHF_ALLOC, SHF_EXECINSTR = 1, 2, 4
 CONDITIONS = "eq ne cs hs cc lo mi pl vs vc hi ls ge lt gt le".split()
 # Mnemonics whose last two letters look like a condition and are none.
-UNCONDITIONAL = {
-    "adcs", "bics", "lsls", "mls", "movs", "muls", "sbcs", "smlals", "smmls", "svc", "teq", "vmls", "vnmls",
-}  # fmt: skip
+UNCONDITIONAL = set("adcs bics lsls mls movs muls sbcs smlals smmls svc teq vmls vnmls".split())
 
 
 @dataclass(eq=False)

@@ -91,11 +91,11 @@ def _m4_base(instruction):
     if base in ("ldrd", "strd"):
         return 3
     if base.startswith("ldr"):
-        return 2
+        return 3 if operands.startswith("pc,") else 2  # into PC: 5 in all
     if base.startswith("str"):
         return 2 if re.search(r"\[\w+, [rs]\w+", operands) else 1  # register offset 2
     if base in ("tbb", "tbh"):
-        return 3  # load 2, add 1, and the refill
+        return 4  # 6 in all: load 2, add 1, refill 3
     if base in ("mrs", "msr"):
         return 2
     if base in ("dsb", "dmb", "isb"):

@@ -85,7 +85,7 @@ class Run:
     __slots__ = ("costs", "instructions", "nominal", "pessimistic", "last", "return_address")
 
     def __init__(self, image, core, block, following, before):
-        """`before`: address of the instruction executed right before in a straight line, or None."""
+        """`before`: address of the instruction executed right before, None after a branch."""
         self.costs = []  # (address, nominal cycles, pessimistic cycles)
         self.last = None  # address of the last instruction, if the program went straight on
         self.return_address = None  # if the block ends in a call

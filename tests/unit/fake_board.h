@@ -1,0 +1,34 @@
+/* A board whose samples a test sets and whose bridge moves nothing: for one drive at a time. */
+#ifndef STEADYSTEP_FAKE_BOARD_H
+#define STEADYSTEP_FAKE_BOARD_H
+
+#include "firmware/drive/drive.h"
+#include "tests/unit/bench.h"
+
+struct fake_board {
+    bool trip_latched; /* refuses to enable its bridge */
+    bool bridge_enabled;
+};
+
+static struct fake_board fake_board;
+
+static inline bool fake_bridge_enable(void *context)
+{
+    struct fake_board *board = context;
+
+    board->bridge_enabled = !board->trip_latched;
+    return board->bridge_enabled;
+}
+
+/* All of the board that the drive asks for so far. */
+static const struct hal fake_hal = {
+    .context = &fake_board,
+    .facts = &bench_facts,
+    .bridge_enable = fake_bridge_enable,
+};
+
+/* No current, no voltage, 24 V on the bus. */
+static const struct hal_samples samples_at_rest = {
+    .current_a = 2048, .current_b = 2048, .bus_voltage = 3151};
+
+#endif

@@ -1,0 +1,206 @@
+/* Commands on their way to the control interrupt. */
+#include <unity.h>
+
+#include "firmware/drive/command_queue.h"
+
+static struct command_queue queue;
+
+void setUp(void)
+{
+    static const struct command_queue empty;
+
+    queue = empty;
+}
+
+void tearDown(void)
+{
+}
+
+/* A move whose profile's jerk tells it from the others. */
+static bool put(int64_t mark, uint32_t at_period)
+{
+    const struct queued_command command = {.kind = DRIVE_COMMAND_MOVE_TRAPEZOID,
+                                           .at_period = at_period,
+                                           .profile = {.jerk = mark}};
+
+    return command_queue_put(&queue, &command);
+}
+
+static bool is_due(int64_t mark, uint32_t period)
+{
+    const struct queued_command *command = command_queue_due(&queue, period);
+
+    return command != NULL && command->kind == DRIVE_COMMAND_MOVE_TRAPEZOID &&
+           command->profile.jerk == mark;
+}
+
+static bool nothing_is_due(uint32_t period)
+{
+    return command_queue_due(&queue, period) == NULL;
+}
+
+static void test_an_empty_queue_has_nothing_due(void)
+{
+    TEST_ASSERT_TRUE(nothing_is_due(0));
+    TEST_ASSERT_TRUE(nothing_is_due(UINT32_MAX));
+    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.stop, 0));
+    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.disable, 0));
+}
+
+static void test_a_command_is_due_from_its_period_on_until_it_is_dropped(void)
+{
+    put(1, 100);
+    TEST_ASSERT_TRUE(nothing_is_due(99));
+    TEST_ASSERT_TRUE(is_due(1, 100));
+    TEST_ASSERT_TRUE(is_due(1, 101));
+    command_queue_drop(&queue);
+    TEST_ASSERT_TRUE(nothing_is_due(102));
+}
+
+static void test_a_command_whose_period_has_passed_is_due_at_once(void)
+{
+    put(1, 5);
+    TEST_ASSERT_TRUE(is_due(1, 1000000));
+}
+
+/* The first one posted holds the others back, even those of an earlier period. */
+static void test_commands_act_in_the_order_they_were_posted(void)
+{
+    put(1, 200);
+    put(2, 100);
+    TEST_ASSERT_TRUE(nothing_is_due(150));
+    TEST_ASSERT_TRUE(is_due(1, 200));
+    command_queue_drop(&queue);
+    TEST_ASSERT_TRUE(is_due(2, 200));
+    command_queue_drop(&queue);
+    TEST_ASSERT_TRUE(nothing_is_due(200));
+}
+
+static void test_a_full_queue_refuses_and_loses_nothing(void)
+{
+    for (uint32_t i = 0; i < COMMAND_QUEUE_LENGTH; i++) {
+        TEST_ASSERT_TRUE(put(i, 0));
+    }
+    TEST_ASSERT_FALSE(put(99, 0));
+    for (uint32_t i = 0; i < COMMAND_QUEUE_LENGTH; i++) {
+        TEST_ASSERT_TRUE(is_due(i, 0));
+        command_queue_drop(&queue);
+    }
+    TEST_ASSERT_TRUE(nothing_is_due(0));
+    TEST_ASSERT_TRUE(put(100, 0));
+    TEST_ASSERT_TRUE(is_due(100, 0));
+}
+
+static void test_the_queue_goes_round_for_ever(void)
+{
+    for (int64_t i = 0; i < 1000; i++) {
+        TEST_ASSERT_TRUE(put(2 * i, 0));
+        TEST_ASSERT_TRUE(put(2 * i + 1, 0));
+        TEST_ASSERT_TRUE(is_due(2 * i, 0));
+        command_queue_drop(&queue);
+        TEST_ASSERT_TRUE(is_due(2 * i + 1, 0));
+        command_queue_drop(&queue);
+    }
+}
+
+/* Its own counters pass 2^32, too. */
+static void test_the_queue_goes_on_when_its_counters_wrap(void)
+{
+    queue.written = UINT32_MAX - 1u;
+    queue.read = UINT32_MAX - 1u;
+    for (uint32_t i = 0; i < COMMAND_QUEUE_LENGTH; i++) {
+        TEST_ASSERT_TRUE(put(i, 0));
+    }
+    TEST_ASSERT_FALSE(put(99, 0));
+    command_queue_put_urgent(&queue, &queue.stop, 0);
+    command_queue_drop(&queue);
+    TEST_ASSERT_TRUE(is_due(1, 0));
+    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.stop, 0));
+    TEST_ASSERT_TRUE(nothing_is_due(0));
+}
+
+/* After 5 days at 10 kHz the period index passes 2^32. */
+static void test_a_command_addressed_across_the_wrap_of_the_period_waits_for_it(void)
+{
+    put(1, 3);
+    TEST_ASSERT_TRUE(nothing_is_due(UINT32_MAX - 10u));
+    TEST_ASSERT_TRUE(nothing_is_due(UINT32_MAX));
+    TEST_ASSERT_TRUE(nothing_is_due(2));
+    TEST_ASSERT_TRUE(is_due(1, 3));
+    command_queue_drop(&queue);
+
+    put(2, UINT32_MAX - 1u);
+    TEST_ASSERT_TRUE(nothing_is_due(UINT32_MAX - 2u));
+    TEST_ASSERT_TRUE(is_due(2, 5));
+
+    command_queue_put_urgent(&queue, &queue.stop, 7);
+    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.stop, UINT32_MAX));
+    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.stop, 7));
+}
+
+static void test_a_stop_overtakes_the_commands_before_it_and_flushes_them(void)
+{
+    put(1, 1000);
+    put(2, 1000);
+    command_queue_put_urgent(&queue, &queue.stop, 50);
+    put(3, 60);
+    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.stop, 49));
+    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.stop, 50));
+    TEST_ASSERT_TRUE(is_due(3, 60));
+}
+
+static void test_an_urgent_command_is_taken_once(void)
+{
+    command_queue_put_urgent(&queue, &queue.disable, 10);
+    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.disable, 12));
+    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.disable, 13));
+}
+
+static void test_of_two_stops_the_last_counts(void)
+{
+    command_queue_put_urgent(&queue, &queue.stop, 10);
+    command_queue_put_urgent(&queue, &queue.stop, 20);
+    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.stop, 10));
+    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.stop, 20));
+}
+
+static void test_stop_and_disable_do_not_stand_in_each_others_way(void)
+{
+    command_queue_put_urgent(&queue, &queue.stop, 10);
+    command_queue_put_urgent(&queue, &queue.disable, 20);
+    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.disable, 10));
+    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.stop, 10));
+    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.disable, 20));
+}
+
+/* What had been posted before the stop has acted meanwhile: nothing behind it is lost. */
+static void test_a_flush_never_brings_commands_back(void)
+{
+    put(1, 0);
+    command_queue_put_urgent(&queue, &queue.stop, 50);
+    command_queue_drop(&queue);
+    put(2, 0);
+    command_queue_drop(&queue);
+    put(3, 0);
+    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.stop, 50));
+    TEST_ASSERT_TRUE(is_due(3, 50));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_an_empty_queue_has_nothing_due);
+    RUN_TEST(test_a_command_is_due_from_its_period_on_until_it_is_dropped);
+    RUN_TEST(test_a_command_whose_period_has_passed_is_due_at_once);
+    RUN_TEST(test_commands_act_in_the_order_they_were_posted);
+    RUN_TEST(test_a_full_queue_refuses_and_loses_nothing);
+    RUN_TEST(test_the_queue_goes_round_for_ever);
+    RUN_TEST(test_the_queue_goes_on_when_its_counters_wrap);
+    RUN_TEST(test_a_command_addressed_across_the_wrap_of_the_period_waits_for_it);
+    RUN_TEST(test_a_stop_overtakes_the_commands_before_it_and_flushes_them);
+    RUN_TEST(test_an_urgent_command_is_taken_once);
+    RUN_TEST(test_of_two_stops_the_last_counts);
+    RUN_TEST(test_stop_and_disable_do_not_stand_in_each_others_way);
+    RUN_TEST(test_a_flush_never_brings_commands_back);
+    return UNITY_END();
+}

@@ -1,0 +1,277 @@
+/* The default estimator on the simulated motor: no noise, what remains is the estimator's own. */
+#include "firmware/estimator/invariant_ekf.h"
+#include "tests/unit/bench.h"
+#include "tests/unit/num_assert.h"
+
+#define HOLD_A 1.5
+
+static struct per_unit base;
+static struct motor_model_params model;
+static struct invariant_ekf_params params;
+static struct invariant_ekf ekf;
+static struct bench_motor motor;
+
+static void start_at(double angle_rad, double told_rad)
+{
+    motor = (struct bench_motor){.motor = bench_params, .angle_rad = angle_rad};
+    invariant_ekf_reset(&ekf, &params, position_from_rad(told_rad, 50), model.nominal_resistance);
+}
+
+void setUp(void)
+{
+    static bool designed = false;
+
+    if (!designed) {
+        struct invariant_ekf_gains moving;
+        struct invariant_ekf_gains holding;
+        struct invariant_ekf_gains following;
+        char error[DESIGN_ERROR_TEXT];
+
+        base = per_unit_base(&bench_params, PERIOD_S);
+        model = motor_model_design(&bench_params, &base, PERIOD_S, 0.0);
+        TEST_ASSERT_TRUE(invariant_ekf_motion_design(&bench_params, PERIOD_S, &moving, error));
+        TEST_ASSERT_TRUE(invariant_ekf_hold_design(&bench_params, PERIOD_S, HOLD_A,
+                                                   INVARIANT_EKF_HOLD_ROBUST, &holding, error));
+        TEST_ASSERT_TRUE(invariant_ekf_hold_design(&bench_params, PERIOD_S, HOLD_A,
+                                                   INVARIANT_EKF_HOLD_FAST, &following, error));
+        params = invariant_ekf_scale(&model, &base, &moving, &holding, &following);
+        designed = true;
+    }
+    start_at(0.0, 0.0);
+}
+
+void tearDown(void)
+{
+}
+
+static double electrical_deg(double mechanical_rad)
+{
+    return mechanical_rad * 50.0 * 360.0 / TWO_PI;
+}
+
+static double angle_error_electrical_deg(void)
+{
+    return electrical_deg(motor.angle_rad - position_to_rad(ekf.estimate.rotor.position, 50));
+}
+
+static double estimated_speed_rad_s(void)
+{
+    return num_to_double(ekf.estimate.rotor.speed) * base.speed_rad_s;
+}
+
+static double estimated_load_Nm(void)
+{
+    return num_to_double(ekf.estimate.rotor.load_torque) * base.torque_Nm;
+}
+
+static double estimated_resistance_ohm(void)
+{
+    return num_to_double(ekf.estimate.winding.resistance) * base.resistance_ohm;
+}
+
+static void period(struct bench_vector voltage, bool holding)
+{
+    bench_run(&motor, voltage.a, voltage.b);
+    invariant_ekf_step(&ekf, &params, bench_phases(motor.i_a, motor.i_b, base.current_A),
+                       bench_phases(voltage.a, voltage.b, base.voltage_V), holding);
+}
+
+static void turn(double speed_rad_s, int periods)
+{
+    for (int k = 0; k < periods; k++) {
+        period(bench_regulate(&motor, 0.0, bench_speed_current(&motor, speed_rad_s)), false);
+    }
+}
+
+/* i_d in a frame fixed at angle 0, as the drive holds a reference of 0. */
+static void hold(double i_q, int periods)
+{
+    for (int k = 0; k < periods; k++) {
+        const double stiffness = 0.3 * motor.motor.inductance_H / PERIOD_S;
+        const struct bench_vector voltage = {
+            motor.motor.resistance_ohm * motor.i_a + stiffness * (HOLD_A - motor.i_a),
+            motor.motor.resistance_ohm * motor.i_b + stiffness * (i_q - motor.i_b)};
+
+        period(voltage, true);
+    }
+}
+
+static void test_a_right_start_is_tracked_from_rest_through_an_acceleration(void)
+{
+    for (int k = 0; k < 40; k++) {
+        turn(45.0, 10);
+        TEST_ASSERT_DOUBLE_WITHIN(0.4, 0.0, angle_error_electrical_deg());
+        TEST_ASSERT_DOUBLE_WITHIN(0.3, motor.speed_rad_s, estimated_speed_rad_s());
+    }
+}
+
+static void test_the_estimate_locks_from_thirty_electrical_degrees_either_way(void)
+{
+    const double off = 30.0 / 360.0 * TWO_PI / 50.0;
+    static const double speeds[] = {45.0, -45.0};
+
+    for (unsigned i = 0; i < 2u; i++) {
+        for (int sign = -1; sign <= 1; sign += 2) {
+            start_at(0.0, sign * off);
+            TEST_ASSERT_DOUBLE_WITHIN(1.0, -30.0 * sign, angle_error_electrical_deg());
+            turn(speeds[i], 400);
+            TEST_ASSERT_DOUBLE_WITHIN(1.0, 0.0, angle_error_electrical_deg());
+            TEST_ASSERT_EQUAL_INT32(position_from_rad(motor.angle_rad, 50).turns,
+                                    ekf.estimate.rotor.position.turns);
+        }
+    }
+}
+
+static void test_steady_rotation_is_tracked_both_ways(void)
+{
+    static const double speeds[] = {45.0, -45.0, 2.0, -2.0, 120.0, -120.0};
+
+    for (unsigned i = 0; i < sizeof speeds / sizeof speeds[0]; i++) {
+        start_at(0.0, 0.0);
+        turn(speeds[i], 1500);
+        TEST_ASSERT_DOUBLE_WITHIN(0.2, 0.0, angle_error_electrical_deg());
+        TEST_ASSERT_DOUBLE_WITHIN(0.05, motor.speed_rad_s, estimated_speed_rad_s());
+        TEST_ASSERT_DOUBLE_WITHIN(0.3, speeds[i], motor.speed_rad_s);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, estimated_load_Nm());
+    }
+}
+
+static void test_a_reversal_through_rest_keeps_the_lock(void)
+{
+    turn(45.0, 500);
+    for (int k = 0; k < 100; k++) {
+        turn(-45.0, 10);
+        TEST_ASSERT_DOUBLE_WITHIN(1.0, 0.0, angle_error_electrical_deg());
+    }
+}
+
+static void test_a_load_of_a_tenth_Nm_is_estimated_within_ten_milliseconds(void)
+{
+    turn(45.0, 500);
+    motor.load_torque_Nm = 0.1;
+    turn(45.0, 100);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.1, estimated_load_Nm());
+    turn(45.0, 200);
+    TEST_ASSERT_DOUBLE_WITHIN(0.002, 0.1, estimated_load_Nm());
+    TEST_ASSERT_DOUBLE_WITHIN(0.5, 0.0, angle_error_electrical_deg());
+}
+
+/* Seen in a mirror (a the mirror's plane) the motor turns the other way; so must the estimate. */
+static void test_the_estimator_knows_no_preferred_direction(void)
+{
+    double speed[2];
+    double load[2];
+    double error[2];
+
+    for (int i = 0; i < 2; i++) {
+        const double sign = i == 0 ? 1.0 : -1.0;
+
+        start_at(0.0, sign * 0.005);
+        turn(sign * 30.0, 100);
+        motor.load_torque_Nm = sign * 0.1;
+        turn(sign * 30.0, 100);
+        speed[i] = estimated_speed_rad_s();
+        load[i] = estimated_load_Nm();
+        error[i] = angle_error_electrical_deg();
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(0.02, -speed[0], speed[1]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, -load[0], load[1]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.05, -error[0], error[1]);
+}
+
+/* In motion an EMF error is an angle error, not a resistance. */
+static void test_in_motion_resistance_and_bias_are_left_alone(void)
+{
+    motor.motor.resistance_ohm = 0.45;
+    turn(45.0, 300);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.37, estimated_resistance_ohm());
+    turn(0.0, 300);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.37, estimated_resistance_ohm());
+}
+
+static void test_a_hold_of_150_ms_calibrates_the_resistance_from_half_to_one_and_a_half(void)
+{
+    static const double shares[] = {0.5, 0.75, 1.0, 1.25, 1.5};
+
+    for (unsigned i = 0; i < sizeof shares / sizeof shares[0]; i++) {
+        start_at(0.0, 0.0);
+        motor.motor.resistance_ohm = shares[i] * 0.37;
+        hold(0.0, 1500);
+        TEST_ASSERT_DOUBLE_WITHIN(0.01 * motor.motor.resistance_ohm, motor.motor.resistance_ohm,
+                                  estimated_resistance_ohm());
+        TEST_ASSERT_DOUBLE_WITHIN(0.1, 0.0, angle_error_electrical_deg());
+    }
+}
+
+/*
+ * Left to the d current alone, 0.05 N m would turn the rotor by asin(T_L / (Km i_d)) = 12.3
+ * degrees. With the q current of the drive's hold, T_L/Km - 2 K_w w, it goes half as far.
+ */
+static void test_a_load_step_in_hold_is_followed_before_the_rotor_has_turned_far(void)
+{
+    static const double loads[] = {0.05, -0.05};
+
+    for (unsigned i = 0; i < 2u; i++) {
+        start_at(0.0, 0.0);
+        hold(0.0, 1000);
+        motor.load_torque_Nm = loads[i];
+        for (int k = 1; k <= 300; k++) {
+            hold(estimated_load_Nm() / 0.157 - 2.0 * 0.39 * estimated_speed_rad_s(), 1);
+            TEST_ASSERT_DOUBLE_WITHIN(0.5 * 12.3, 0.0, electrical_deg(motor.angle_rad));
+            if (k == 40) {
+                TEST_ASSERT_DOUBLE_WITHIN(0.2 * 0.05, loads[i], estimated_load_Nm());
+            }
+        }
+    }
+}
+
+/* Without motion nothing may drift: a minute of hold is 600,000 such periods. */
+static void test_a_quiet_hold_stays_where_it_is(void)
+{
+    hold(0.0, 3000);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.0, angle_error_electrical_deg());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, estimated_load_Nm());
+    TEST_ASSERT_EQUAL_UINT32(0, ekf.following_periods);
+}
+
+static void test_a_move_clears_the_bias_of_the_hold(void)
+{
+    motor.motor.resistance_ohm = 0.5;
+    hold(0.0, 20);
+    TEST_ASSERT_TRUE(num_to_double(num_abs(ekf.bias.d)) > 1e-3);
+    turn(0.0, 1);
+    TEST_ASSERT_NUM_WITHIN(0.0, 0.0, ekf.bias.d);
+    TEST_ASSERT_NUM_WITHIN(0.0, 0.0, ekf.bias.q);
+}
+
+static void test_a_reset_forgets_all_but_what_it_is_told(void)
+{
+    turn(45.0, 300);
+    hold(0.0, 50);
+    invariant_ekf_reset(&ekf, &params, position_from_rad(1.0, 50), NUM(0.1));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.0, position_to_rad(ekf.estimate.rotor.position, 50));
+    TEST_ASSERT_NUM_WITHIN(0.0, 0.0, ekf.estimate.rotor.speed);
+    TEST_ASSERT_NUM_WITHIN(0.0, 0.0, ekf.estimate.rotor.load_torque);
+    TEST_ASSERT_NUM_WITHIN(0.0, 0.0, ekf.estimate.current.a);
+    TEST_ASSERT_NUM_WITHIN(0.0, 0.0, ekf.bias.d);
+    TEST_ASSERT_NUM_WITHIN(0.0, 0.0, ekf.innovation_mean);
+    TEST_ASSERT_NUM_WITHIN(NUM_ROUNDING, 0.1, ekf.estimate.winding.resistance);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_right_start_is_tracked_from_rest_through_an_acceleration);
+    RUN_TEST(test_the_estimate_locks_from_thirty_electrical_degrees_either_way);
+    RUN_TEST(test_steady_rotation_is_tracked_both_ways);
+    RUN_TEST(test_a_reversal_through_rest_keeps_the_lock);
+    RUN_TEST(test_a_load_of_a_tenth_Nm_is_estimated_within_ten_milliseconds);
+    RUN_TEST(test_the_estimator_knows_no_preferred_direction);
+    RUN_TEST(test_in_motion_resistance_and_bias_are_left_alone);
+    RUN_TEST(test_a_hold_of_150_ms_calibrates_the_resistance_from_half_to_one_and_a_half);
+    RUN_TEST(test_a_load_step_in_hold_is_followed_before_the_rotor_has_turned_far);
+    RUN_TEST(test_a_quiet_hold_stays_where_it_is);
+    RUN_TEST(test_a_move_clears_the_bias_of_the_hold);
+    RUN_TEST(test_a_reset_forgets_all_but_what_it_is_told);
+    return UNITY_END();
+}

@@ -1,0 +1,175 @@
+/* The sensors: codes, saturation, and noise that is Gaussian, independent and repeatable. */
+#include <unity.h>
+
+#include "sil/plant/gaussian.h"
+#include "sil/plant/sensors.h"
+#include "tests/unit/plant_bench.h"
+
+void setUp()
+{
+}
+
+void tearDown()
+{
+}
+
+namespace
+{
+
+constexpr int draws = 200000;
+
+plant::Samples exact(double i_a_A, double u_a_V, double bus_V)
+{
+    plant::SensorConfig config;
+    config.exact = true;
+    return plant::Sensors(config, 1).sample(0, plant::Phases{i_a_A, 0.0},
+                                            plant::Phases{u_a_V, 0.0}, bus_V);
+}
+
+void test_zero_is_the_middle_code()
+{
+    const plant::Samples samples = exact(0.0, 0.0, 0.0);
+    TEST_ASSERT_EQUAL_UINT16(2048, samples.current_a);
+    TEST_ASSERT_EQUAL_UINT16(2048, samples.current_b);
+    TEST_ASSERT_EQUAL_INT16(0, samples.phase_voltage_a);
+    TEST_ASSERT_EQUAL_UINT16(0, samples.bus_voltage);
+}
+
+void test_codes_are_rounded_to_the_nearest()
+{
+    const double current_lsb_A = 12.0 / 4096.0;
+    const double voltage_lsb_V = 62.4 / 4096.0;
+    TEST_ASSERT_EQUAL_UINT16(2048 + 341, exact(341.49 * current_lsb_A, 0.0, 24.0).current_a);
+    TEST_ASSERT_EQUAL_UINT16(2048 + 342, exact(341.51 * current_lsb_A, 0.0, 24.0).current_a);
+    TEST_ASSERT_EQUAL_UINT16(2048 - 341, exact(-341.49 * current_lsb_A, 0.0, 24.0).current_a);
+    TEST_ASSERT_EQUAL_INT16(-100, exact(0.0, -100.4 * voltage_lsb_V, 24.0).phase_voltage_a);
+    TEST_ASSERT_EQUAL_UINT16(3151, exact(0.0, 0.0, 24.0).bus_voltage); /* 24 / 31.2 x 4096 */
+}
+
+void test_codes_clamp_at_the_ends_of_their_range()
+{
+    TEST_ASSERT_EQUAL_UINT16(4095, exact(6.0, 0.0, 24.0).current_a);
+    TEST_ASSERT_EQUAL_UINT16(4095, exact(1e300, 0.0, 24.0).current_a);
+    TEST_ASSERT_EQUAL_UINT16(0, exact(-6.1, 0.0, 24.0).current_a);
+    TEST_ASSERT_EQUAL_INT16(2047, exact(0.0, 40.0, 24.0).phase_voltage_a);
+    TEST_ASSERT_EQUAL_INT16(-2048, exact(0.0, -40.0, 24.0).phase_voltage_a);
+    TEST_ASSERT_EQUAL_UINT16(4095, exact(0.0, 0.0, 50.0).bus_voltage);
+}
+
+void test_offsets_shift_the_codes_of_their_own_channel()
+{
+    plant::SensorConfig config;
+    config.current_noise_rms_A = 0.0;
+    config.phase_voltage_noise_rms_V = 0.0;
+    config.current_offset_a_A = 3 * plant::current_A_per_code(config);
+    config.current_offset_b_A = -2 * plant::current_A_per_code(config);
+    config.phase_voltage_offset_b_V = 5 * plant::phase_voltage_V_per_code(config);
+    const plant::Samples samples =
+        plant::Sensors(config, 1).sample(7, plant::Phases{0.0, 0.0}, plant::Phases{0.0, 0.0}, 24.0);
+    TEST_ASSERT_EQUAL_UINT16(2051, samples.current_a);
+    TEST_ASSERT_EQUAL_UINT16(2046, samples.current_b);
+    TEST_ASSERT_EQUAL_INT16(0, samples.phase_voltage_a);
+    TEST_ASSERT_EQUAL_INT16(5, samples.phase_voltage_b);
+}
+
+void test_noise_in_the_codes_has_the_stated_rms()
+{
+    plant::SensorConfig config;
+    config.current_noise_rms_A = 0.1; /* 34 codes: rounding adds little */
+    const plant::Sensors sensors(config, 5);
+    double sum = 0.0, square = 0.0;
+    for (std::uint64_t k = 0; k < draws; k++) {
+        const double code =
+            sensors.sample(k, plant::Phases{0.0, 0.0}, plant::Phases{0.0, 0.0}, 24.0).current_b;
+        const double current_A = (code - 2048) * plant::current_A_per_code(config);
+        sum += current_A;
+        square += current_A * current_A;
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, sum / draws);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.1, std::sqrt(square / draws));
+}
+
+void test_noise_is_standard_normal()
+{
+    double moment[5] = {0.0, 0.0, 0.0, 0.0, 0.0};
+    int beyond_two = 0, beyond_three = 0;
+    for (std::uint64_t k = 0; k < draws; k++) {
+        const plant::Phases noise = plant::gaussian_pair(3, 1, k);
+        for (int lane = 0; lane < 2; lane++) {
+            double power = 1.0;
+            for (int n = 1; n <= 4; n++) {
+                power *= noise[lane];
+                moment[n] += power / (2.0 * draws);
+            }
+            beyond_two += std::fabs(noise[lane]) > 2.0 ? 1 : 0;
+            beyond_three += std::fabs(noise[lane]) > 3.0 ? 1 : 0;
+        }
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(0.008, 0.0, moment[1]); /* five standard errors */
+    TEST_ASSERT_DOUBLE_WITHIN(0.012, 1.0, moment[2]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.02, 0.0, moment[3]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.08, 3.0, moment[4]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0017, 0.045500, beyond_two / (2.0 * draws));
+    TEST_ASSERT_DOUBLE_WITHIN(0.00042, 0.0027, beyond_three / (2.0 * draws));
+}
+
+double correlation(std::uint64_t other_seed, std::uint64_t other_channel, std::uint64_t lag,
+                   int lane, int other_lane)
+{
+    double sum = 0.0;
+    for (std::uint64_t k = 0; k < draws; k++) {
+        sum += plant::gaussian_pair(3, 1, k)[lane] *
+               plant::gaussian_pair(other_seed, other_channel, k + lag)[other_lane];
+    }
+    return sum / draws;
+}
+
+void test_channels_periods_and_seeds_are_independent()
+{
+    const double five_standard_errors = 5.0 / std::sqrt(draws);
+    TEST_ASSERT_DOUBLE_WITHIN(five_standard_errors, 0.0, correlation(3, 1, 0, 0, 1)); /* a and b */
+    TEST_ASSERT_DOUBLE_WITHIN(five_standard_errors, 0.0, correlation(3, 2, 0, 0, 0));
+    TEST_ASSERT_DOUBLE_WITHIN(five_standard_errors, 0.0, correlation(3, 1, 1, 0, 0));
+    TEST_ASSERT_DOUBLE_WITHIN(five_standard_errors, 0.0, correlation(3, 1, 1, 1, 1));
+    TEST_ASSERT_DOUBLE_WITHIN(five_standard_errors, 0.0, correlation(4, 1, 0, 0, 0));
+    TEST_ASSERT_DOUBLE_WITHIN(0.02, 1.0, correlation(3, 1, 0, 0, 0)); /* the test can tell */
+}
+
+void test_the_same_seed_repeats_a_run_and_another_does_not()
+{
+    plant::Config config = bench::config();
+    config.sensors.exact = false;
+    config.seed = 11;
+    plant::Plant first(config);
+    plant::Plant again(config);
+    config.seed = 12;
+    plant::Plant other(config);
+    int different = 0;
+    for (int k = 0; k < 200; k++) {
+        const plant::Duties duties = bench::voltages(1.0, 0.5);
+        first.step(duties);
+        again.step(duties);
+        other.step(duties);
+        TEST_ASSERT_EQUAL_UINT16(first.samples().current_a, again.samples().current_a);
+        TEST_ASSERT_EQUAL_INT16(first.samples().phase_voltage_b, again.samples().phase_voltage_b);
+        TEST_ASSERT_TRUE(first.state().i_a_A == other.state().i_a_A); /* noise is not physics */
+        different += first.samples().current_a != other.samples().current_a ? 1 : 0;
+    }
+    TEST_ASSERT_TRUE(different > 50);
+}
+
+} // namespace
+
+int main()
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_zero_is_the_middle_code);
+    RUN_TEST(test_codes_are_rounded_to_the_nearest);
+    RUN_TEST(test_codes_clamp_at_the_ends_of_their_range);
+    RUN_TEST(test_offsets_shift_the_codes_of_their_own_channel);
+    RUN_TEST(test_noise_in_the_codes_has_the_stated_rms);
+    RUN_TEST(test_noise_is_standard_normal);
+    RUN_TEST(test_channels_periods_and_seeds_are_independent);
+    RUN_TEST(test_the_same_seed_repeats_a_run_and_another_does_not);
+    return UNITY_END();
+}

@@ -1,0 +1,198 @@
+/* What a drive may be told before it is enabled. */
+#include <stddef.h>
+#include <string.h>
+
+#include "firmware/drive/drive_interface.h"
+#include "tests/unit/bench.h"
+#include "tests/unit/num_assert.h"
+
+static struct drive_settings settings;
+static char error[DRIVE_ERROR_TEXT];
+
+void setUp(void)
+{
+    drive_settings_default(&settings, &bench_params);
+    error[0] = '\0';
+}
+
+void tearDown(void)
+{
+}
+
+static void test_the_defaults_are_those_of_the_interface(void)
+{
+    TEST_ASSERT_EQUAL_MEMORY(&bench_params, &settings.motor, sizeof bench_params);
+    TEST_ASSERT_EQUAL(POSITION_LAW_STATE_FEEDBACK, settings.law);
+    TEST_ASSERT_EQUAL(DRIVE_ESTIMATOR_INVARIANT_EKF, settings.estimator);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 200.0, settings.law_bandwidth_rad_s);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 1500.0, settings.current_bandwidth_rad_s);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 3.0, settings.current_limit_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 5.4, settings.overcurrent_trip_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.3 * 24.0 / 0.157, settings.speed_limit_rad_s);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.5, settings.hold_current_A);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.010, settings.hold_ramp_s);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.015, settings.hold_delay_s);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.150, settings.hold_on_enable_s);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, settings.initial_angle_rad);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, settings.initial_angle_error_rad);
+    TEST_ASSERT_TRUE(settings.feed_forward);
+    TEST_ASSERT_TRUE(settings.resistance_adaptation);
+    TEST_ASSERT_TRUE(settings.calibrate_offsets);
+    TEST_ASSERT_TRUE(settings.hold_on_enable);
+}
+
+static void test_the_defaults_pass_the_check(void)
+{
+    TEST_ASSERT_TRUE(drive_settings_check(&settings, error));
+}
+
+/* The contract once more, from outside: name, range for a motor rated 3 A, unit. */
+static const struct {
+    const char *name;
+    size_t offset;
+    double min, max;
+    const char *unit;
+} ranges[] = {
+#define MOTOR(field) #field, offsetof(struct drive_settings, motor.field)
+#define FIELD(field) #field, offsetof(struct drive_settings, field)
+    {MOTOR(resistance_ohm), 1e-3, 1e3, "ohm"},
+    {MOTOR(inductance_H), 1e-6, 1.0, "H"},
+    {MOTOR(torque_constant_Nm_A), 1e-4, 100.0, "N m/A"},
+    {MOTOR(viscous_friction_Nms_rad), 0.0, 10.0, "N m s/rad"},
+    {MOTOR(inertia_kgm2), 1e-9, 10.0, "kg m2"},
+    {MOTOR(supply_V), 5.0, 400.0, "V"},
+    {FIELD(law_bandwidth_rad_s), 1.0, 1e4, "rad/s"},
+    {FIELD(current_bandwidth_rad_s), 10.0, 1e5, "rad/s"},
+    {FIELD(current_limit_A), 0.01 * 3.0, 2.0 * 3.0, "A"},
+    {FIELD(overcurrent_trip_A), 0.1 * 3.0, 4.0 * 3.0, "A"},
+    {FIELD(speed_limit_rad_s), 0.1, 1e4, "rad/s"},
+    {FIELD(hold_current_A), 0.01 * 3.0, 3.0, "A"},
+    {FIELD(hold_ramp_s), 1e-3, 1.0, "s"},
+    {FIELD(hold_delay_s), 0.0, 100.0, "s"},
+    {FIELD(hold_on_enable_s), 0.01, 10.0, "s"},
+    {FIELD(initial_angle_rad), -1e4, 1e4, "rad"},
+    {FIELD(initial_angle_error_rad), -10.0, 10.0, "rad"},
+};
+
+enum { RANGES = sizeof ranges / sizeof ranges[0] };
+
+static bool accepts(int range, double value)
+{
+    setUp();
+    memcpy((char *)&settings + ranges[range].offset, &value, sizeof value);
+    return drive_settings_check(&settings, error);
+}
+
+static bool contains(const char *text)
+{
+    return strstr(error, text) != NULL;
+}
+
+static void test_every_setting_may_take_the_bounds_of_its_range(void)
+{
+    for (int i = 0; i < RANGES; i++) {
+        TEST_ASSERT_TRUE_MESSAGE(accepts(i, ranges[i].min), error);
+        TEST_ASSERT_TRUE_MESSAGE(accepts(i, ranges[i].max), error);
+    }
+}
+
+static void refused_with(int range, double value, const char *relation)
+{
+    TEST_ASSERT_FALSE_MESSAGE(accepts(range, value), ranges[range].name);
+    TEST_ASSERT_EQUAL_MEMORY_MESSAGE(ranges[range].name, error, strlen(ranges[range].name), error);
+    TEST_ASSERT_TRUE_MESSAGE(contains(relation), error);
+    TEST_ASSERT_TRUE_MESSAGE(contains(ranges[range].unit), error);
+}
+
+static void test_every_setting_is_refused_beyond_its_range_by_name_bound_and_unit(void)
+{
+    for (int i = 0; i < RANGES; i++) {
+        const double below = ranges[i].min > 0.0 ? 0.999 * ranges[i].min : ranges[i].min - 1e-3;
+
+        refused_with(i, below, "must be at least");
+        refused_with(i, 1.001 * ranges[i].max, "must be at most");
+    }
+}
+
+static void test_a_setting_that_is_not_finite_is_refused(void)
+{
+    for (int i = 0; i < RANGES; i++) {
+        TEST_ASSERT_FALSE(accepts(i, __builtin_nan("")));
+        TEST_ASSERT_TRUE(contains("(not finite)"));
+        TEST_ASSERT_FALSE(accepts(i, __builtin_inf()));
+        TEST_ASSERT_FALSE(accepts(i, -__builtin_inf()));
+    }
+}
+
+static void test_a_refusal_says_what_was_asked_and_what_is_allowed(void)
+{
+    settings.hold_current_A = 3.5;
+    TEST_ASSERT_FALSE(drive_settings_check(&settings, error));
+    TEST_ASSERT_EQUAL_STRING(
+        "hold_current_A 3.5 A: must be at most 3 A, the range of this setting", error);
+    setUp();
+    settings.motor.rotor_teeth = 0;
+    TEST_ASSERT_FALSE(drive_settings_check(&settings, error));
+    TEST_ASSERT_EQUAL_MEMORY("rotor_teeth 0 ", error, 14);
+    settings.motor.rotor_teeth = 1001;
+    TEST_ASSERT_FALSE(drive_settings_check(&settings, error));
+    TEST_ASSERT_TRUE(contains("1000"));
+}
+
+/* The currents are bounded in shares of it, so it comes with them. */
+static void test_the_rated_current_has_a_range_of_its_own(void)
+{
+    static const double accepted[] = {0.01, 1.0, 50.0};
+    static const double refused[] = {0.0, 0.0099, 50.1, -3.0};
+
+    for (unsigned i = 0; i < sizeof accepted / sizeof accepted[0]; i++) {
+        struct motor_params motor = bench_params;
+
+        motor.rated_current_A = accepted[i];
+        drive_settings_default(&settings, &motor);
+        TEST_ASSERT_TRUE_MESSAGE(drive_settings_check(&settings, error), error);
+    }
+    for (unsigned i = 0; i < sizeof refused / sizeof refused[0]; i++) {
+        struct motor_params motor = bench_params;
+
+        motor.rated_current_A = refused[i];
+        drive_settings_default(&settings, &motor);
+        TEST_ASSERT_FALSE(drive_settings_check(&settings, error));
+        TEST_ASSERT_EQUAL_MEMORY("rated_current_A ", error, 16);
+    }
+}
+
+static void test_names_are_spelt_as_scenarios_and_the_serial_line_do(void)
+{
+    static const char *const states[DRIVE_STATES] = {
+        "switch-on-disabled", "calibrating-offsets", "aligning", "operation-enabled", "fault"};
+    static const char *const faults[DRIVE_FAULTS] = {
+        "none",        "overcurrent",    "hardware-overcurrent", "deadline-missed",
+        "bus-voltage", "estimate-range", "offset-range"};
+
+    for (int i = 0; i < DRIVE_STATES; i++) {
+        TEST_ASSERT_EQUAL_STRING(states[i], drive_state_name((enum drive_state)i));
+    }
+    for (int i = 0; i < DRIVE_FAULTS; i++) {
+        TEST_ASSERT_EQUAL_STRING(faults[i], drive_fault_name((enum drive_fault)i));
+    }
+    TEST_ASSERT_EQUAL_STRING("state-feedback", drive_law_name(POSITION_LAW_STATE_FEEDBACK));
+    TEST_ASSERT_EQUAL_STRING("pid", drive_law_name(POSITION_LAW_PID));
+    TEST_ASSERT_EQUAL_STRING("invariant-ekf", drive_estimator_name(DRIVE_ESTIMATOR_INVARIANT_EKF));
+    TEST_ASSERT_EQUAL_STRING("steady-state-ekf",
+                             drive_estimator_name(DRIVE_ESTIMATOR_STEADY_STATE_EKF));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_the_defaults_are_those_of_the_interface);
+    RUN_TEST(test_the_defaults_pass_the_check);
+    RUN_TEST(test_every_setting_may_take_the_bounds_of_its_range);
+    RUN_TEST(test_every_setting_is_refused_beyond_its_range_by_name_bound_and_unit);
+    RUN_TEST(test_a_setting_that_is_not_finite_is_refused);
+    RUN_TEST(test_a_refusal_says_what_was_asked_and_what_is_allowed);
+    RUN_TEST(test_the_rated_current_has_a_range_of_its_own);
+    RUN_TEST(test_names_are_spelt_as_scenarios_and_the_serial_line_do);
+    return UNITY_END();
+}

@@ -1,0 +1,560 @@
+/* The states of the drive and what leads from one to the next, on a board where nothing moves. */
+#include <string.h>
+
+#include "tests/unit/fake_board.h"
+#include "tests/unit/num_assert.h"
+
+#define HOLD_PERIODS 100u /* of the hold on enable, 10 ms */
+
+static struct drive drive;
+static struct drive_settings settings;
+static struct hal_samples samples;
+static struct hal_outputs outputs;
+static char error[DRIVE_ERROR_TEXT];
+
+static void power_up(void)
+{
+    TEST_ASSERT_TRUE_MESSAGE(drive_init(&drive, &fake_hal, &settings, error), error);
+}
+
+void setUp(void)
+{
+    drive_settings_default(&settings, &bench_params);
+    settings.hold_on_enable_s = HOLD_PERIODS * PERIOD_S;
+    fake_board = (struct fake_board){.trip_latched = false};
+    samples = samples_at_rest;
+    power_up();
+}
+
+void tearDown(void)
+{
+}
+
+static void run(uint32_t periods)
+{
+    for (uint32_t k = 0; k < periods; k++) {
+        outputs = drive_control_cycle(&drive, &samples);
+    }
+}
+
+static bool post(struct drive_command command)
+{
+    return drive_command(&drive, &command, error);
+}
+
+static void must_post(struct drive_command command)
+{
+    TEST_ASSERT_TRUE_MESSAGE(post(command), error);
+}
+
+static void post_kind(enum drive_command_kind kind)
+{
+    must_post((struct drive_command){.kind = kind});
+}
+
+static struct drive_command move_to(double position_rad)
+{
+    return (struct drive_command){.kind = DRIVE_COMMAND_MOVE_TRAPEZOID,
+                                  .position_rad = position_rad,
+                                  .duration_s = 0.02,
+                                  .ramp_s = 0.005};
+}
+
+enum { MOVE_PERIODS = 200 };
+
+static void is_in(enum drive_state state, bool bridge_on)
+{
+    TEST_ASSERT_EQUAL_STRING(drive_state_name(state), drive_state_name(drive.state));
+    TEST_ASSERT_EQUAL(bridge_on, outputs.bridge_on);
+}
+
+static void has_fault(enum drive_fault fault)
+{
+    is_in(DRIVE_FAULT, false);
+    TEST_ASSERT_EQUAL_STRING(drive_fault_name(fault), drive_fault_name(drive.fault));
+}
+
+/* Ready by the shortest way. */
+static void enable(void)
+{
+    settings.calibrate_offsets = false;
+    settings.hold_on_enable = false;
+    power_up();
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(1);
+    is_in(DRIVE_OPERATION_ENABLED, true);
+}
+
+static struct drive_signals signals(void)
+{
+    struct drive_signals now;
+
+    drive_signals_read(&drive, &now);
+    return now;
+}
+
+static void the_reference_is_at(double position_rad)
+{
+    TEST_ASSERT_DOUBLE_WITHIN(1e-8, position_rad, signals().theta_ref_rad);
+}
+
+/* ---- the way to operation ---- */
+
+static void test_a_drive_powers_up_disabled_and_stays_so(void)
+{
+    run(100);
+    is_in(DRIVE_SWITCH_ON_DISABLED, false);
+    TEST_ASSERT_EQUAL(DRIVE_FAULT_NONE, drive.fault);
+    TEST_ASSERT_FALSE(fake_board.bridge_enabled);
+}
+
+static void test_enabling_goes_through_offsets_and_alignment_to_operation(void)
+{
+    post_kind(DRIVE_COMMAND_ENABLE);
+    TEST_ASSERT_TRUE(fake_board.bridge_enabled);
+    run(1);
+    is_in(DRIVE_CALIBRATING_OFFSETS, false);
+    run(OFFSET_SAMPLES - 2u);
+    is_in(DRIVE_CALIBRATING_OFFSETS, false);
+    run(1);
+    is_in(DRIVE_ALIGNING, true);
+    TEST_ASSERT_TRUE(signals().holding);
+    run(HOLD_PERIODS);
+    is_in(DRIVE_ALIGNING, true);
+    run(1);
+    is_in(DRIVE_OPERATION_ENABLED, true);
+    TEST_ASSERT_TRUE(signals().holding);
+}
+
+static void test_without_calibration_enabling_begins_with_the_alignment(void)
+{
+    settings.calibrate_offsets = false;
+    power_up();
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(1);
+    is_in(DRIVE_ALIGNING, true);
+    run(HOLD_PERIODS + 1u);
+    is_in(DRIVE_OPERATION_ENABLED, true);
+}
+
+static void test_without_hold_on_enable_operation_follows_the_calibration(void)
+{
+    settings.hold_on_enable = false;
+    power_up();
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(OFFSET_SAMPLES - 1u);
+    is_in(DRIVE_CALIBRATING_OFFSETS, false);
+    run(1);
+    is_in(DRIVE_OPERATION_ENABLED, true);
+    TEST_ASSERT_FALSE(signals().holding);
+}
+
+static void test_without_either_the_drive_is_ready_in_the_same_period(void)
+{
+    enable();
+    TEST_ASSERT_FALSE(signals().holding);
+}
+
+static void test_the_hold_current_is_in_when_the_alignment_ends(void)
+{
+    settings.calibrate_offsets = false;
+    power_up();
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(HOLD_PERIODS + 1u);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 1.5, signals().i_d_ref_A);
+}
+
+static void test_enabling_waits_for_the_period_it_is_addressed_to(void)
+{
+    settings.calibrate_offsets = false;
+    power_up();
+    must_post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE, .at_period = 7});
+    run(7); /* periods 0...6 */
+    is_in(DRIVE_SWITCH_ON_DISABLED, false);
+    run(1);
+    is_in(DRIVE_ALIGNING, true);
+    TEST_ASSERT_EQUAL_UINT32(7, signals().period);
+}
+
+static void test_enabling_is_refused_while_the_boards_trip_is_latched(void)
+{
+    fake_board.trip_latched = true;
+    TEST_ASSERT_FALSE(post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE}));
+    TEST_ASSERT_EQUAL_STRING("enable refused: the board's overcurrent trip is latched", error);
+    run(10);
+    is_in(DRIVE_SWITCH_ON_DISABLED, false);
+}
+
+static void test_a_drive_starts_at_the_angle_it_is_told(void)
+{
+    settings.initial_angle_rad = 0.3;
+    settings.initial_angle_error_rad = -0.05;
+    enable();
+    the_reference_is_at(0.25);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, 0.25, signals().theta_est_rad);
+}
+
+static void test_enabling_an_enabled_drive_changes_nothing(void)
+{
+    enable();
+    must_post(move_to(0.1));
+    run(MOVE_PERIODS + 2);
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(1);
+    is_in(DRIVE_OPERATION_ENABLED, true);
+    the_reference_is_at(0.1);
+    must_post(move_to(0.2));
+    run(MOVE_PERIODS + 2);
+    the_reference_is_at(0.2);
+}
+
+/* ---- disabling ---- */
+
+static void disabling_works_at_once(void)
+{
+    post_kind(DRIVE_COMMAND_DISABLE);
+    run(1);
+    is_in(DRIVE_SWITCH_ON_DISABLED, false);
+    run(50);
+    is_in(DRIVE_SWITCH_ON_DISABLED, false);
+    TEST_ASSERT_EQUAL(DRIVE_FAULT_NONE, drive.fault);
+}
+
+static void test_a_drive_can_be_disabled_from_everywhere(void)
+{
+    disabling_works_at_once(); /* disabled already */
+
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(100);
+    is_in(DRIVE_CALIBRATING_OFFSETS, false);
+    disabling_works_at_once();
+
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(OFFSET_SAMPLES + 10u);
+    is_in(DRIVE_ALIGNING, true);
+    disabling_works_at_once();
+
+    enable();
+    disabling_works_at_once();
+
+    enable();
+    must_post(move_to(0.2));
+    run(50);
+    TEST_ASSERT_TRUE(signals().reference_moving);
+    disabling_works_at_once();
+
+    enable();
+    samples.flags = HAL_FLAG_OVERCURRENT_TRIP;
+    run(1);
+    is_in(DRIVE_FAULT, false);
+    disabling_works_at_once();
+}
+
+static void test_a_disable_flushes_the_moves_before_it(void)
+{
+    enable();
+    must_post(move_to(0.1));
+    must_post(move_to(0.2));
+    post_kind(DRIVE_COMMAND_DISABLE);
+    run(1);
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(2 * MOVE_PERIODS);
+    the_reference_is_at(0.0);
+}
+
+static void test_after_disabling_the_drive_can_be_enabled_and_moved_again(void)
+{
+    enable();
+    must_post(move_to(0.2));
+    run(50);
+    post_kind(DRIVE_COMMAND_DISABLE);
+    run(1);
+    post_kind(DRIVE_COMMAND_ENABLE);
+    must_post(move_to(0.1));
+    run(MOVE_PERIODS + 3);
+    is_in(DRIVE_OPERATION_ENABLED, true);
+    the_reference_is_at(0.1);
+}
+
+/* ---- faults ---- */
+
+static void opens_the_bridge_at_once(struct hal_samples faulty, enum drive_fault fault)
+{
+    enable();
+    run(10);
+    is_in(DRIVE_OPERATION_ENABLED, true);
+    samples = faulty;
+    run(1);
+    has_fault(fault);
+    samples = samples_at_rest;
+    run(100);
+    has_fault(fault);
+}
+
+static void test_every_fault_opens_the_bridge_in_the_period_of_its_sample_and_stays(void)
+{
+    struct hal_samples faulty = samples_at_rest;
+
+    faulty.flags = HAL_FLAG_OVERCURRENT_TRIP;
+    opens_the_bridge_at_once(faulty, DRIVE_FAULT_HARDWARE_OVERCURRENT);
+    faulty.flags = HAL_FLAG_DEADLINE_MISSED;
+    opens_the_bridge_at_once(faulty, DRIVE_FAULT_DEADLINE_MISSED);
+    faulty = samples_at_rest;
+    faulty.current_b = 4000;
+    opens_the_bridge_at_once(faulty, DRIVE_FAULT_OVERCURRENT);
+    faulty = samples_at_rest;
+    faulty.bus_voltage = 1000;
+    opens_the_bridge_at_once(faulty, DRIVE_FAULT_BUS_VOLTAGE);
+}
+
+static void test_a_fault_while_aligning_opens_the_bridge_too(void)
+{
+    settings.calibrate_offsets = false;
+    power_up();
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(10);
+    samples.bus_voltage = 4095;
+    run(1);
+    has_fault(DRIVE_FAULT_BUS_VOLTAGE);
+}
+
+/* The bridge stays open even in the period that turns it on. */
+static void test_a_supply_that_is_missing_on_enable_is_a_fault_before_the_bridge_is_on(void)
+{
+    settings.calibrate_offsets = false;
+    power_up();
+    samples.bus_voltage = 0;
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(1);
+    has_fault(DRIVE_FAULT_BUS_VOLTAGE);
+}
+
+static void test_an_offset_out_of_range_is_a_fault(void)
+{
+    samples.current_a = 2048 + OFFSET_CODES_MAX + 1;
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(OFFSET_SAMPLES);
+    has_fault(DRIVE_FAULT_OFFSET_RANGE);
+}
+
+static void test_a_disabled_drive_needs_no_supply(void)
+{
+    samples.bus_voltage = 0;
+    samples.flags = HAL_FLAG_DEADLINE_MISSED;
+    run(10);
+    is_in(DRIVE_SWITCH_ON_DISABLED, false);
+    TEST_ASSERT_EQUAL(DRIVE_FAULT_NONE, drive.fault);
+}
+
+static void test_an_estimate_out_of_range_opens_the_bridge_in_the_same_period(void)
+{
+    enable();
+    run(10);
+    drive.estimator.invariant.estimate.rotor.speed = NUM(1.5);
+    run(1);
+    has_fault(DRIVE_FAULT_ESTIMATE_RANGE);
+}
+
+#if STEADYSTEP_NUM != NUM_FIXED
+static void test_an_estimate_that_is_not_finite_opens_the_bridge_in_the_same_period(void)
+{
+    enable();
+    run(10);
+    drive.estimator.invariant.estimate.rotor.load_torque = (num_t)__builtin_nan("");
+    run(1);
+    has_fault(DRIVE_FAULT_ESTIMATE_RANGE);
+    post_kind(DRIVE_COMMAND_DISABLE);
+    run(1);
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(10);
+    is_in(DRIVE_OPERATION_ENABLED, true);
+}
+#endif
+
+static void test_a_fault_is_cleared_by_disabling_only(void)
+{
+    enable();
+    samples.flags = HAL_FLAG_DEADLINE_MISSED;
+    run(1);
+    samples.flags = 0;
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(10);
+    has_fault(DRIVE_FAULT_DEADLINE_MISSED);
+    post_kind(DRIVE_COMMAND_STOP);
+    run(10);
+    has_fault(DRIVE_FAULT_DEADLINE_MISSED);
+    post_kind(DRIVE_COMMAND_DISABLE);
+    run(1);
+    is_in(DRIVE_SWITCH_ON_DISABLED, false);
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(1);
+    is_in(DRIVE_OPERATION_ENABLED, true);
+    TEST_ASSERT_EQUAL(DRIVE_FAULT_NONE, drive.fault);
+}
+
+/* ---- moves, stops, holds ---- */
+
+static void test_moves_follow_one_another_without_waiting_to_be_posted(void)
+{
+    enable();
+    must_post(move_to(0.1));
+    must_post(move_to(0.25));
+    run(MOVE_PERIODS + 2);
+    the_reference_is_at(0.1);
+    run(MOVE_PERIODS + 1);
+    the_reference_is_at(0.25);
+    TEST_ASSERT_FALSE(signals().reference_moving);
+}
+
+static void test_a_stop_brings_the_reference_to_rest_short_of_its_target(void)
+{
+    enable();
+    must_post(move_to(0.2));
+    run(80);
+    post_kind(DRIVE_COMMAND_STOP);
+    run(1);
+    TEST_ASSERT_TRUE(signals().reference_moving);
+    run(60);
+    TEST_ASSERT_FALSE(signals().reference_moving);
+    TEST_ASSERT_TRUE(signals().theta_ref_rad > 0.05);
+    TEST_ASSERT_TRUE(signals().theta_ref_rad < 0.15);
+    is_in(DRIVE_OPERATION_ENABLED, true);
+}
+
+static void test_a_stop_overtakes_the_moves_that_wait(void)
+{
+    enable();
+    must_post(move_to(0.2));
+    must_post(move_to(0.4));
+    run(80);
+    post_kind(DRIVE_COMMAND_STOP);
+    run(3 * MOVE_PERIODS);
+    TEST_ASSERT_TRUE(signals().theta_ref_rad < 0.2);
+}
+
+static void test_moves_are_refused_while_a_stop_is_under_way_and_accepted_after(void)
+{
+    enable();
+    must_post(move_to(0.2));
+    run(80);
+    post_kind(DRIVE_COMMAND_STOP);
+    TEST_ASSERT_FALSE(post(move_to(0.3)));
+    TEST_ASSERT_EQUAL_STRING("move refused: the reference has not come to rest after the stop",
+                             error);
+    run(1);
+    TEST_ASSERT_FALSE(post(move_to(0.3)));
+    run(60);
+    must_post(move_to(0.3));
+    run(MOVE_PERIODS + 2);
+    the_reference_is_at(0.3);
+}
+
+static void test_a_stop_at_rest_is_harmless(void)
+{
+    enable();
+    post_kind(DRIVE_COMMAND_STOP);
+    run(1);
+    must_post(move_to(0.1));
+    run(MOVE_PERIODS + 2);
+    the_reference_is_at(0.1);
+}
+
+static void test_a_move_before_the_drive_is_ready_is_not_made_and_leaves_no_trace(void)
+{
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(10);
+    must_post(move_to(0.1));
+    run(OFFSET_SAMPLES + HOLD_PERIODS + 10u);
+    is_in(DRIVE_OPERATION_ENABLED, true);
+    the_reference_is_at(0.0);
+    must_post(move_to(0.2));
+    run(MOVE_PERIODS + 2);
+    the_reference_is_at(0.2);
+}
+
+static void test_a_hold_command_holds_without_the_delay(void)
+{
+    enable();
+    run(3);
+    TEST_ASSERT_FALSE(signals().holding);
+    post_kind(DRIVE_COMMAND_HOLD);
+    run(1);
+    TEST_ASSERT_TRUE(signals().holding);
+}
+
+static void test_the_drive_holds_by_itself_15_ms_after_a_move(void)
+{
+    enable();
+    must_post(move_to(0.003)); /* near, for a board where nothing moves */
+    run(1);
+    while (signals().reference_moving || drive.reference.next.moving) {
+        run(1);
+    }
+    run(149);
+    TEST_ASSERT_FALSE(signals().holding);
+    run(1);
+    TEST_ASSERT_TRUE(signals().holding);
+}
+
+static void test_a_move_too_fast_is_refused_and_the_next_one_starts_where_the_last_ended(void)
+{
+    enable();
+    must_post(move_to(0.1));
+    TEST_ASSERT_FALSE(post(move_to(50.0)));
+    TEST_ASSERT_TRUE(strstr(error, "must be at most") != NULL);
+    must_post(move_to(0.2));
+    run(2 * MOVE_PERIODS + 3);
+    the_reference_is_at(0.2);
+}
+
+static void test_a_seventeenth_command_is_refused(void)
+{
+    enable();
+    for (int i = 0; i < 16; i++) {
+        must_post(move_to(0.01 * i));
+    }
+    TEST_ASSERT_FALSE(post(move_to(0.2)));
+    TEST_ASSERT_EQUAL_STRING("command refused: 16 commands are waiting already", error);
+    post_kind(DRIVE_COMMAND_DISABLE);
+    run(1);
+    is_in(DRIVE_SWITCH_ON_DISABLED, false);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_drive_powers_up_disabled_and_stays_so);
+    RUN_TEST(test_enabling_goes_through_offsets_and_alignment_to_operation);
+    RUN_TEST(test_without_calibration_enabling_begins_with_the_alignment);
+    RUN_TEST(test_without_hold_on_enable_operation_follows_the_calibration);
+    RUN_TEST(test_without_either_the_drive_is_ready_in_the_same_period);
+    RUN_TEST(test_the_hold_current_is_in_when_the_alignment_ends);
+    RUN_TEST(test_enabling_waits_for_the_period_it_is_addressed_to);
+    RUN_TEST(test_enabling_is_refused_while_the_boards_trip_is_latched);
+    RUN_TEST(test_a_drive_starts_at_the_angle_it_is_told);
+    RUN_TEST(test_enabling_an_enabled_drive_changes_nothing);
+    RUN_TEST(test_a_drive_can_be_disabled_from_everywhere);
+    RUN_TEST(test_a_disable_flushes_the_moves_before_it);
+    RUN_TEST(test_after_disabling_the_drive_can_be_enabled_and_moved_again);
+    RUN_TEST(test_every_fault_opens_the_bridge_in_the_period_of_its_sample_and_stays);
+    RUN_TEST(test_a_fault_while_aligning_opens_the_bridge_too);
+    RUN_TEST(test_a_supply_that_is_missing_on_enable_is_a_fault_before_the_bridge_is_on);
+    RUN_TEST(test_an_offset_out_of_range_is_a_fault);
+    RUN_TEST(test_a_disabled_drive_needs_no_supply);
+    RUN_TEST(test_an_estimate_out_of_range_opens_the_bridge_in_the_same_period);
+#if STEADYSTEP_NUM != NUM_FIXED
+    RUN_TEST(test_an_estimate_that_is_not_finite_opens_the_bridge_in_the_same_period);
+#endif
+    RUN_TEST(test_a_fault_is_cleared_by_disabling_only);
+    RUN_TEST(test_moves_follow_one_another_without_waiting_to_be_posted);
+    RUN_TEST(test_a_stop_brings_the_reference_to_rest_short_of_its_target);
+    RUN_TEST(test_a_stop_overtakes_the_moves_that_wait);
+    RUN_TEST(test_moves_are_refused_while_a_stop_is_under_way_and_accepted_after);
+    RUN_TEST(test_a_stop_at_rest_is_harmless);
+    RUN_TEST(test_a_move_before_the_drive_is_ready_is_not_made_and_leaves_no_trace);
+    RUN_TEST(test_a_hold_command_holds_without_the_delay);
+    RUN_TEST(test_the_drive_holds_by_itself_15_ms_after_a_move);
+    RUN_TEST(test_a_move_too_fast_is_refused_and_the_next_one_starts_where_the_last_ended);
+    RUN_TEST(test_a_seventeenth_command_is_refused);
+    return UNITY_END();
+}
