@@ -29,9 +29,9 @@ static struct dq limit_voltage(struct dq v, num_t limit)
     struct dq limited;
     num_t q_limit;
 
-    limited.d = num_clamp(v.d, -limit, limit);
+    limited.d = num_limit(v.d, limit);
     q_limit = num_sqrt(num_mul(limit, limit) - num_mul(limited.d, limited.d));
-    limited.q = num_clamp(v.q, -q_limit, q_limit);
+    limited.q = num_limit(v.q, q_limit);
     return limited;
 }
 

@@ -2,10 +2,13 @@
 
 struct modulator_params modulator_design(uint32_t half_period_counts)
 {
-    struct modulator_params params;
-
-    params.half_period_counts = (int32_t)half_period_counts;
-    params.counts = coef_from_double((double)half_period_counts / 2.0 * NUM_COUNT_SCALE);
+    const double half = (double)half_period_counts / 2.0;
+    const struct modulator_params params = {
+        .half_period_counts = (int32_t)half_period_counts,
+        .counts_max = (int32_t)(half * (1.0 + MODULATION_MAX)),
+        .counts = coef_from_double(half * NUM_COUNT_SCALE),
+        .voltage_per_count = coef_from_double(NUM_CODE_SCALE / half),
+    };
     return params;
 }
 
@@ -34,30 +37,37 @@ num_t modulator_voltage_limit(const struct modulator *modulator)
     return num_mul(modulator->bus, NUM(MODULATION_MAX));
 }
 
-static struct leg_pair leg_counts(const struct modulator_params *params, num_t modulation)
+static struct leg_pair leg_counts(const struct modulator *modulator,
+                                  const struct modulator_params *params, num_t voltage)
 {
-    const int32_t counts = counts_from_num(modulation, params->counts);
-    const int32_t middle = params->half_period_counts / 2;
-    const struct leg_pair legs = {(uint16_t)(middle + counts), (uint16_t)(middle - counts)};
+    const num_t m = num_mul(voltage, modulator->bus_reciprocal);
+    const int32_t counts_min = params->half_period_counts - params->counts_max;
+    int32_t plus = counts_from_num(m, params->counts, params->half_period_counts / 2);
 
+    plus = plus < params->counts_max ? plus : params->counts_max;
+    plus = plus > counts_min ? plus : counts_min;
+    const struct leg_pair legs = {(uint16_t)plus, (uint16_t)(params->half_period_counts - plus)};
     return legs;
 }
 
-static num_t modulation_of(const struct modulator *modulator, num_t voltage)
+static num_t voltage_of(const struct modulator *modulator, const struct modulator_params *params,
+                        struct leg_pair legs)
 {
-    return num_clamp(num_mul(voltage, modulator->bus_reciprocal), NUM(-MODULATION_MAX),
-                     NUM(MODULATION_MAX));
+    const num_t m = num_from_code((int32_t)legs.plus - params->half_period_counts / 2,
+                                  params->voltage_per_count);
+
+    return num_mul(m, modulator->bus);
 }
 
 struct modulation modulator_step(const struct modulator *modulator,
                                  const struct modulator_params *params, struct phases voltage)
 {
-    const num_t m_a = modulation_of(modulator, voltage.a);
-    const num_t m_b = modulation_of(modulator, voltage.b);
+    const struct leg_pair a = leg_counts(modulator, params, voltage.a);
+    const struct leg_pair b = leg_counts(modulator, params, voltage.b);
     const struct modulation out = {
-        .a = leg_counts(params, m_a),
-        .b = leg_counts(params, m_b),
-        .voltage = {num_mul(m_a, modulator->bus), num_mul(m_b, modulator->bus)},
+        .a = a,
+        .b = b,
+        .voltage = {voltage_of(modulator, params, a), voltage_of(modulator, params, b)},
     };
     return out;
 }

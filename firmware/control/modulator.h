@@ -14,7 +14,9 @@
 
 struct modulator_params {
     int32_t half_period_counts;
-    coef_t counts; /* modulation to counts of one leg, see modulator.c */
+    int32_t counts_max;       /* of a leg, at MODULATION_MAX */
+    coef_t counts;            /* modulation to counts of one leg */
+    coef_t voltage_per_count; /* at nominal bus */
 };
 
 struct modulator {
@@ -44,6 +46,7 @@ void modulator_track_bus(struct modulator *modulator, num_t bus);
 /* Largest voltage vector that can be commanded in any direction. */
 num_t modulator_voltage_limit(const struct modulator *modulator);
 
+/* `voltage` of at most a few times the bus. */
 struct modulation modulator_step(const struct modulator *modulator,
                                  const struct modulator_params *params, struct phases voltage);
 

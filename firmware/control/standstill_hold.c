@@ -49,5 +49,5 @@ num_t standstill_hold_torque_current(const struct standstill_hold_params *params
 {
     num_t current = load_torque - num_mul_coef(speed, params->damping);
 
-    return num_clamp(current, -params->current_limit, params->current_limit);
+    return num_limit(current, params->current_limit);
 }

@@ -29,5 +29,5 @@ num_t state_feedback_law_step(struct position_law_state *state,
     num_t current = position_law_proportional(params, input) + input->load_torque;
 
     (void)state;
-    return num_clamp(current, -params->current_limit, params->current_limit);
+    return num_limit(current, params->current_limit);
 }

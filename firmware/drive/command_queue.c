@@ -12,6 +12,7 @@ bool command_queue_put(struct command_queue *queue, const struct queued_command 
     }
     queue->entry[queue->written % COMMAND_QUEUE_LENGTH] = *command;
     queue->written = queue->written + 1u;
+    queue->attention = true;
     return true;
 }
 
@@ -22,6 +23,7 @@ void command_queue_put_urgent(struct command_queue *queue, struct urgent_command
     urgent->at_period = at_period;
     urgent->flush_to = queue->written;
     urgent->posted = true;
+    queue->attention = true;
 }
 
 bool command_queue_take_urgent(struct command_queue *queue, struct urgent_command *urgent,
@@ -47,4 +49,9 @@ const struct queued_command *command_queue_due(const struct command_queue *queue
 void command_queue_drop(struct command_queue *queue)
 {
     queue->read = queue->read + 1u;
+}
+
+void command_queue_rest(struct command_queue *queue)
+{
+    queue->attention = queue->written != queue->read || queue->disable.posted || queue->stop.posted;
 }

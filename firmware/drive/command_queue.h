@@ -28,6 +28,7 @@ struct command_queue {
     struct queued_command entry[COMMAND_QUEUE_LENGTH];
     volatile uint32_t written;
     volatile uint32_t read;
+    volatile bool attention; /* something may wait: spares the interrupt to look at all of it */
     struct urgent_command disable;
     struct urgent_command stop;
 };
@@ -47,5 +48,8 @@ bool command_queue_take_urgent(struct command_queue *queue, struct urgent_comman
 const struct queued_command *command_queue_due(const struct command_queue *queue, uint32_t period);
 
 void command_queue_drop(struct command_queue *queue);
+
+/* Interrupt: lowers `attention` if nothing waits. The background cannot run in between. */
+void command_queue_rest(struct command_queue *queue);
 
 #endif

@@ -23,9 +23,8 @@ static struct prediction predict(const struct drive *drive, const struct estimat
     struct prediction next;
 
     next.rotor = estimate->rotor;
-    next.current = predict_current(model, &estimate->winding, estimate->current,
-                                   actuation_in_force(&drive->actuation), estimate->rotor.speed,
-                                   estimate->mid_period);
+    next.current = forced_current(&estimate->winding, estimate->free_current,
+                                  actuation_in_force(&drive->actuation));
     predict_rotor(model, &next.rotor, park(next.current, estimate->mid_period).q);
     return next;
 }
@@ -54,23 +53,23 @@ static struct dq wanted_current(struct drive *drive, const struct rotor *rotor)
 }
 
 /* The hold fixes the current frame to the reference; in motion it turns with the rotor. */
-static angle_t control_frame(const struct drive *drive, const struct rotor *rotor)
+static struct sincos control_frame(const struct drive *drive, const struct estimate *estimate)
 {
-    return drive->hold.active ? drive->reference.next.position.fraction : rotor->position.fraction;
+    return drive->hold.active ? sincos_of(drive->reference.next.position.fraction)
+                              : estimate_end_of_period(estimate);
 }
 
 /* The voltage turns back to phases at the angle of the middle of S(k+1)...S(k+2). */
-static struct phases regulate_current(struct drive *drive, const struct prediction *next)
+static struct phases regulate_current(struct drive *drive, const struct estimate *estimate,
+                                      const struct prediction *next)
 {
-    const struct drive_params *params = &drive->params;
-    const angle_t frame = control_frame(drive, &next->rotor);
-    const angle_t mid_period = frame + half_period_rotation(&params->model, next->rotor.speed);
+    const struct sincos frame = control_frame(drive, estimate);
 
-    drive->current = park(next->current, sincos_of(frame));
+    drive->current = park(next->current, frame);
     drive->voltage_command = current_control_step(
-        &drive->current_control, &params->current_control, drive->current_reference, drive->current,
-        next->rotor.speed, modulator_voltage_limit(&drive->modulator));
-    return inverse_park(drive->voltage_command, sincos_of(mid_period));
+        &drive->current_control, &drive->params.current_control, drive->current_reference,
+        drive->current, next->rotor.speed, modulator_voltage_limit(&drive->modulator));
+    return inverse_park(drive->voltage_command, sincos_add(frame, estimate->half_turn));
 }
 
 static struct hal_outputs modulate(struct drive *drive, struct phases voltage)
@@ -87,35 +86,42 @@ static struct hal_outputs modulate(struct drive *drive, struct phases voltage)
     return duties;
 }
 
-static struct hal_outputs control(struct drive *drive, const struct sample_set *now)
+static struct hal_outputs control(struct drive *drive, const struct estimate *estimate)
 {
-    const struct drive_params *params = &drive->params;
-    const struct estimate *estimate;
     struct prediction next;
 
-    modulator_track_bus(&drive->modulator, now->bus);
-    actuation_observe(&drive->actuation, now->voltage);
-    estimate = estimator_step(&drive->estimator, &params->estimator, now->current, now->voltage,
-                              drive->hold.active);
-    (void)reference_step(&drive->reference, &params->reference);
+    reference_step(&drive->reference, &drive->params.reference);
     next = predict(drive, estimate);
     drive->current_reference = wanted_current(drive, &next.rotor);
-    struct hal_outputs duties = modulate(drive, regulate_current(drive, &next));
-    state_machine_fault(drive, protection_check_estimate(&params->protection, estimate));
-    duties.bridge_on = state_machine_powered(drive);
-    return duties;
+    return modulate(drive, regulate_current(drive, estimate, &next));
+}
+
+static const struct estimate *observe(struct drive *drive, const struct sample_set *now)
+{
+    modulator_track_bus(&drive->modulator, now->bus);
+    actuation_observe(&drive->actuation, now->voltage);
+    return estimator_step(&drive->estimator, &drive->params.estimator, now->current, now->voltage,
+                          drive->hold.active);
 }
 
 struct hal_outputs drive_control_cycle(struct drive *drive, const struct hal_samples *samples)
 {
+    const struct drive_params *params = &drive->params;
     const struct sample_set now =
-        measurement_step(&drive->measurement, &drive->params.measurement, samples);
+        measurement_step(&drive->measurement, &params->measurement, samples);
+    const bool was_powered = state_machine_powered(drive);
     struct hal_outputs duties = {.bridge_on = false};
 
     drive->bus = now.bus;
-    state_machine_step(drive, samples, &now);
-    if (state_machine_powered(drive)) {
-        duties = control(drive, &now);
+    state_machine_step(drive, samples);
+    /* The period that powers up only resets the blocks: the interrupt is spared the sum of both. */
+    if (was_powered && state_machine_powered(drive)) {
+        const struct estimate *estimate = observe(drive, &now);
+
+        state_machine_fault(drive, protection_check_estimate(&params->protection, estimate));
+        if (state_machine_powered(drive)) {
+            duties = control(drive, estimate);
+        }
     }
     drive->period++;
     return duties;

@@ -105,7 +105,7 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
     params->current_control = current_control_design(&settings->motor, &drive->base, period_s,
                                                      settings->current_bandwidth_rad_s);
     params->modulator = modulator_design(facts->pwm_half_period_counts);
-    params->protection = protection_design(&drive->base, settings);
+    params->protection = protection_design(&drive->base, facts, settings);
     params->calibrate_offsets = settings->calibrate_offsets;
     params->feed_forward = settings->feed_forward;
     params->hold_on_enable_periods =

@@ -7,38 +7,48 @@ static const double bus_max = 1.29;
 /* No load that the motor could hold twice over is taken for real. */
 static const double load_torque_limit = 2.0;
 
+/* A bound in converter codes; what no code can reach is never reached. */
+static int32_t codes(double value, double per_code)
+{
+    const double count = value / per_code;
+
+    return count < 65535.0 ? (int32_t)count : 65535;
+}
+
 struct protection_params protection_design(const struct per_unit *base,
+                                           const struct hal_facts *facts,
                                            const struct drive_settings *settings)
 {
-    struct protection_params params;
-
-    params.overcurrent = num_from_double(settings->overcurrent_trip_A / base->current_A);
-    params.bus_min = num_from_double(bus_min);
-    params.bus_max = num_from_double(bus_max);
-    params.speed_limit = num_from_double(settings->speed_limit_rad_s / base->speed_rad_s);
-    params.load_torque_limit = num_from_double(load_torque_limit);
+    const double supply_V = settings->motor.supply_V;
+    const struct protection_params params = {
+        .current_zero_code = facts->current_zero_code,
+        .overcurrent_codes = codes(settings->overcurrent_trip_A, facts->current_A_per_code),
+        .bus_code_min = codes(bus_min * supply_V, facts->bus_V_per_code),
+        .bus_code_max = codes(bus_max * supply_V, facts->bus_V_per_code),
+        .speed_limit = num_from_double(settings->speed_limit_rad_s / base->speed_rad_s),
+        .load_torque_limit = num_from_double(load_torque_limit),
+    };
     return params;
 }
 
-static bool within(num_t value, num_t limit)
+static bool beyond(int32_t codes, int32_t limit)
 {
-    return value < limit && -value < limit;
+    return codes > limit || codes < -limit;
 }
 
 enum drive_fault protection_check_samples(const struct protection_params *params,
-                                          const struct sample_set *now, uint32_t flags)
+                                          const struct hal_samples *samples)
 {
-    if ((flags & HAL_FLAG_OVERCURRENT_TRIP) != 0u) {
-        return DRIVE_FAULT_HARDWARE_OVERCURRENT;
+    if (samples->flags != 0u) {
+        return (samples->flags & HAL_FLAG_OVERCURRENT_TRIP) != 0u ? DRIVE_FAULT_HARDWARE_OVERCURRENT
+                                                                  : DRIVE_FAULT_DEADLINE_MISSED;
     }
-    if ((flags & HAL_FLAG_DEADLINE_MISSED) != 0u) {
-        return DRIVE_FAULT_DEADLINE_MISSED;
-    }
-    if (!within(now->current.a, params->overcurrent) ||
-        !within(now->current.b, params->overcurrent)) {
+    if (beyond(samples->current_a - params->current_zero_code, params->overcurrent_codes) ||
+        beyond(samples->current_b - params->current_zero_code, params->overcurrent_codes)) {
         return DRIVE_FAULT_OVERCURRENT;
     }
-    if (now->bus < params->bus_min || now->bus > params->bus_max) {
+    if (samples->bus_voltage < params->bus_code_min ||
+        samples->bus_voltage > params->bus_code_max) {
         return DRIVE_FAULT_BUS_VOLTAGE;
     }
     return DRIVE_FAULT_NONE;
@@ -47,10 +57,8 @@ enum drive_fault protection_check_samples(const struct protection_params *params
 enum drive_fault protection_check_estimate(const struct protection_params *params,
                                            const struct estimate *estimate)
 {
-    const bool physical = within(estimate->rotor.speed, params->speed_limit) &&
-                          within(estimate->rotor.load_torque, params->load_torque_limit) &&
-                          within(estimate->current.a, NUM(4.0)) &&
-                          within(estimate->current.b, NUM(4.0));
+    const bool physical = num_abs(estimate->rotor.speed) < params->speed_limit &&
+                          num_abs(estimate->rotor.load_torque) < params->load_torque_limit;
 
     return physical ? DRIVE_FAULT_NONE : DRIVE_FAULT_ESTIMATE_RANGE;
 }

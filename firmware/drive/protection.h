@@ -3,25 +3,30 @@
 #define STEADYSTEP_PROTECTION_H
 
 #include "firmware/drive/drive_interface.h"
-#include "firmware/drive/measurement.h"
 #include "firmware/estimator/estimate.h"
+#include "hal/hal.h"
 
 struct protection_params {
-    num_t overcurrent;
-    num_t bus_min;
-    num_t bus_max;
+    int32_t current_zero_code;
+    int32_t overcurrent_codes;
+    int32_t bus_code_min;
+    int32_t bus_code_max;
     num_t speed_limit;
     num_t load_torque_limit;
 };
 
 struct protection_params protection_design(const struct per_unit *base,
+                                           const struct hal_facts *facts,
                                            const struct drive_settings *settings);
 
-/* Before the control: samples and the board's own flags. */
+/* Before the control: raw samples and the board's own flags. */
 enum drive_fault protection_check_samples(const struct protection_params *params,
-                                          const struct sample_set *now, uint32_t flags);
+                                          const struct hal_samples *samples);
 
-/* After the control: the estimate is finite and physical. A NaN fails every comparison. */
+/*
+ * After the estimator: the estimate is finite and physical. A NaN or an infinity anywhere in it
+ * reaches speed or load torque within the period, and fails every comparison.
+ */
 enum drive_fault protection_check_estimate(const struct protection_params *params,
                                            const struct estimate *estimate);
 

@@ -86,6 +86,7 @@ static void take_commands(struct drive *drive)
     if (command != NULL && obey(drive, command)) {
         command_queue_drop(queue);
     }
+    command_queue_rest(queue);
 }
 
 static void calibrate_offsets(struct drive *drive, const struct hal_samples *samples)
@@ -110,11 +111,12 @@ void state_machine_fault(struct drive *drive, enum drive_fault fault)
     }
 }
 
-void state_machine_step(struct drive *drive, const struct hal_samples *samples,
-                        const struct sample_set *now)
+void state_machine_step(struct drive *drive, const struct hal_samples *samples)
 {
     drive->state_periods++;
-    take_commands(drive);
+    if (drive->commands.attention) {
+        take_commands(drive);
+    }
     if (drive->state == DRIVE_CALIBRATING_OFFSETS) {
         calibrate_offsets(drive, samples);
     } else if (drive->state == DRIVE_ALIGNING &&
@@ -122,7 +124,6 @@ void state_machine_step(struct drive *drive, const struct hal_samples *samples,
         enter(drive, DRIVE_OPERATION_ENABLED);
     }
     if (state_machine_powered(drive)) {
-        state_machine_fault(
-            drive, protection_check_samples(&drive->params.protection, now, samples->flags));
+        state_machine_fault(drive, protection_check_samples(&drive->params.protection, samples));
     }
 }

@@ -20,10 +20,9 @@ static inline bool state_machine_powered(const struct drive *drive)
 }
 
 /* One period: takes due commands, the steps of enabling and the faults seen in the samples. */
-void state_machine_step(struct drive *drive, const struct hal_samples *samples,
-                        const struct sample_set *now);
+void state_machine_step(struct drive *drive, const struct hal_samples *samples);
 
-/* Opens the bridge if there is a fault. */
+/* Enters the fault state if there is a fault; the bridge opens in the same period. */
 void state_machine_fault(struct drive *drive, enum drive_fault fault);
 
 #endif

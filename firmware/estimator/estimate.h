@@ -8,8 +8,27 @@ struct estimate {
     struct phases current;
     struct rotor rotor;
     struct winding winding;
-    struct sincos mid_period; /* at the electrical angle of the middle of S(k)...S(k+1) */
+    /* What follows from these for S(k)...S(k+1), and serves both the control and the next step. */
+    struct sincos half_turn;    /* of the rotation in half a period */
+    struct sincos mid_period;   /* of the electrical angle of the middle of the period */
+    struct phases free_current; /* at S(k+1), if no voltage acted */
 };
+
+/* Fills in what follows from current, rotor and winding. */
+static inline void estimate_look_ahead(struct estimate *x, const struct motor_model_params *model)
+{
+    const angle_t rotation = half_period_rotation(model, x->rotor.speed);
+
+    x->half_turn = sincos_of(rotation);
+    x->mid_period = sincos_of(x->rotor.position.fraction + rotation);
+    x->free_current = free_current(model, &x->winding, x->current, x->rotor.speed, x->mid_period);
+}
+
+/* The rotor at S(k+1) is half a rotation past the middle of the period. */
+static inline struct sincos estimate_end_of_period(const struct estimate *x)
+{
+    return sincos_add(x->mid_period, x->half_turn);
+}
 
 /* At rest at a known position, no current and no load. */
 static inline void estimate_reset(struct estimate *x, const struct motor_model_params *model,
@@ -22,7 +41,7 @@ static inline void estimate_reset(struct estimate *x, const struct motor_model_p
     x->rotor.speed = NUM(0.0);
     x->rotor.load_torque = NUM(0.0);
     winding_set_resistance(&x->winding, model, resistance);
-    x->mid_period = sincos_of(position.fraction);
+    estimate_look_ahead(x, model);
 }
 
 #endif

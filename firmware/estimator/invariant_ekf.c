@@ -62,8 +62,7 @@ static void predict(struct invariant_ekf *ekf, const struct invariant_ekf_params
     struct estimate *x = &ekf->estimate;
     struct phases bias = inverse_park(ekf->bias, x->mid_period);
     struct phases driving = {voltage.a - bias.a, voltage.b - bias.b};
-    struct phases next = predict_current(&params->model, &x->winding, x->current, driving,
-                                         x->rotor.speed, x->mid_period);
+    struct phases next = forced_current(&x->winding, x->free_current, driving);
     struct phases mean = {num_half(x->current.a + next.a), num_half(x->current.b + next.b)};
 
     predict_rotor(&params->model, &x->rotor, park(mean, x->mid_period).q);
@@ -75,8 +74,8 @@ static void correct(struct invariant_ekf *ekf, const struct invariant_ekf_params
 {
     struct estimate *x = &ekf->estimate;
     struct phases error = {current.a - x->current.a, current.b - x->current.b};
-    struct dq innovation = park(error, sincos_of(x->rotor.position.fraction));
-    num_t direction = num_clamp(x->rotor.speed, -params->odd_gain_speed, params->odd_gain_speed);
+    struct dq innovation = park(error, estimate_end_of_period(x));
+    num_t direction = num_limit(x->rotor.speed, params->odd_gain_speed);
     ekf->innovation_mean += num_mul(innovation.q - ekf->innovation_mean, INNOVATION_SHARE);
     num_t turns = num_mul_coef(num_mul(direction, innovation.d), gain->angle_d) +
                   num_mul_coef(innovation.q, gain->angle_q);
@@ -84,7 +83,7 @@ static void correct(struct invariant_ekf *ekf, const struct invariant_ekf_params
     x->current.a += num_mul_coef(error.a, gain->current);
     x->current.b += num_mul_coef(error.b, gain->current);
     x->rotor.speed += num_mul_coef(innovation.q, gain->speed_q);
-    x->rotor.position = position_add(x->rotor.position, angle_from_turns(turns));
+    x->rotor.position = position_add(x->rotor.position, angle_from_any_turns(turns));
     x->rotor.load_torque += num_mul_coef(innovation.q, gain->load_q) -
                             num_mul_coef(x->rotor.load_torque, gain->load_leak);
     ekf->bias.d =
@@ -128,6 +127,8 @@ void invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_pa
 
     predict(ekf, params, voltage);
     correct(ekf, params, gain, current);
-    ekf->estimate.mid_period = sincos_of(angle_of_mid_period(&params->model, &ekf->estimate.rotor));
-    adapt_resistance(ekf, params, gain);
+    if (holding) {
+        adapt_resistance(ekf, params, gain);
+    }
+    estimate_look_ahead(&ekf->estimate, &params->model);
 }

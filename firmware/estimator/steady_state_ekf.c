@@ -44,7 +44,7 @@ static void predict(struct steady_state_ekf *ekf, const struct steady_state_ekf_
     ekf->current.d += num_mul_coef(u_d, model->rate) + num_mul(rotation, i.q);
     ekf->current.q += num_mul_coef(u_q, model->rate) - num_mul(rotation, i.d);
     rotor->speed += num_mul_coef(torque, model->speed_per_torque);
-    rotor->position = position_add(rotor->position, angle_from_turns(turns));
+    rotor->position = position_add(rotor->position, angle_from_any_turns(turns));
 }
 
 /* (11): x(k|k) = x(k|k-1) + K (y - H x(k|k-1)). */
@@ -58,7 +58,7 @@ static void correct(struct steady_state_ekf *ekf, const struct steady_state_ekf_
     ekf->current.d += num_mul_coef(innovation.d, params->gain_current_d);
     ekf->current.q += num_mul_coef(innovation.q, params->gain_current_q);
     rotor->speed += num_mul_coef(innovation.q, params->gain_speed);
-    rotor->position = position_add(rotor->position, angle_from_turns(turns));
+    rotor->position = position_add(rotor->position, angle_from_any_turns(turns));
     rotor->load_torque += num_mul_coef(innovation.q, params->gain_load);
 }
 
@@ -69,7 +69,7 @@ void steady_state_ekf_step(struct steady_state_ekf *ekf,
     struct estimate *x = &ekf->estimate;
 
     predict(ekf, params, park(voltage, x->mid_period));
-    correct(ekf, params, park(current, sincos_of(x->rotor.position.fraction)));
+    correct(ekf, params, park(current, estimate_end_of_period(x)));
     x->current = current;
-    x->mid_period = sincos_of(angle_of_mid_period(&params->model, &x->rotor));
+    estimate_look_ahead(x, &params->model);
 }

@@ -32,10 +32,8 @@ static inline void actuation_reset(struct actuation *actuation)
 /* Takes the mean voltage measured over S(k-1)...S(k). */
 static inline void actuation_observe(struct actuation *actuation, struct phases measured)
 {
-    actuation->loss.a =
-        num_clamp(measured.a - actuation->past.a, -ACTUATION_LOSS_MAX, ACTUATION_LOSS_MAX);
-    actuation->loss.b =
-        num_clamp(measured.b - actuation->past.b, -ACTUATION_LOSS_MAX, ACTUATION_LOSS_MAX);
+    actuation->loss.a = num_limit(measured.a - actuation->past.a, ACTUATION_LOSS_MAX);
+    actuation->loss.b = num_limit(measured.b - actuation->past.b, ACTUATION_LOSS_MAX);
 }
 
 /* The voltage in force over S(k)...S(k+1). */

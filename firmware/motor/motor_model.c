@@ -31,7 +31,7 @@ void winding_set_resistance(struct winding *winding, const struct motor_model_pa
 
     winding->resistance = num_clamp(resistance, params->resistance_min, params->resistance_max);
     x = num_mul_coef(winding->resistance, params->rate);
-    series = NUM(1.0 / 6.0) - num_mul(x, NUM(1.0 / 24.0) - num_mul(x, NUM(1.0 / 120.0)));
-    series = NUM(1.0) - num_mul(x, NUM(0.5) - num_mul(x, series));
+    series = NUM(0.5) - num_mul(x, NUM(1.0 / 6.0) - num_mul(x, NUM(1.0 / 24.0)));
+    series = NUM(1.0) - num_mul(x, series);
     winding->admittance = num_mul_coef(series, params->rate);
 }

@@ -56,27 +56,28 @@ static inline angle_t half_period_rotation(const struct motor_model_params *para
     return (angle_t)angle_from_turns(num_half(num_mul_coef(speed, params->turns_per_speed)));
 }
 
-/* Angle of the middle of the coming period. */
-static inline angle_t angle_of_mid_period(const struct motor_model_params *params,
-                                          const struct rotor *rotor)
+/* Phase currents one period on if no voltage acted: decay and back-EMF. */
+static inline struct phases free_current(const struct motor_model_params *params,
+                                         const struct winding *winding, struct phases current,
+                                         num_t speed, struct sincos mid_period)
 {
-    return rotor->position.fraction + half_period_rotation(params, rotor->speed);
+    const num_t droop = num_mul_coef(num_mul(speed, speed), params->emf_droop);
+    const num_t emf = speed - num_mul(speed, droop);
+    const num_t drop_a =
+        num_mul(winding->resistance, current.a) - num_mul_unit(emf, mid_period.sin);
+    const num_t drop_b =
+        num_mul(winding->resistance, current.b) + num_mul_unit(emf, mid_period.cos);
+    const struct phases next = {current.a - num_mul(winding->admittance, drop_a),
+                                current.b - num_mul(winding->admittance, drop_b)};
+    return next;
 }
 
-/* Phase currents one period on, under the mean phase voltages of that period. */
-static inline struct phases predict_current(const struct motor_model_params *params,
-                                            const struct winding *winding, struct phases current,
-                                            struct phases voltage, num_t speed,
-                                            struct sincos mid_period)
+/* The same under a mean voltage over the period. */
+static inline struct phases forced_current(const struct winding *winding, struct phases free,
+                                           struct phases voltage)
 {
-    num_t droop = num_mul_coef(num_mul(speed, speed), params->emf_droop);
-    num_t emf = speed - num_mul(speed, droop);
-    num_t drive_a =
-        voltage.a - num_mul(winding->resistance, current.a) + num_mul_unit(emf, mid_period.sin);
-    num_t drive_b =
-        voltage.b - num_mul(winding->resistance, current.b) - num_mul_unit(emf, mid_period.cos);
-    struct phases next = {current.a + num_mul(winding->admittance, drive_a),
-                          current.b + num_mul(winding->admittance, drive_b)};
+    const struct phases next = {free.a + num_mul(winding->admittance, voltage.a),
+                                free.b + num_mul(winding->admittance, voltage.b)};
     return next;
 }
 

@@ -66,15 +66,20 @@ static inline num_t turns_from_angle(int32_t angle)
 #endif
 }
 
-/* Electrical turns to an angle, clamped to just under half a turn. */
+/* Electrical turns to an angle; the caller vouches for less than half a turn. */
 static inline int32_t angle_from_turns(num_t turns)
 {
-    turns = num_clamp(turns, NUM(-0.499), NUM(0.499));
 #if STEADYSTEP_NUM == NUM_FIXED
     return num_shift_left(turns, 32 - NUM_FRACTION_BITS);
 #else
     return (int32_t)(turns * NUM(4294967296.0));
 #endif
+}
+
+/* The same for any number, limited to just under half a turn. */
+static inline int32_t angle_from_any_turns(num_t turns)
+{
+    return angle_from_turns(num_limit(turns, NUM(0.499)));
 }
 
 /* Start-up and telemetry only. Mechanical rad, |rad| < 2^31 electrical turns. */

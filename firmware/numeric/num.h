@@ -67,7 +67,8 @@ static inline int32_t num_shift_left(int32_t a, unsigned bits)
 
 static inline num_t num_mul_unit(num_t a, unit_t u)
 {
-    return num_shift_left(num_mul_high16(a, u), 1);
+    /* As floor(a u / 2^15), in two products of 16 bits. */
+    return num_shift_left((a >> 16) * u, 1) + ((int32_t)(a & 0xffff) * u >> 15);
 }
 
 static inline num_t num_mul_coef(num_t a, coef_t k)
@@ -96,6 +97,11 @@ static inline num_t num_mul(num_t a, num_t b)
 #endif
 }
 
+static inline unit_t unit_mul(unit_t a, unit_t b)
+{
+    return (a * b) >> 15;
+}
+
 static inline unit_t unit_from_num(num_t a)
 {
     return a >> (NUM_FRACTION_BITS - 15);
@@ -120,10 +126,10 @@ static inline num_t num_from_code(int32_t code, coef_t k)
 /* The gain of num_from_code is stated per code; this is the factor hidden in the format. */
 #define NUM_CODE_SCALE 65536.0
 
-/* A per-unit number times a gain as a whole number of timer counts, rounded to nearest. */
-static inline int32_t counts_from_num(num_t a, coef_t k)
+/* middle + a k as a whole number of timer counts, rounded to nearest where it is positive. */
+static inline int32_t counts_from_num(num_t a, coef_t k, int32_t middle)
 {
-    return (num_mul_coef(a, k) + (1 << 9)) >> 10;
+    return middle + ((num_mul_coef(a, k) + (1 << 9)) >> 10);
 }
 
 /* The gain of counts_from_num is stated in counts; this is the factor hidden in the format. */
@@ -132,20 +138,21 @@ static inline int32_t counts_from_num(num_t a, coef_t k)
 /* x < 0 ? 0 : sqrt(x); 16 significant bits. */
 num_t num_sqrt(num_t x);
 
-static inline bool num_is_finite(num_t a)
+static inline num_t num_abs(num_t a)
 {
-    (void)a;
-    return true;
+    return a < 0 ? -a : a;
 }
 
 #else /* floating point */
 
 #if STEADYSTEP_NUM == NUM_FLOAT
 #define NUM_FORMAT float
+#define NUM_ABS    __builtin_fabsf
 typedef float num_t;
 #define NUM(x)     ((float)(x))
 #elif STEADYSTEP_NUM == NUM_DOUBLE
 #define NUM_FORMAT double
+#define NUM_ABS    __builtin_fabs
 typedef double num_t;
 #define NUM(x)     ((double)(x))
 #else
@@ -172,6 +179,11 @@ static inline num_t num_mul(num_t a, num_t b)
     return a * b;
 }
 
+static inline unit_t unit_mul(unit_t a, unit_t b)
+{
+    return a * b;
+}
+
 static inline unit_t unit_from_num(num_t a)
 {
     return a;
@@ -194,20 +206,19 @@ static inline num_t num_from_code(int32_t code, coef_t k)
 
 #define NUM_CODE_SCALE 1.0
 
-static inline int32_t counts_from_num(num_t a, coef_t k)
+static inline int32_t counts_from_num(num_t a, coef_t k, int32_t middle)
 {
-    num_t counts = a * k;
-    return (int32_t)(counts < NUM(0.0) ? counts - NUM(0.5) : counts + NUM(0.5));
+    return (int32_t)(a * k + ((num_t)middle + NUM(0.5)));
 }
 
 #define NUM_COUNT_SCALE 1.0
 
 num_t num_sqrt(num_t x);
 
-static inline bool num_is_finite(num_t a)
+/* Clears the sign: one instruction, and a NaN stays one. */
+static inline num_t num_abs(num_t a)
 {
-    num_t difference = a - a;
-    return difference == NUM(0.0);
+    return NUM_ABS(a);
 }
 
 #endif
@@ -219,9 +230,13 @@ static inline num_t num_clamp(num_t a, num_t low, num_t high)
     return a > low ? a : low;
 }
 
-static inline num_t num_abs(num_t a)
+/* -limit...limit, for a limit above zero; a NaN becomes the lower bound. */
+static inline num_t num_limit(num_t a, num_t limit)
 {
-    return a < NUM(0.0) ? -a : a;
+    if (num_abs(a) < limit) {
+        return a;
+    }
+    return a > NUM(0.0) ? limit : -limit;
 }
 
 /* ---- Start-up and telemetry only: conversions from and to double. ---- */

@@ -19,7 +19,7 @@
 
 static struct sincos eighth_turn(int32_t rest)
 {
-    int32_t x = rest >> 14;
+    int32_t x = (rest + (1 << 13)) >> 14;
     int32_t x2 = (x * x) >> 15;
     int32_t sine = Q(S5, 22) + ((Q(S7, 27) * x2) >> 20);
     int32_t cosine = Q(C4, 20) + (((Q(C6, 24) * x2) >> 15) >> 4);

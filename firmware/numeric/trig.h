@@ -15,4 +15,12 @@ struct sincos {
  */
 struct sincos sincos_of(angle_t angle);
 
+/* The sum of two angles: four products instead of another pair of polynomials. */
+static inline struct sincos sincos_add(struct sincos x, struct sincos y)
+{
+    const struct sincos sum = {unit_mul(x.cos, y.cos) - unit_mul(x.sin, y.sin),
+                               unit_mul(x.sin, y.cos) + unit_mul(x.cos, y.sin)};
+    return sum;
+}
+
 #endif

@@ -145,6 +145,33 @@ template <int order, bool track_energy>
     state.electrical_rad += motor.teeth * integral<order>(x.omega, h);
 }
 
+/* What the diodes demand of a phase, as a series: its current must not turn, and while it floats
+   its back-EMF must stay within the blocking voltages. >= 0 as long as they have it. */
+template <int order> struct Margin {
+    double coefficient[order + 1];
+};
+
+template <int order>
+inline Margin<order> margin_of(int phase, const Series<order> &x, const MotorCoefficients &motor,
+                               const Segment &segment, const Terminals &terminals, double h)
+{
+    Margin<order> margin = {};
+    if (terminals.conducting[phase] == 0.0) {
+        const bool negative = value<order - 1>(x.omega_q, h)[phase] < 0.0;
+        const double sign = negative ? motor.torque_constant : -motor.torque_constant;
+        for (int k = 0; k < order; k++) {
+            margin.coefficient[k] = sign * x.omega_q[k][phase];
+        }
+        margin.coefficient[0] +=
+            negative ? -segment.if_positive_V[phase] : segment.if_negative_V[phase];
+    } else {
+        for (int k = 0; k <= order; k++) {
+            margin.coefficient[k] = terminals.direction[phase] * x.current[k][phase];
+        }
+    }
+    return margin;
+}
+
 /* When a diode stops or starts to conduct. */
 struct Event {
     double time_s;     /* after the start of the step, at most its length */
@@ -157,25 +184,12 @@ Event first_event(const Series<order> &x, const MotorCoefficients &motor, const 
 {
     Event first = {h};
     for (int phase = 0; phase < 2; phase++) {
-        /* What must stay >= 0: the current in the diode's direction, or the blocking voltage. */
-        double margin[order + 1] = {};
-        const bool floating = terminals.conducting[phase] == 0.0;
-        if (floating) {
-            const double sign = value<order - 1>(x.omega_q, h)[phase] < 0.0 ? 1.0 : -1.0;
-            for (int k = 0; k < order; k++) {
-                margin[k] = sign * motor.torque_constant * x.omega_q[k][phase];
-            }
-            margin[0] += sign > 0.0 ? -segment.if_positive_V[phase] : segment.if_negative_V[phase];
-        } else {
-            for (int k = 0; k <= order; k++) {
-                margin[k] = terminals.direction[phase] * x.current[k][phase];
-            }
-        }
-        if (value<order>(margin, h) < 0.0) {
-            const double zero_s = falling_zero(margin, order, h);
+        const Margin<order> margin = margin_of(phase, x, motor, segment, terminals, h);
+        if (value<order>(margin.coefficient, h) < 0.0) {
+            const double zero_s = falling_zero(margin.coefficient, order, h);
             const double time_s = zero_s > least_progress * h ? zero_s : least_progress * h;
             if (time_s < first.time_s) {
-                first = {time_s, floating ? -1 : phase};
+                first = {time_s, terminals.conducting[phase] == 0.0 ? -1 : phase};
             }
         }
     }

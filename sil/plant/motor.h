@@ -25,8 +25,8 @@ struct MotorState {
     Phases current_A = {0.0, 0.0};
     Phases q_axis = {0.0, 1.0};
     double omega_rad_s = 0.0;
-    double electrical_rad = 0.0;   /* N theta within its turn, -pi...pi at begin_period */
-    double electrical_turns = 0.0; /* whole turns: no accuracy is lost on a long way */
+    double electrical_turns = 0.0; /* N theta: whole turns, so that a long way costs no accuracy, */
+    double electrical_rad = 0.0;   /* and the rest, -pi...pi at begin_period */
 };
 
 /* MotorConfig as the equations want it. */

@@ -1,8 +1,6 @@
 #include "sil/scenario/scenario_file.h"
 
-#include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <filesystem>
 
 #include "sil/scenario/table_reader.h"
@@ -18,7 +16,6 @@ namespace
 
 constexpr double supply_headroom = 1.3; /* full scale of voltage sensing / nominal supply */
 constexpr double longest_run_s = 600;   /* 25 columns of 10 kHz: 1.2 GB */
-constexpr double largest_bound = 1e12;  /* of an expectation; any finite number in practice */
 constexpr double largest_position_rad = 1e7;
 
 /* The file with its bases under it; `chain` holds the files that wait for this one. */
@@ -45,16 +42,6 @@ Value read_with_bases(const Catalogue &catalogue, const fs::path &file, std::vec
     merge(merged, document);
     merged.location = document.location;
     return merged;
-}
-
-/* Names by the drive's own spelling, in the order of the enumeration. */
-template <typename Enum> std::vector<std::string> names_of(const char *(*name)(Enum), int count)
-{
-    std::vector<std::string> names;
-    for (int i = 0; i < count; ++i) {
-        names.push_back(name(static_cast<Enum>(i)));
-    }
-    return names;
 }
 
 void read_drive(const Value &table, drive_settings &drive)
@@ -133,198 +120,6 @@ void read_plant(const Value &table, Scenario &scenario)
     bridge.delay_periods = static_cast<int>(delay_periods);
 }
 
-struct CommandKind {
-    const char *name;
-    drive_command_kind kind;
-    std::vector<const char *> fields; /* all required */
-};
-
-const std::vector<CommandKind> &command_kinds()
-{
-    static const std::vector<CommandKind> kinds = {
-        {"move-trapezoid", DRIVE_COMMAND_MOVE_TRAPEZOID, {"position_rad", "duration_s", "ramp_s"}},
-        {"move-smooth",
-         DRIVE_COMMAND_MOVE_SMOOTH,
-         {"position_rad", "duration_s", "ramp_s", "jerk_s"}},
-        {"step", DRIVE_COMMAND_STEP, {"position_rad"}},
-        {"stop", DRIVE_COMMAND_STOP, {}},
-        {"hold", DRIVE_COMMAND_HOLD, {}},
-        {"enable", DRIVE_COMMAND_ENABLE, {}},
-        {"disable", DRIVE_COMMAND_DISABLE, {}},
-    };
-    return kinds;
-}
-
-drive_command read_command(TableReader &reader, double time_left_s)
-{
-    std::vector<std::string> names;
-    for (const CommandKind &kind : command_kinds()) {
-        names.push_back(kind.name);
-    }
-    std::size_t index = 0;
-    reader.choice("command", index, names);
-    const CommandKind &kind = command_kinds()[index];
-
-    drive_command command{};
-    command.kind = kind.kind;
-    for (const std::string field : kind.fields) {
-        reader.require(field);
-        if (field == "position_rad") {
-            reader.number(field, command.position_rad, -largest_position_rad, largest_position_rad);
-        } else if (field == "duration_s") {
-            reader.number(field, command.duration_s, 1e-3, std::max(1e-3, time_left_s));
-        } else if (field == "ramp_s") {
-            reader.number(field, command.ramp_s, 1e-4, command.duration_s / 2);
-        } else {
-            reader.number(field, command.jerk_s, 0, command.ramp_s / 2);
-        }
-    }
-    return command;
-}
-
-void read_drift(TableReader &reader, const Value &table, const std::string &path, Event &event)
-{
-    TableReader plant(table, path + ".plant");
-    for (const PlantScaleField &field : plant_scale_fields()) {
-        if (plant.number(field.key, event.drift_to, 0.01, 100)) {
-            if (event.drift != nullptr) {
-                plant.fail(field.key, "expected one scale per event");
-            }
-            event.drift = field.scale;
-        }
-    }
-    plant.finish();
-    if (event.drift == nullptr) {
-        reader.fail("plant", "expected a scale");
-    }
-    reader.number("ramp_s", event.drift_ramp_s, 0, longest_run_s);
-}
-
-Event read_event(const Value &table, const std::string &path, double duration_s)
-{
-    TableReader reader(table, path);
-    Event event;
-    event.location = table.location;
-    reader.require("time_s");
-    reader.number("time_s", event.time_s, 0, duration_s);
-    const Value *command = reader.any("command");
-    const Value *plant = reader.table("plant");
-    const bool has_load = reader.any("load_torque_Nm") != nullptr;
-    if ((command != nullptr) + (plant != nullptr) + has_load != 1) {
-        reader.fail("command", "expected exactly one of command, load_torque_Nm, plant.<scale>");
-    }
-    if (command != nullptr) {
-        event.command = read_command(reader, duration_s - event.time_s);
-    } else if (plant != nullptr) {
-        read_drift(reader, *plant, path, event);
-    } else {
-        double load_torque_Nm = 0;
-        reader.number("load_torque_Nm", load_torque_Nm, -100, 100);
-        event.load_torque_Nm = load_torque_Nm;
-    }
-    reader.finish();
-    return event;
-}
-
-Window read_window(TableReader &reader, double duration_s)
-{
-    Window window;
-    const Value *value = reader.any("window");
-    if (value == nullptr) {
-        return window;
-    }
-    const std::string expected =
-        "expected \"move\", \"rest\", \"all\" or [begin, end] in s with 0 <= begin < end <= " +
-        readable(duration_s);
-    if (value->kind == Value::Kind::text) {
-        if (value->text == "move") {
-            window.kind = Window::Kind::move;
-        } else if (value->text == "rest") {
-            window.kind = Window::Kind::rest;
-        } else if (value->text != "all") {
-            reader.fail("window", expected + ", got \"" + value->text + "\"");
-        }
-        return window;
-    }
-    const auto is_number = [](const Value &item) {
-        return item.kind == Value::Kind::number || item.kind == Value::Kind::integer;
-    };
-    if (value->kind != Value::Kind::array || value->items.size() != 2 ||
-        !is_number(value->items[0]) || !is_number(value->items[1])) {
-        reader.fail("window", expected);
-    }
-    window.kind = Window::Kind::times;
-    window.begin_s = value->items[0].number;
-    window.end_s = value->items[1].number;
-    if (!(window.begin_s >= 0 && window.begin_s < window.end_s && window.end_s <= duration_s)) {
-        reader.fail("window", expected + ", got [" + readable(window.begin_s) + ", " +
-                                  readable(window.end_s) + "]");
-    }
-    return window;
-}
-
-Expectation read_expectation(const Value &table, const std::string &path, double duration_s)
-{
-    TableReader reader(table, path);
-    Expectation expectation;
-    std::vector<std::string> metrics = {"fault"};
-    for (const MetricField &field : metric_fields()) {
-        metrics.push_back(field.name);
-    }
-    std::size_t metric = 0;
-    reader.require("metric");
-    reader.choice("metric", metric, metrics);
-    expectation.metric = metrics[metric];
-    expectation.window = read_window(reader, duration_s);
-
-    if (expectation.metric == "fault") {
-        const std::vector<std::string> faults = names_of(drive_fault_name, DRIVE_FAULTS);
-        std::size_t fault = 0;
-        reader.require("equals");
-        reader.choice("equals", fault, faults);
-        expectation.equals_text = faults[fault];
-    } else {
-        const auto bound = [&](const char *key, std::optional<double> &target) {
-            double value = 0;
-            if (reader.number(key, value, -largest_bound, largest_bound)) {
-                target = value;
-            }
-        };
-        bound("min", expectation.min);
-        bound("max", expectation.max);
-        bound("equals", expectation.equals);
-        if (!expectation.min && !expectation.max && !expectation.equals) {
-            reader.fail("max", "is missing: expected at least one of max, min, equals");
-        }
-    }
-    reader.finish();
-    return expectation;
-}
-
-/* "event[1]": the place in an array of tables, from 1. */
-std::string element(const std::string &array, std::size_t index)
-{
-    return array + "[" + std::to_string(index + 1) + "]";
-}
-
-void read_arrays(TableReader &reader, Scenario &scenario)
-{
-    if (const Value *events = reader.array("event")) {
-        for (std::size_t i = 0; i < events->items.size(); ++i) {
-            scenario.events.push_back(
-                read_event(events->items[i], element("event", i), scenario.duration_s));
-        }
-    }
-    std::stable_sort(scenario.events.begin(), scenario.events.end(),
-                     [](const Event &a, const Event &b) { return a.time_s < b.time_s; });
-    if (const Value *expectations = reader.array("expect")) {
-        for (std::size_t i = 0; i < expectations->items.size(); ++i) {
-            scenario.expectations.push_back(read_expectation(
-                expectations->items[i], element("expect", i), scenario.duration_s));
-        }
-    }
-}
-
 /* What follows from the motor, before [plant] and [drive] are read. */
 void set_defaults(Scenario &scenario)
 {
@@ -337,18 +132,6 @@ void set_defaults(Scenario &scenario)
 
 } // namespace
 
-const std::vector<PlantScaleField> &plant_scale_fields()
-{
-    static const std::vector<PlantScaleField> fields = {
-        {"resistance_scale", &PlantScales::resistance},
-        {"inductance_scale", &PlantScales::inductance},
-        {"km_scale", &PlantScales::km},
-        {"inertia_scale", &PlantScales::inertia},
-        {"viscous_friction_scale", &PlantScales::viscous_friction},
-    };
-    return fields;
-}
-
 plant::MotorConfig scaled(const motor_params &motor, const PlantScales &scales)
 {
     plant::MotorConfig config;
@@ -359,20 +142,6 @@ plant::MotorConfig scaled(const motor_params &motor, const PlantScales &scales)
     config.inertia_kgm2 = motor.inertia_kgm2 * scales.inertia;
     config.rotor_teeth = motor.rotor_teeth;
     return config;
-}
-
-std::string Expectation::bound() const
-{
-    if (equals_text) {
-        return "= " + *equals_text;
-    }
-    if (equals) {
-        return "= " + readable(*equals);
-    }
-    if (min && max) {
-        return readable(*min) + "..." + readable(*max);
-    }
-    return max ? "<= " + readable(*max) : ">= " + readable(*min);
 }
 
 std::string Scenario::locate(const std::string &complaint) const
@@ -436,7 +205,8 @@ Scenario read_scenario(const Catalogue &catalogue, const std::string &name,
     if (const Value *drive = reader.table("drive")) {
         read_drive(*drive, scenario.drive);
     }
-    read_arrays(reader, scenario);
+    scenario.events = read_events(reader, scenario.duration_s);
+    scenario.expectations = read_expectations(reader, scenario.duration_s);
     reader.finish();
 
     char error[DRIVE_ERROR_TEXT] = "";

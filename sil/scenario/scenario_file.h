@@ -6,51 +6,17 @@
 #define STEADYSTEP_SCENARIO_SCENARIO_FILE_H
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "sil/board/board.h"
 #include "sil/scenario/catalogue.h"
 #include "sil/scenario/document.h"
-#include "sil/scenario/metrics.h"
 #include "sil/scenario/motor_file.h"
+#include "sil/scenario/timeline.h"
 
 namespace scenario
 {
-
-/* The true motor, relative to the motor file; the drive goes on believing the file. */
-struct PlantScales {
-    double resistance = 1, inductance = 1, km = 1, inertia = 1, viscous_friction = 1;
-};
-
-struct PlantScaleField {
-    const char *key; /* as written under [plant] */
-    double PlantScales::*scale;
-};
-
-const std::vector<PlantScaleField> &plant_scale_fields();
-
-/* Something that happens at a time; exactly one of the three. */
-struct Event {
-    double time_s = 0; /* 0 is the first S(k) with the drive ready */
-    std::optional<drive_command> command;
-    std::optional<double> load_torque_Nm;
-    double PlantScales::*drift = nullptr; /* this scale goes to drift_to within drift_ramp_s */
-    double drift_to = 1;
-    double drift_ramp_s = 0;
-    Location location;
-};
-
-/* One bound on one metric over one window. */
-struct Expectation {
-    std::string metric;
-    Window window;
-    std::optional<double> min, max, equals;
-    std::optional<std::string> equals_text; /* of `fault` */
-
-    std::string bound() const; /* "<= 0.001" */
-};
 
 struct Scenario {
     std::string name, description;

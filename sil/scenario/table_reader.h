@@ -20,6 +20,16 @@ std::string nearest(const std::string &word, const std::vector<std::string> &kno
 /* "one of a, b, c", with the nearest to `word` pointed out. */
 std::string one_of(const std::string &word, const std::vector<std::string> &known);
 
+/* Names by the drive's own spelling, in the order of the enumeration. */
+template <typename Enum> std::vector<std::string> names_of(const char *(*name)(Enum), int count)
+{
+    std::vector<std::string> names;
+    for (int i = 0; i < count; ++i) {
+        names.push_back(name(static_cast<Enum>(i)));
+    }
+    return names;
+}
+
 class TableReader
 {
   public:

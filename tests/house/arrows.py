@@ -137,16 +137,16 @@ PLANTED = [
 def self_test(root):
     """Every planted violation is found, at its line; a comment that names one is not."""
     missed = 0
-    for name, line in PLANTED:
-        with tempfile.TemporaryDirectory() as scratch:
-            copy = pathlib.Path(scratch)
-            for top in ("firmware", "hal", "sil"):
-                shutil.copytree(root / top, copy / top)
+    with tempfile.TemporaryDirectory() as scratch:
+        copy = pathlib.Path(scratch)
+        for top in ("firmware", "hal", "sil"):
+            shutil.copytree(root / top, copy / top)
+        for name, line in PLANTED:
             planted = copy / name
-            planted.parent.mkdir(parents=True, exist_ok=True)
-            planted.write_text(f"/* {line} */\n// {line}\n{line}\n",
-                               encoding="utf-8")
+            planted.parent.mkdir(exist_ok=True)
+            planted.write_text(f"/* {line} */\n// {line}\n{line}\n", encoding="utf-8")
             found = [text for text in violations(copy) if text.startswith(name)]
+            planted.unlink()
             expected_line = 1 if name.startswith("firmware/attic") else 3
             if len(found) != 1 or not found[0].startswith(f"{name}:{expected_line}:"):
                 print(f"planted in {name}: {line}\n  reported: {found}")

@@ -194,11 +194,11 @@ Difference compare(const plant::Config &config, double voltage_V, int periods, i
     return worst;
 }
 
-void agrees(const Difference &worst)
+void agrees(const Difference &worst, double tolerance)
 {
-    TEST_ASSERT_TRUE(worst.current_A < 1e-7);
-    TEST_ASSERT_TRUE(worst.omega_rad_s < 1e-7);
-    TEST_ASSERT_TRUE(worst.theta_rad < 1e-9);
+    TEST_ASSERT_TRUE(worst.current_A < tolerance);
+    TEST_ASSERT_TRUE(worst.omega_rad_s < 2.0 * tolerance);
+    TEST_ASSERT_TRUE(worst.theta_rad < 0.01 * tolerance);
     /* The reference ends a conduction only at a whole count: 24 V for at most 1 / 17000. */
     TEST_ASSERT_TRUE(worst.voltage_V < 6e-3);
 }
@@ -207,35 +207,35 @@ void test_in_motion_with_dead_time()
 {
     plant::Config config = bench();
     config.initial_omega_rad_s = 45.0;
-    agrees(compare(config, 9.0, 60, 60));
+    agrees(compare(config, 9.0, 60, 60), 3e-8);
 }
 
 void test_fast_with_dead_time()
 {
     plant::Config config = bench();
     config.initial_omega_rad_s = 130.0;
-    agrees(compare(config, 21.0, 60, 60));
+    agrees(compare(config, 21.0, 60, 60), 6e-8);
 }
 
 void test_small_currents_that_end_in_the_dead_times()
 {
     plant::Config config = bench();
     config.initial_omega_rad_s = 2.0;
-    agrees(compare(config, 0.4, 60, 60));
+    agrees(compare(config, 0.4, 60, 60), 3e-8);
 }
 
 void test_freewheeling_until_the_diodes_block()
 {
     plant::Config config = bench();
     config.initial_omega_rad_s = 45.0;
-    agrees(compare(config, 9.0, 60, 20));
+    agrees(compare(config, 9.0, 60, 20), 3e-8);
 }
 
 void test_a_driven_rotor_feeds_the_bus_through_the_diodes()
 {
     plant::Config config = bench();
     config.initial_omega_rad_s = 260.0; /* 40.8 V against 24 V and two diodes */
-    agrees(compare(config, 0.0, 60, 0));
+    agrees(compare(config, 0.0, 60, 0), 1e-6);
 }
 
 } // namespace

@@ -19,9 +19,8 @@ void tearDown(void)
 /* A move whose profile's jerk tells it from the others. */
 static bool put(int64_t mark, uint32_t at_period)
 {
-    const struct queued_command command = {.kind = DRIVE_COMMAND_MOVE_TRAPEZOID,
-                                           .at_period = at_period,
-                                           .profile = {.jerk = mark}};
+    const struct queued_command command = {
+        .kind = DRIVE_COMMAND_MOVE_TRAPEZOID, .at_period = at_period, .profile = {.jerk = mark}};
 
     return command_queue_put(&queue, &command);
 }

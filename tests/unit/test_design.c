@@ -320,6 +320,7 @@ static void numbers_in_refusals_have_four_digits(void)
         const char *text;
     } cases[] = {
         {0.0, "0"},
+        {999.7, "999.7"},
         {1.0, "1"},
         {-3.5, "-3.5"},
         {0.03125, "0.03125"},

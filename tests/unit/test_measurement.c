@@ -133,8 +133,7 @@ static void test_what_has_been_found_is_taken_off_every_sample(void)
                                         .phase_voltage_b = -40};
 
     for (int i = 1; i < OFFSET_SAMPLES; i++) {
-        TEST_ASSERT_EQUAL(OFFSETS_PENDING,
-                          measurement_calibrate(&measurement, &params, &shifted));
+        TEST_ASSERT_EQUAL(OFFSETS_PENDING, measurement_calibrate(&measurement, &params, &shifted));
     }
     TEST_ASSERT_EQUAL(OFFSETS_FOUND, measurement_calibrate(&measurement, &params, &shifted));
 

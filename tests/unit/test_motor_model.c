@@ -6,8 +6,8 @@
 
 #define NO_BRIDGE_OHM 0.0
 
-/* A current follows from about ten rounded operations and the admittance, its series cut at x^3. */
-#define CURRENT_ROUNDING (10.0 * (NUM_ROUNDING + COEF_ROUNDING) + 5e-9)
+/* A current follows from ten rounded operations and the admittance, its series cut at x^4/120. */
+#define CURRENT_ROUNDING (10.0 * (NUM_ROUNDING + COEF_ROUNDING) + 3e-8)
 
 /* Resolution of an angle that was a num_t, electrical turns. */
 #define ANGLE_ROUNDING (2.0 * NUM_ROUNDING + 1.0 / 4294967296.0)
@@ -25,6 +25,13 @@ void setUp(void)
 
 void tearDown(void)
 {
+}
+
+static struct phases predicted(struct phases current, struct phases voltage, num_t speed,
+                               struct sincos mid_period)
+{
+    return forced_current(&winding, free_current(&model, &winding, current, speed, mid_period),
+                          voltage);
 }
 
 static double magnitude(double x)
@@ -55,7 +62,7 @@ static void test_the_current_of_a_locked_rotor_rises_exponentially(void)
     for (int k = 1; k <= 100; k++) {
         const double rise = 1.0 - exponential(-k * PERIOD_S * 0.37 / 0.9e-3);
 
-        current = predict_current(&model, &winding, current, voltage, NUM(0.0), angle);
+        current = predicted(current, voltage, NUM(0.0), angle);
         TEST_ASSERT_NUM_WITHIN(CURRENT_ROUNDING, 1.0 / 0.37 * rise / base.current_A, current.a);
         TEST_ASSERT_NUM_WITHIN(CURRENT_ROUNDING, -0.5 / 0.37 * rise / base.current_A, current.b);
     }
@@ -63,15 +70,17 @@ static void test_the_current_of_a_locked_rotor_rises_exponentially(void)
 
 static void test_a_calibrated_resistance_gives_the_admittance_of_its_exponential(void)
 {
+    const double at_no_resistance = PERIOD_S / 0.9e-3 * base.resistance_ohm;
+
     for (double share = 0.25; share < 3.0; share += 0.05) {
         const double r = 0.37 * share;
         const double admittance =
             (1.0 - exponential(-PERIOD_S * r / 0.9e-3)) / r * base.resistance_ohm;
 
         winding_set_resistance(&winding, &model, num_from_double(r / base.resistance_ohm));
-        /* The next term of the series, x^4/720, is 3e-7 at three times the resistance. */
-        TEST_ASSERT_NUM_WITHIN(3e-7 + 4.0 * (NUM_ROUNDING + COEF_ROUNDING), admittance,
-                               winding.admittance);
+        /* The series is cut at x^4/120, which is 2e-6 of T/L at three times the resistance. */
+        TEST_ASSERT_NUM_WITHIN(2e-6 * at_no_resistance + 4.0 * (NUM_ROUNDING + COEF_ROUNDING),
+                               admittance, winding.admittance);
         TEST_ASSERT_NUM_WITHIN(NUM_ROUNDING, r / base.resistance_ohm, winding.resistance);
     }
 }
@@ -102,12 +111,12 @@ static struct bench_vector error_at_speed(double speed_rad_s)
                                 .angle_rad = 0.02};
     const double half_turn_rad = 0.5 * 50.0 * speed_rad_s * PERIOD_S;
     const double mid_rad = bench_electrical_rad(&motor) + half_turn_rad;
-    struct rotor rotor = {.position = position_from_rad(motor.angle_rad, 50),
-                          .speed = num_from_double(speed_rad_s / base.speed_rad_s)};
-    const struct phases next = predict_current(
-        &model, &winding, bench_phases(motor.i_a, motor.i_b, base.current_A),
-        bench_phases(6.0, -2.0, base.voltage_V), rotor.speed,
-        sincos_of(angle_of_mid_period(&model, &rotor)));
+    const num_t speed = num_from_double(speed_rad_s / base.speed_rad_s);
+    const angle_t mid_period =
+        position_from_rad(motor.angle_rad, 50).fraction + half_period_rotation(&model, speed);
+    const struct phases next =
+        predicted(bench_phases(motor.i_a, motor.i_b, base.current_A),
+                  bench_phases(6.0, -2.0, base.voltage_V), speed, sincos_of(mid_period));
 
     motor.motor.inertia_kgm2 = IMPOSED_SPEED;
     bench_run(&motor, 6.0, -2.0);
@@ -130,8 +139,8 @@ static void test_the_current_of_a_turning_rotor_is_that_of_the_motor(void)
         const double emf = magnitude(speeds[i]) / base.speed_rad_s;
         const double h = magnitude(speeds[i]) * 50.0 * PERIOD_S;
         const double rounding = CURRENT_ROUNDING + gain * emf * SINE_ERROR;
-        const double next_order = gain * emf * (h * h * h * h / 1920.0 + h * h * x * x / 240.0 +
-                                                h * h * x / 24.0 * x);
+        const double next_order =
+            gain * emf * (h * h * h * h / 1920.0 + h * h * x * x / 240.0 + h * h * x / 24.0 * x);
         const struct bench_vector error = error_at_speed(speeds[i]);
 
         TEST_ASSERT_DOUBLE_WITHIN(rounding + next_order, 0.0, error.b);
@@ -197,7 +206,7 @@ static void test_the_rotor_turns_half_its_way_by_the_middle_of_the_period(void)
     struct rotor rotor = {.position = {3, 0x80000000u},
                           .speed = num_from_double(45.0 / base.speed_rad_s)};
     const angle_t begin = rotor.position.fraction;
-    const angle_t middle = angle_of_mid_period(&model, &rotor);
+    const angle_t middle = begin + half_period_rotation(&model, rotor.speed);
     const num_t friction = num_mul_coef(rotor.speed, model.friction);
 
     predict_rotor(&model, &rotor, friction);

@@ -76,8 +76,7 @@ static void test_turning_back_is_turning_by_the_opposite_angle(void)
 static void test_a_turning_vector_stands_still_in_the_rotor_frame(void)
 {
     for (uint32_t i = 0; i < 100u; i++) {
-        const struct bench_vector turning =
-            bench_to_phases(0.3, -0.6, (double)i * 0.01 * TWO_PI);
+        const struct bench_vector turning = bench_to_phases(0.3, -0.6, (double)i * 0.01 * TWO_PI);
         const angle_t angle = (angle_t)((double)i * 0.01 * 4294967296.0);
         const struct dq x = park(bench_phases(turning.a, turning.b, 1.0), sincos_of(angle));
 

@@ -13,6 +13,7 @@
 #define ROUNDING_A (6.0 * 64.0 * NUM_ROUNDING)
 
 static struct per_unit base;
+static enum position_law law;
 static struct position_law_task task;
 static struct position_law_params params;
 static struct position_law_state state;
@@ -40,13 +41,10 @@ void tearDown(void)
 {
 }
 
-static const struct position_law *designed(const char *name)
+static void design(enum position_law which)
 {
-    const struct position_law *law = position_law_find(name);
-
-    TEST_ASSERT_NOT_NULL(law);
-    TEST_ASSERT_TRUE_MESSAGE(law->design(&params, &task, error), error);
-    return law;
+    law = which;
+    TEST_ASSERT_TRUE_MESSAGE(position_law_design(law, &params, &task, error), error);
 }
 
 /* SI inputs of a law in per-unit. */
@@ -57,31 +55,21 @@ static struct position_law_input input(double error_rad, double reference_speed_
     return (struct position_law_input){
         .position_error = num_from_double(error_rad / base.rad_per_turn),
         .reference_speed = num_from_double(reference_speed_rad_s / base.speed_rad_s),
-        .reference_acceleration =
-            num_from_double(acceleration_rad_s2 / base.acceleration_rad_s2),
+        .reference_acceleration = num_from_double(acceleration_rad_s2 / base.acceleration_rad_s2),
         .speed = num_from_double(speed_rad_s / base.speed_rad_s),
         .load_torque = num_from_double(load_torque_Nm / base.torque_Nm),
     };
 }
 
-static double current_A(const struct position_law *law, struct position_law_input in)
+static double current_A(struct position_law_input in)
 {
-    return num_to_double(law->step(&state, &params, &in)) * base.current_A;
+    return num_to_double(position_law_step(law, &state, &params, &in)) * base.current_A;
 }
 
 /* `terms_A`: the sum of the terms' magnitudes, of which each gain's mantissa is a share wrong. */
 static void is_current(double expected_A, double terms_A, double actual_A)
 {
     TEST_ASSERT_DOUBLE_WITHIN(ROUNDING_A + terms_A * COEF_ROUNDING, expected_A, actual_A);
-}
-
-static void test_the_registry_knows_the_laws_by_name(void)
-{
-    TEST_ASSERT_EQUAL_STRING("state-feedback", position_law_find("state-feedback")->name);
-    TEST_ASSERT_EQUAL_STRING("pid", position_law_find("pid")->name);
-    TEST_ASSERT_NULL(position_law_find("pi"));
-    TEST_ASSERT_NULL(position_law_find("pid "));
-    TEST_ASSERT_NULL(position_law_find(""));
 }
 
 /* (19) as published: no reference speed, no reference acceleration. */
@@ -92,9 +80,9 @@ static void test_state_feedback_without_feed_forward_is_equation_19(void)
         {0.01, 0.0, 0.0}, {0.0, 4.0, 0.0},    {0.0, 0.0, 0.2},
         {0.2, 20.0, 0.1}, {-0.3, -25.0, -.1}, {0.457, 45.0, 0.05},
     };
-    const struct position_law *law = designed("state-feedback");
     struct state_feedback_gains k;
 
+    design(POSITION_LAW_STATE_FEEDBACK);
     TEST_ASSERT_TRUE(
         state_feedback_design(&bench_params, PERIOD_S, BANDWIDTH, CURRENT_BANDWIDTH, &k, error));
     for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -102,142 +90,133 @@ static void test_state_feedback_without_feed_forward_is_equation_19(void)
         const double expected =
             k.k_angle_A_rad * c[0] - k.k_speed_As_rad * c[1] + k.k_load_A_Nm * c[2];
 
-        is_current(expected, 40.0, current_A(law, input(c[0], 0.0, 0.0, c[1], c[2])));
+        is_current(expected, 40.0, current_A(input(c[0], 0.0, 0.0, c[1], c[2])));
     }
 }
 
 static void test_state_feedback_with_feed_forward_adds_the_torque_of_the_reference(void)
 {
-    const struct position_law *law = designed("state-feedback");
+    design(POSITION_LAW_STATE_FEEDBACK);
 
     for (double speed = -100.0; speed <= 100.0; speed += 20.0) {
         const double acceleration = 10.0 * speed;
         const double friction_A = 0.307e-3 * speed / 0.157;
         const double inertia_A = 15.62e-5 * acceleration / 0.157;
 
-        is_current(friction_A, 0.2, current_A(law, input(0.0, speed, 0.0, speed, 0.0)));
+        is_current(friction_A, 0.2, current_A(input(0.0, speed, 0.0, speed, 0.0)));
         is_current(friction_A + inertia_A, 1.2,
-                   current_A(law, input(0.0, speed, acceleration, speed, 0.0)));
+                   current_A(input(0.0, speed, acceleration, speed, 0.0)));
     }
 }
 
 /* K_L = 1/Km: the current carries the load, no more. */
 static void test_state_feedback_in_place_carries_the_load_and_nothing_else(void)
 {
-    const struct position_law *law = designed("state-feedback");
+    design(POSITION_LAW_STATE_FEEDBACK);
 
-    is_current(0.2 / 0.157, 1.3, current_A(law, input(0.0, 0.0, 0.0, 0.0, 0.2)));
-    is_current(0.0, 0.0, current_A(law, at_rest_in_place));
+    is_current(0.2 / 0.157, 1.3, current_A(input(0.0, 0.0, 0.0, 0.0, 0.2)));
+    is_current(0.0, 0.0, current_A(at_rest_in_place));
 }
 
 static void test_the_current_is_limited_in_both_directions(void)
 {
-    static const char *const names[] = {"state-feedback", "pid"};
-
-    for (unsigned i = 0; i < 2u; i++) {
-        const struct position_law *law = designed(names[i]);
-
-        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 3.0, current_A(law, input(0.5, 0.0, 0.0, 0.0, 0.0)));
-        TEST_ASSERT_DOUBLE_WITHIN(1e-6, -3.0, current_A(law, input(-0.5, 0.0, 0.0, 0.0, 0.0)));
-        TEST_ASSERT_DOUBLE_WITHIN(1e-6, -3.0, current_A(law, input(0.0, 0.0, 0.0, 100.0, 0.0)));
-        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 3.0, current_A(law, input(0.0, 0.0, 0.0, -100.0, 0.0)));
+    for (int which = 0; which < POSITION_LAW_COUNT; which++) {
+        design((enum position_law)which);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 3.0, current_A(input(0.5, 0.0, 0.0, 0.0, 0.0)));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, -3.0, current_A(input(-0.5, 0.0, 0.0, 0.0, 0.0)));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, -3.0, current_A(input(0.0, 0.0, 0.0, 100.0, 0.0)));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 3.0, current_A(input(0.0, 0.0, 0.0, -100.0, 0.0)));
     }
 }
 
 /* However far the reference: the sum of all terms stays inside the numbers and keeps its sign. */
 static void test_the_largest_errors_keep_the_sign_of_the_current(void)
 {
-    static const char *const names[] = {"state-feedback", "pid"};
     const double far = POSITION_DIFFERENCE_MAX * base.rad_per_turn;
     const double acceleration = 3.0 * 0.157 / 15.62e-5;
 
-    for (unsigned i = 0; i < 2u; i++) {
+    for (int which = 0; which < POSITION_LAW_COUNT; which++) {
         for (int steep = 0; steep < 2; steep++) {
             task.bandwidth_rad_s = steep ? 370.0 : 5.0;
-            const struct position_law *law = designed(names[i]);
-
-            TEST_ASSERT_DOUBLE_WITHIN(
-                1e-6, 3.0, current_A(law, input(far, 200.0, acceleration, -200.0, 0.4)));
-            TEST_ASSERT_DOUBLE_WITHIN(
-                1e-6, -3.0, current_A(law, input(-far, -200.0, -acceleration, 200.0, -0.4)));
+            design((enum position_law)which);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-6, 3.0,
+                                      current_A(input(far, 200.0, acceleration, -200.0, 0.4)));
+            TEST_ASSERT_DOUBLE_WITHIN(1e-6, -3.0,
+                                      current_A(input(-far, -200.0, -acceleration, 200.0, -0.4)));
         }
     }
 }
 
 static void test_pid_sums_error_speed_and_integral(void)
 {
-    const struct position_law *law = designed("pid");
     struct pid_gains k;
 
+    design(POSITION_LAW_PID);
     TEST_ASSERT_TRUE(pid_design(&bench_params, PERIOD_S, BANDWIDTH, CURRENT_BANDWIDTH, &k, error));
     for (int period = 1; period <= 10; period++) {
         const double e = 0.005;
         const double expected = k.k_proportional_A_rad * e - k.k_speed_As_rad * 1.0 +
                                 period * k.k_integral_step_A_rad * e;
 
-        is_current(expected, 2.0, current_A(law, input(e, 0.0, 0.0, 1.0, 0.0)));
+        is_current(expected, 2.0, current_A(input(e, 0.0, 0.0, 1.0, 0.0)));
     }
 }
 
 /* The PID learns the load by itself; the estimate of it is not fed in twice. */
 static void test_pid_takes_no_load_estimate(void)
 {
-    const struct position_law *law = designed("pid");
+    design(POSITION_LAW_PID);
 
-    is_current(0.0, 0.0, current_A(law, input(0.0, 0.0, 0.0, 0.0, 0.3)));
+    is_current(0.0, 0.0, current_A(input(0.0, 0.0, 0.0, 0.0, 0.3)));
 }
 
 static void test_pid_does_not_wind_up_while_the_current_is_limited(void)
 {
-    const struct position_law *law = designed("pid");
+    design(POSITION_LAW_PID);
 
     for (int k = 0; k < 5000; k++) {
-        (void)current_A(law, input(0.5, 0.0, 0.0, 0.0, 0.0));
+        (void)current_A(input(0.5, 0.0, 0.0, 0.0, 0.0));
     }
-    is_current(0.0, 0.0, current_A(law, at_rest_in_place));
+    is_current(0.0, 0.0, current_A(at_rest_in_place));
     for (int k = 0; k < 5000; k++) {
-        (void)current_A(law, input(-0.5, 0.0, 0.0, 0.0, 0.0));
+        (void)current_A(input(-0.5, 0.0, 0.0, 0.0, 0.0));
     }
-    is_current(0.0, 0.0, current_A(law, at_rest_in_place));
+    is_current(0.0, 0.0, current_A(at_rest_in_place));
 }
 
 /* Limited by speed while the error would take current back: that the integrator may learn. */
 static void test_pid_unwinds_while_the_current_is_limited_the_other_way(void)
 {
-    const struct position_law *law = designed("pid");
+    design(POSITION_LAW_PID);
 
     for (int k = 0; k < 100; k++) {
-        (void)current_A(law, input(-0.005, 0.0, 0.0, -50.0, 0.0));
+        (void)current_A(input(-0.005, 0.0, 0.0, -50.0, 0.0));
     }
     TEST_ASSERT_TRUE(state.integral < NUM(0.0));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 3.0, current_A(law, input(-0.005, 0.0, 0.0, -50.0, 0.0)));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 3.0, current_A(input(-0.005, 0.0, 0.0, -50.0, 0.0)));
 }
 
 static void test_the_integral_of_the_pid_stays_within_the_current_limit(void)
 {
-    const struct position_law *law = designed("pid");
+    design(POSITION_LAW_PID);
 
     for (int k = 0; k < 20000; k++) {
-        (void)current_A(law, input(0.01, 0.0, 0.0, 5.0, 0.0));
+        (void)current_A(input(0.01, 0.0, 0.0, 5.0, 0.0));
     }
     TEST_ASSERT_TRUE(num_to_double(state.integral) * base.current_A <= 3.0 + 1e-6);
 }
 
 static void test_a_law_too_quick_for_the_current_control_is_refused_with_its_limit(void)
 {
-    static const char *const names[] = {"state-feedback", "pid"};
-
-    for (unsigned i = 0; i < 2u; i++) {
-        const struct position_law *law = position_law_find(names[i]);
-
+    for (int which = 0; which < POSITION_LAW_COUNT; which++) {
         task.bandwidth_rad_s = 400.0;
         task.current_bandwidth_rad_s = 1500.0;
-        TEST_ASSERT_FALSE(law->design(&params, &task, error));
+        TEST_ASSERT_FALSE(position_law_design((enum position_law)which, &params, &task, error));
         TEST_ASSERT_EQUAL_STRING("position bandwidth 400 rad/s: must be at most 375 rad/s, "
                                  "a quarter of the current's",
                                  error);
         task.current_bandwidth_rad_s = 4000.0;
-        TEST_ASSERT_FALSE(law->design(&params, &task, error));
+        TEST_ASSERT_FALSE(position_law_design((enum position_law)which, &params, &task, error));
         TEST_ASSERT_EQUAL_STRING("current bandwidth 4000 rad/s: must be at most 3000 rad/s, "
                                  "0.3 per control period",
                                  error);
@@ -247,7 +226,6 @@ static void test_a_law_too_quick_for_the_current_control_is_refused_with_its_lim
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_the_registry_knows_the_laws_by_name);
     RUN_TEST(test_state_feedback_without_feed_forward_is_equation_19);
     RUN_TEST(test_state_feedback_with_feed_forward_adds_the_torque_of_the_reference);
     RUN_TEST(test_state_feedback_in_place_carries_the_load_and_nothing_else);

@@ -128,8 +128,8 @@ static void test_a_refusal_says_what_was_asked_and_what_is_allowed(void)
 {
     settings.hold_current_A = 3.5;
     TEST_ASSERT_FALSE(drive_settings_check(&settings, error));
-    TEST_ASSERT_EQUAL_STRING(
-        "hold_current_A 3.5 A: must be at most 3 A, the range of this setting", error);
+    TEST_ASSERT_EQUAL_STRING("hold_current_A 3.5 A: must be at most 3 A, the range of this setting",
+                             error);
     setUp();
     settings.motor.rotor_teeth = 0;
     TEST_ASSERT_FALSE(drive_settings_check(&settings, error));
@@ -164,8 +164,8 @@ static void test_the_rated_current_has_a_range_of_its_own(void)
 
 static void test_names_are_spelt_as_scenarios_and_the_serial_line_do(void)
 {
-    static const char *const states[DRIVE_STATES] = {
-        "switch-on-disabled", "calibrating-offsets", "aligning", "operation-enabled", "fault"};
+    static const char *const states[DRIVE_STATES] = {"switch-on-disabled", "calibrating-offsets",
+                                                     "aligning", "operation-enabled", "fault"};
     static const char *const faults[DRIVE_FAULTS] = {
         "none",        "overcurrent",    "hardware-overcurrent", "deadline-missed",
         "bus-voltage", "estimate-range", "offset-range"};

@@ -123,12 +123,12 @@ static void test_the_torque_current_carries_the_load_and_damps(void)
     TEST_ASSERT_DOUBLE_WITHIN(
         1e-5, 0.1 / 0.157,
         num_to_double(standstill_hold_torque_current(&params, NUM(0.0), load)) * base.current_A);
-    TEST_ASSERT_DOUBLE_WITHIN(
-        1e-4, 0.1 / 0.157 - 2.0 * 0.39 * 0.5,
-        num_to_double(standstill_hold_torque_current(&params, speed, load)) * base.current_A);
-    TEST_ASSERT_DOUBLE_WITHIN(
-        1e-4, 0.1 / 0.157 + 2.0 * 0.39 * 0.5,
-        num_to_double(standstill_hold_torque_current(&params, -speed, load)) * base.current_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, 0.1 / 0.157 - 2.0 * 0.39 * 0.5,
+                              num_to_double(standstill_hold_torque_current(&params, speed, load)) *
+                                  base.current_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, 0.1 / 0.157 + 2.0 * 0.39 * 0.5,
+                              num_to_double(standstill_hold_torque_current(&params, -speed, load)) *
+                                  base.current_A);
 }
 
 static void test_the_torque_current_is_limited(void)

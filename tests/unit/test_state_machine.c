@@ -200,10 +200,10 @@ static void test_enabling_an_enabled_drive_changes_nothing(void)
     must_post(move_to(0.1));
     run(MOVE_PERIODS + 2);
     post_kind(DRIVE_COMMAND_ENABLE);
+    must_post(move_to(0.2));
     run(1);
     is_in(DRIVE_OPERATION_ENABLED, true);
     the_reference_is_at(0.1);
-    must_post(move_to(0.2));
     run(MOVE_PERIODS + 2);
     the_reference_is_at(0.2);
 }

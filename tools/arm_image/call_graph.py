@@ -61,25 +61,27 @@ def _node(image, function):
         node.instructions.append(instruction)
         depth += _stack_growth(instruction, name)
         deepest = max(deepest, depth)
-        if _leaves_function(instruction):
-            depth = deepest  # code behind a return belongs to another path; frames are set up once
         if not instruction.is_branch:
             continue
         target = instruction.target
-        if target is not None and not start <= target < start + max(size, 2):
+        if _is_return(instruction, node.instructions):
+            depth = deepest  # code behind a return belongs to another path; frames are set up once
+        elif target is None:
+            node.indirect |= instruction.base in ("bx", "blx", "ldr")  # MOV PC: a switch
+        elif not start <= target < start + max(size, 2):
             node.calls.add(target)
-        elif target is None and instruction.base in ("bx", "blx") and instruction.operands != "lr":
-            node.indirect = True
-        elif instruction.base == "ldr" and instruction.operands.startswith("pc,"):
-            node.indirect = True
     node.stack_B = deepest
     return node
 
 
-def _leaves_function(instruction):
-    return "pc" in instruction.register_list or (
-        instruction.base == "bx" and instruction.operands == "lr"
-    )
+def _is_return(instruction, before):
+    """POP with PC in either of its forms, BX LR, or BX of a register popped right before."""
+    if instruction.base == "ldr":
+        return instruction.operands.startswith("pc, [sp]")
+    if instruction.base == "bx":
+        popped = {r for i in before[-4:] if i.base == "pop" for r in i.register_list}
+        return instruction.operands in popped | {"lr"}
+    return "pc" in instruction.register_list
 
 
 def _stack_growth(instruction, name):

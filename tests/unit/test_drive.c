@@ -1,0 +1,312 @@
+/* The whole drive on the simulated motor: averaged bridge, converters without noise. */
+#include <string.h>
+
+#include "tests/unit/fake_board.h"
+#include "tests/unit/num_assert.h"
+
+#define DEAD_TIME_LOSS_V 0.3
+
+static struct drive drive;
+static struct drive_settings settings;
+static struct bench_motor motor;
+static char error[DRIVE_ERROR_TEXT];
+
+/* The bridge over S(k)...S(k+1), and what is commanded for S(k+1)...S(k+2). */
+static struct {
+    struct hal_outputs in_force;
+    struct bench_vector mean_V; /* over the past period */
+    double bus_V;
+} bridge;
+
+void setUp(void)
+{
+    drive_settings_default(&settings, &bench_params);
+    settings.hold_on_enable_s = 0.03;
+    fake_board = (struct fake_board){.trip_latched = false};
+    motor = (struct bench_motor){.motor = bench_params};
+    memset(&bridge, 0, sizeof bridge);
+    bridge.bus_V = 24.0;
+}
+
+void tearDown(void)
+{
+}
+
+static void power_up(void)
+{
+    TEST_ASSERT_TRUE_MESSAGE(drive_init(&drive, &fake_hal, &settings, error), error);
+}
+
+static int32_t code(double x)
+{
+    return (int32_t)(x + 8192.5) - 8192;
+}
+
+static struct hal_samples sample(void)
+{
+    return (struct hal_samples){
+        .current_a = (uint16_t)code(2048.0 + motor.i_a / bench_facts.current_A_per_code),
+        .current_b = (uint16_t)code(2048.0 + motor.i_b / bench_facts.current_A_per_code),
+        .bus_voltage = (uint16_t)code(bridge.bus_V / bench_facts.bus_V_per_code),
+        .phase_voltage_a = (int16_t)code(bridge.mean_V.a / bench_facts.phase_voltage_V_per_code),
+        .phase_voltage_b = (int16_t)code(bridge.mean_V.b / bench_facts.phase_voltage_V_per_code),
+    };
+}
+
+/* Dead time costs a voltage against the current; a small current less. */
+static double phase_voltage(const uint16_t high_counts[2], double current_A)
+{
+    const double modulation = ((double)high_counts[0] - (double)high_counts[1]) / 8500.0;
+    const double loss = fmin(fmax(current_A / 0.05, -1.0), 1.0) * DEAD_TIME_LOSS_V;
+
+    return modulation * bridge.bus_V - loss;
+}
+
+static void period(void)
+{
+    const struct hal_samples samples = sample();
+    const struct hal_outputs next = drive_control_cycle(&drive, &samples);
+
+    if (bridge.in_force.bridge_on) {
+        bridge.mean_V.a = phase_voltage(&bridge.in_force.high_counts[HAL_LEG_A_PLUS], motor.i_a);
+        bridge.mean_V.b = phase_voltage(&bridge.in_force.high_counts[HAL_LEG_B_PLUS], motor.i_b);
+        bench_run(&motor, bridge.mean_V.a, bridge.mean_V.b);
+    } else {
+        bridge.mean_V = (struct bench_vector){0.0, 0.0};
+        motor.i_a = 0.0;
+        motor.i_b = 0.0;
+    }
+    bridge.in_force = next;
+}
+
+static void run(int periods)
+{
+    for (int k = 0; k < periods; k++) {
+        period();
+    }
+    TEST_ASSERT_EQUAL_STRING("none", drive_fault_name(drive.fault));
+}
+
+static void post(struct drive_command command)
+{
+    TEST_ASSERT_TRUE_MESSAGE(drive_command(&drive, &command, error), error);
+}
+
+static void enable(void)
+{
+    power_up();
+    post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE});
+    run(OFFSET_SAMPLES + 301);
+    TEST_ASSERT_EQUAL_STRING("operation-enabled", drive_state_name(drive.state));
+}
+
+static struct drive_signals signals(void)
+{
+    struct drive_signals now;
+
+    drive_signals_read(&drive, &now);
+    return now;
+}
+
+static void move(double position_rad, double duration_s)
+{
+    post((struct drive_command){.kind = DRIVE_COMMAND_MOVE_TRAPEZOID,
+                                .position_rad = position_rad,
+                                .duration_s = duration_s,
+                                .ramp_s = 0.3 * duration_s});
+}
+
+/* Before S(k) is left: reference, estimate and rotor at one instant. */
+static double following_error_rad(void)
+{
+    return signals().theta_ref_rad - (motor.angle_rad - motor.speed_rad_s * PERIOD_S);
+}
+
+/* ---- start-up ---- */
+
+static void test_bandwidths_too_fast_are_refused_with_their_limit(void)
+{
+    settings.current_bandwidth_rad_s = 3001.0;
+    TEST_ASSERT_FALSE(drive_init(&drive, &fake_hal, &settings, error));
+    TEST_ASSERT_EQUAL_STRING("current bandwidth 3001 rad/s: must be at most 3000 rad/s, "
+                             "0.3 per control period",
+                             error);
+    settings.current_bandwidth_rad_s = 1500.0;
+    settings.law_bandwidth_rad_s = 376.0;
+    for (int law = 0; law < POSITION_LAW_COUNT; law++) {
+        settings.law = (enum position_law)law;
+        TEST_ASSERT_FALSE(drive_init(&drive, &fake_hal, &settings, error));
+        TEST_ASSERT_EQUAL_STRING("position bandwidth 376 rad/s: must be at most 375 rad/s, "
+                                 "a quarter of the current's",
+                                 error);
+    }
+    settings.law_bandwidth_rad_s = 375.0;
+    power_up();
+}
+
+static void test_settings_out_of_range_are_refused_before_anything_is_designed(void)
+{
+    settings.hold_current_A = -1.0;
+    TEST_ASSERT_FALSE(drive_init(&drive, &fake_hal, &settings, error));
+    TEST_ASSERT_EQUAL_STRING(
+        "hold_current_A -1 A: must be at least 0.03 A, the range of this setting", error);
+}
+
+static void test_a_motor_slower_than_the_control_is_refused(void)
+{
+    settings.motor.inductance_H = 0.36e-4; /* L/R below the period */
+    TEST_ASSERT_FALSE(drive_init(&drive, &fake_hal, &settings, error));
+    TEST_ASSERT_EQUAL_STRING("period 0.0001 s: must be below 9.73e-05 s, the motor's L / R", error);
+}
+
+/* ---- in operation ---- */
+
+static void test_the_first_hold_aligns_the_rotor_and_finds_the_resistance(void)
+{
+    motor.motor.resistance_ohm = 0.45;
+    settings.hold_on_enable_s = 0.15;
+    power_up();
+    post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE});
+    run(OFFSET_SAMPLES + 1501);
+    TEST_ASSERT_EQUAL_STRING("operation-enabled", drive_state_name(drive.state));
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 1.5, signals().i_d_A);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.45, signals().resistance_est_ohm);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-4, 0.0, motor.angle_rad);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 24.0, signals().bus_V);
+}
+
+static void test_a_move_is_followed_without_lag_and_ends_where_it_should(void)
+{
+    enable();
+    move(1.5, 0.08);
+    for (int k = 0; k < 80; k++) {
+        run(10);
+        TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.0, following_error_rad());
+    }
+    run(600);
+    TEST_ASSERT_TRUE(signals().holding);
+    TEST_ASSERT_DOUBLE_WITHIN(5e-4, 1.5, motor.angle_rad);
+    TEST_ASSERT_DOUBLE_WITHIN(5e-4, 1.5, signals().theta_est_rad);
+}
+
+/* The law as published lags by 2/w0 times the speed. */
+static void test_without_feed_forward_the_rotor_lags_by_twice_the_speed_over_the_bandwidth(void)
+{
+    settings.feed_forward = false;
+    enable();
+    move(1.5, 0.12);
+    run(700);
+    TEST_ASSERT_DOUBLE_WITHIN(0.1 * 2.0 / 200.0 * signals().omega_ref_rad_s,
+                              2.0 / 200.0 * signals().omega_ref_rad_s, following_error_rad());
+}
+
+static void test_a_load_is_estimated_and_carried_while_turning(void)
+{
+    enable();
+    move(4.0, 0.2);
+    run(800);
+    motor.load_torque_Nm = 0.1;
+    run(300);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.1, signals().load_torque_est_Nm);
+    TEST_ASSERT_DOUBLE_WITHIN(0.05, 0.1 / 0.157 + 0.307e-3 * motor.speed_rad_s / 0.157,
+                              signals().i_q_ref_A);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.0, following_error_rad());
+}
+
+static void test_both_directions_are_the_same_to_the_drive(void)
+{
+    double end[2];
+    double middle[2];
+
+    for (int i = 0; i < 2; i++) {
+        setUp();
+        enable();
+        move(i == 0 ? 1.0 : -1.0, 0.08);
+        run(400);
+        middle[i] = motor.angle_rad;
+        run(700);
+        end[i] = motor.angle_rad;
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(5e-4, -middle[0], middle[1]);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-4, -end[0], end[1]);
+}
+
+static void test_a_bus_that_sags_to_18_V_in_motion_is_not_noticed(void)
+{
+    enable();
+    move(2.0, 0.12);
+    run(500);
+    bridge.bus_V = 18.0;
+    for (int k = 0; k < 70; k++) {
+        run(10);
+        TEST_ASSERT_DOUBLE_WITHIN(0.012, 0.0, following_error_rad());
+    }
+}
+
+static void test_the_pid_holds_its_place_and_follows(void)
+{
+    settings.law = POSITION_LAW_PID;
+    settings.law_bandwidth_rad_s = 150.0;
+    enable();
+    move(1.0, 0.1);
+    for (int k = 0; k < 100; k++) {
+        run(10);
+        TEST_ASSERT_DOUBLE_WITHIN(0.02, 0.0, following_error_rad());
+    }
+}
+
+static void test_the_steady_state_ekf_serves_a_slow_move(void)
+{
+    settings.estimator = DRIVE_ESTIMATOR_STEADY_STATE_EKF;
+    enable();
+    move(0.8, 0.08);
+    for (int k = 0; k < 80; k++) {
+        run(10);
+        TEST_ASSERT_DOUBLE_WITHIN(0.02, 0.0, following_error_rad());
+    }
+}
+
+/*
+ * At rest a displaced rotor and a loaded one look alike, so the first hold cannot undo all of it;
+ * the back-EMF of the first move can.
+ */
+static void test_twenty_electrical_degrees_told_wrong_are_found_by_the_first_move(void)
+{
+    settings.initial_angle_error_rad = 20.0 / 360.0 * TWO_PI / 50.0;
+    enable();
+    move(1.0, 0.1);
+    run(1000);
+    TEST_ASSERT_DOUBLE_WITHIN(1.0 / 360.0 * TWO_PI / 50.0, motor.angle_rad,
+                              signals().theta_est_rad);
+    run(600);
+    TEST_ASSERT_DOUBLE_WITHIN(5e-4, 1.0, motor.angle_rad);
+}
+
+static void test_a_disable_in_motion_opens_the_bridge_at_once(void)
+{
+    enable();
+    move(2.0, 0.12);
+    run(500);
+    post((struct drive_command){.kind = DRIVE_COMMAND_DISABLE});
+    run(1);
+    TEST_ASSERT_FALSE(bridge.in_force.bridge_on);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_bandwidths_too_fast_are_refused_with_their_limit);
+    RUN_TEST(test_settings_out_of_range_are_refused_before_anything_is_designed);
+    RUN_TEST(test_a_motor_slower_than_the_control_is_refused);
+    RUN_TEST(test_the_first_hold_aligns_the_rotor_and_finds_the_resistance);
+    RUN_TEST(test_a_move_is_followed_without_lag_and_ends_where_it_should);
+    RUN_TEST(test_without_feed_forward_the_rotor_lags_by_twice_the_speed_over_the_bandwidth);
+    RUN_TEST(test_a_load_is_estimated_and_carried_while_turning);
+    RUN_TEST(test_both_directions_are_the_same_to_the_drive);
+    RUN_TEST(test_a_bus_that_sags_to_18_V_in_motion_is_not_noticed);
+    RUN_TEST(test_the_pid_holds_its_place_and_follows);
+    RUN_TEST(test_the_steady_state_ekf_serves_a_slow_move);
+    RUN_TEST(test_twenty_electrical_degrees_told_wrong_are_found_by_the_first_move);
+    RUN_TEST(test_a_disable_in_motion_opens_the_bridge_at_once);
+    return UNITY_END();
+}
