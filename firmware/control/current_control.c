@@ -26,12 +26,12 @@ void current_control_reset(struct current_control *control)
 /* d keeps the field orientation, so it is served first; q gets the rest of the circle. */
 static struct dq limit_voltage(struct dq v, num_t limit)
 {
-    struct dq limited;
-    num_t q_limit;
+    struct dq limited = v;
 
-    limited.d = num_limit(v.d, limit);
-    q_limit = num_sqrt(num_mul(limit, limit) - num_mul(limited.d, limited.d));
-    limited.q = num_limit(v.q, q_limit);
+    if (num_abs(v.d) + num_abs(v.q) > limit) {
+        limited.d = num_limit(v.d, limit);
+        limited.q = num_limit(v.q, num_sqrt(num_mul(limit, limit) - num_mul(limited.d, limited.d)));
+    }
     return limited;
 }
 

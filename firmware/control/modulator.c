@@ -26,7 +26,7 @@ void modulator_track_bus(struct modulator *modulator, num_t bus)
 {
     num_t product;
 
-    modulator->bus = num_clamp(bus, NUM(0.4), NUM(1.9));
+    modulator->bus = num_clamp(bus, NUM(0.5), NUM(1.9));
     product = num_mul(modulator->bus, modulator->bus_reciprocal);
     modulator->bus_reciprocal = num_clamp(num_mul(modulator->bus_reciprocal, NUM(2.0) - product),
                                           NUM(1.0 / 1.9), NUM(1.0 / 0.4));
@@ -34,7 +34,7 @@ void modulator_track_bus(struct modulator *modulator, num_t bus)
 
 num_t modulator_voltage_limit(const struct modulator *modulator)
 {
-    return num_mul(modulator->bus, NUM(MODULATION_MAX));
+    return num_mul_unit(modulator->bus, UNIT(MODULATION_MAX));
 }
 
 static struct leg_pair leg_counts(const struct modulator *modulator,

@@ -40,7 +40,7 @@ struct modulator_params modulator_design(uint32_t half_period_counts);
 
 void modulator_reset(struct modulator *modulator);
 
-/* Takes the bus voltage of S(k). Valid for 0.4...1.9 of nominal, clamped beyond. */
+/* Takes the bus voltage of S(k). Valid for 0.5...1.9 of nominal, clamped beyond. */
 void modulator_track_bus(struct modulator *modulator, num_t bus);
 
 /* Largest voltage vector that can be commanded in any direction. */

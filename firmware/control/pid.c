@@ -26,7 +26,7 @@ bool pid_law_design(struct position_law_params *params, const struct position_la
 num_t pid_law_step(struct position_law_state *state, const struct position_law_params *params,
                    const struct position_law_input *input)
 {
-    num_t position_error = num_limit(input->position_error, params->position_error_limit);
+    num_t position_error = num_headroom(input->position_error, params->position_error_limit);
     num_t integral = state->integral + num_mul_coef(position_error, params->integral);
     num_t current = position_law_proportional(params, input) + integral;
     num_t limited = num_limit(current, params->current_limit);

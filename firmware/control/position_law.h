@@ -68,7 +68,7 @@ void position_law_scale(struct position_law_params *params, const struct positio
 static inline num_t position_law_proportional(const struct position_law_params *params,
                                               const struct position_law_input *input)
 {
-    num_t position_error = num_limit(input->position_error, params->position_error_limit);
+    num_t position_error = num_headroom(input->position_error, params->position_error_limit);
     num_t speed_error = num_clamp(input->reference_speed - input->speed, -params->speed_error_limit,
                                   params->speed_error_limit);
 

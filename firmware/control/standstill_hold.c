@@ -29,19 +29,31 @@ void standstill_hold_reset(struct standstill_hold *hold)
     hold->i_d = NUM(0.0);
 }
 
-void standstill_hold_step(struct standstill_hold *hold, const struct standstill_hold_params *params,
-                          uint32_t rest_periods, num_t position_error, num_t speed)
+void standstill_hold_enter(struct standstill_hold *hold, angle_t reference)
 {
-    bool near =
-        num_abs(position_error) < params->error_limit && num_abs(speed) < params->speed_limit;
+    hold->active = true;
+    hold->frame = sincos_of(reference);
+}
 
+num_t standstill_hold_step(struct standstill_hold *hold,
+                           const struct standstill_hold_params *params, uint32_t rest_periods)
+{
     if (rest_periods == 0u) {
         hold->active = false;
-    } else if (rest_periods > params->delay_periods && near) {
-        hold->active = true;
     }
     hold->i_d += hold->active ? params->current_ramp : -params->current_ramp;
     hold->i_d = num_clamp(hold->i_d, NUM(0.0), params->current);
+    return hold->i_d;
+}
+
+void standstill_hold_consider(struct standstill_hold *hold,
+                              const struct standstill_hold_params *params, angle_t reference,
+                              uint32_t rest_periods, num_t position_error, num_t speed)
+{
+    if (rest_periods > params->delay_periods && num_abs(position_error) < params->error_limit &&
+        num_abs(speed) < params->speed_limit) {
+        standstill_hold_enter(hold, reference);
+    }
 }
 
 num_t standstill_hold_torque_current(const struct standstill_hold_params *params, num_t speed,

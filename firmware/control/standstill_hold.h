@@ -28,6 +28,7 @@ struct standstill_hold_params {
 
 struct standstill_hold {
     bool active;
+    struct sincos frame; /* of the reference at which the hold was entered */
     num_t i_d;
 };
 
@@ -45,12 +46,23 @@ struct standstill_hold_params standstill_hold_design(const struct per_unit *base
 
 void standstill_hold_reset(struct standstill_hold *hold);
 
+/* Holds from now on, the current frame fixed to this reference. */
+void standstill_hold_enter(struct standstill_hold *hold, angle_t reference);
+
 /*
- * Decides whether the drive holds, and ramps the d current. `rest_periods`: since the reference
- * came to rest, 0 while it moves; `position_error` in electrical turns.
+ * One period: leaves the hold when the reference moves (`rest_periods` is 0), ramps the d current
+ * and returns it.
  */
-void standstill_hold_step(struct standstill_hold *hold, const struct standstill_hold_params *params,
-                          uint32_t rest_periods, num_t position_error, num_t speed);
+num_t standstill_hold_step(struct standstill_hold *hold,
+                           const struct standstill_hold_params *params, uint32_t rest_periods);
+
+/*
+ * Enters the hold, from the next period on, if the reference has rested for long enough and the
+ * rotor has come near it. `position_error` in electrical turns.
+ */
+void standstill_hold_consider(struct standstill_hold *hold,
+                              const struct standstill_hold_params *params, angle_t reference,
+                              uint32_t rest_periods, num_t position_error, num_t speed);
 
 /* The q current of the hold. */
 num_t standstill_hold_torque_current(const struct standstill_hold_params *params, num_t speed,

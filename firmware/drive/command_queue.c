@@ -7,7 +7,7 @@ static bool has_come(uint32_t at_period, uint32_t period)
 
 bool command_queue_put(struct command_queue *queue, const struct queued_command *command)
 {
-    if (queue->written - queue->read == COMMAND_QUEUE_LENGTH) {
+    if (queue->written - queue->read == COMMAND_QUEUE_LENGTH - 1u) {
         return false;
     }
     queue->entry[queue->written % COMMAND_QUEUE_LENGTH] = *command;
@@ -39,9 +39,9 @@ bool command_queue_take_urgent(struct command_queue *queue, struct urgent_comman
     return true;
 }
 
-const struct queued_command *command_queue_due(const struct command_queue *queue, uint32_t period)
+struct queued_command *command_queue_due(struct command_queue *queue, uint32_t period)
 {
-    const struct queued_command *oldest = &queue->entry[queue->read % COMMAND_QUEUE_LENGTH];
+    struct queued_command *oldest = &queue->entry[queue->read % COMMAND_QUEUE_LENGTH];
 
     return queue->written != queue->read && has_come(oldest->at_period, period) ? oldest : NULL;
 }

@@ -17,6 +17,13 @@ struct queued_command {
     struct profile profile; /* of a move */
 };
 
+/* A profile comes with it. */
+static inline bool queued_command_is_move(const struct queued_command *command)
+{
+    return command->kind == DRIVE_COMMAND_MOVE_TRAPEZOID ||
+           command->kind == DRIVE_COMMAND_MOVE_SMOOTH || command->kind == DRIVE_COMMAND_STEP;
+}
+
 /* A command that waits for nothing but its period; the last one posted counts. */
 struct urgent_command {
     volatile bool posted;
@@ -33,7 +40,7 @@ struct command_queue {
     struct urgent_command stop;
 };
 
-/* Background: false if the queue is full. */
+/* Background: false if COMMAND_QUEUE_LENGTH - 1 wait; the last entry may be a profile in use. */
 bool command_queue_put(struct command_queue *queue, const struct queued_command *command);
 
 /* Background: `urgent` is one of the queue's own. */
@@ -44,8 +51,11 @@ void command_queue_put_urgent(struct command_queue *queue, struct urgent_command
 bool command_queue_take_urgent(struct command_queue *queue, struct urgent_command *urgent,
                                uint32_t period);
 
-/* Interrupt: the oldest command if its period has come, else NULL. It stays until dropped. */
-const struct queued_command *command_queue_due(const struct command_queue *queue, uint32_t period);
+/*
+ * Interrupt: the oldest command if its period has come, else NULL. It leaves the queue when
+ * dropped; its profile keeps until the command after the next one is posted behind a full queue.
+ */
+struct queued_command *command_queue_due(struct command_queue *queue, uint32_t period);
 
 void command_queue_drop(struct command_queue *queue);
 

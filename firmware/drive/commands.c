@@ -2,12 +2,6 @@
 #include "firmware/design/refusal.h"
 #include "firmware/drive/drive.h"
 
-static bool is_move(enum drive_command_kind kind)
-{
-    return kind == DRIVE_COMMAND_MOVE_TRAPEZOID || kind == DRIVE_COMMAND_MOVE_SMOOTH ||
-           kind == DRIVE_COMMAND_STEP;
-}
-
 static enum profile_shape shape_of(enum drive_command_kind kind)
 {
     if (kind == DRIVE_COMMAND_STEP) {
@@ -61,19 +55,22 @@ bool drive_command(struct drive *drive, const struct drive_command *command,
         return true;
     }
     if (command->kind == DRIVE_COMMAND_ENABLE) {
+        if (drive->state == DRIVE_SWITCH_ON_DISABLED) {
+            drive->board->bridge_disable(drive->board->context); /* clears a latched trip */
+        }
         if (!drive->board->bridge_enable(drive->board->context)) {
             return design_refuse(error, "enable refused: the board's overcurrent trip is latched");
         }
         drive->planned_end = drive->params.initial_position;
         drive->stop_posted = false;
     }
-    if (is_move(command->kind) && !plan(drive, command, &queued.profile, error)) {
+    if (queued_command_is_move(&queued) && !plan(drive, command, &queued.profile, error)) {
         return false;
     }
     if (!command_queue_put(&drive->commands, &queued)) {
-        return design_refuse(error, "command refused: 16 commands are waiting already");
+        return design_refuse(error, "command refused: 15 commands are waiting already");
     }
-    if (is_move(command->kind)) {
+    if (queued_command_is_move(&queued)) {
         drive->planned_end = queued.profile.target;
     }
     return true;
@@ -88,7 +85,7 @@ void drive_signals_read(const struct drive *drive, struct drive_signals *signals
 
     signals->state = drive->state;
     signals->fault = drive->fault;
-    signals->period = drive->period - 1u;
+    signals->period = drive->period;
     signals->holding = drive->hold.active;
     signals->reference_moving = reference->moving;
     signals->theta_ref_rad = position_to_rad(reference->position, teeth);

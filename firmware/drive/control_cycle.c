@@ -11,6 +11,8 @@
 #include "firmware/drive/drive.h"
 #include "firmware/drive/state_machine.h"
 
+static const struct hal_outputs bridge_off = {.bridge_on = false};
+
 /* The motor at S(k+1) as known at S(k). */
 struct prediction {
     struct phases current;
@@ -33,30 +35,32 @@ static struct dq wanted_current(struct drive *drive, const struct rotor *rotor)
 {
     const struct drive_params *params = &drive->params;
     const struct reference_sample *reference = &drive->reference.next;
-    const struct position_law_input input = {
-        .position_error = position_difference(reference->position, rotor->position),
-        .reference_speed = params->feed_forward ? reference->speed : NUM(0.0),
-        .reference_acceleration = params->feed_forward ? reference->acceleration : NUM(0.0),
-        .speed = rotor->speed,
-        .load_torque = rotor->load_torque,
-    };
+    const uint32_t rest_periods = drive->reference.rest_periods;
     struct dq current;
 
-    standstill_hold_step(&drive->hold, &params->hold, drive->reference.rest_periods,
-                         input.position_error, rotor->speed);
-    current.d = drive->hold.i_d;
-    current.q =
-        drive->hold.active
-            ? standstill_hold_torque_current(&params->hold, rotor->speed, rotor->load_torque)
-            : position_law_step(params->position_law, &drive->law, &params->law, &input);
+    current.d = standstill_hold_step(&drive->hold, &params->hold, rest_periods);
+    if (drive->hold.active) {
+        current.q = standstill_hold_torque_current(&params->hold, rotor->speed, rotor->load_torque);
+    } else {
+        const struct position_law_input input = {
+            .position_error = position_difference(reference->position, rotor->position),
+            .reference_speed = params->feed_forward ? reference->speed : NUM(0.0),
+            .reference_acceleration = params->feed_forward ? reference->acceleration : NUM(0.0),
+            .speed = rotor->speed,
+            .load_torque = rotor->load_torque,
+        };
+
+        current.q = position_law_step(params->position_law, &drive->law, &params->law, &input);
+        standstill_hold_consider(&drive->hold, &params->hold, reference->position.fraction,
+                                 rest_periods, input.position_error, rotor->speed);
+    }
     return current;
 }
 
 /* The hold fixes the current frame to the reference; in motion it turns with the rotor. */
 static struct sincos control_frame(const struct drive *drive, const struct estimate *estimate)
 {
-    return drive->hold.active ? sincos_of(drive->reference.next.position.fraction)
-                              : estimate_end_of_period(estimate);
+    return drive->hold.active ? drive->hold.frame : estimate_end_of_period(estimate);
 }
 
 /* The voltage turns back to phases at the angle of the middle of S(k+1)...S(k+2). */
@@ -104,25 +108,28 @@ static const struct estimate *observe(struct drive *drive, const struct sample_s
                           drive->hold.active);
 }
 
+/* The bridge is on and stays on for this period: what it needs of estimate and duties. */
+static struct hal_outputs powered_cycle(struct drive *drive, const struct sample_set *now)
+{
+    const struct estimate *estimate = observe(drive, now);
+    const enum drive_fault fault = protection_check_estimate(&drive->params.protection, estimate);
+
+    if (fault != DRIVE_FAULT_NONE) {
+        state_machine_fault(drive, fault);
+        return bridge_off;
+    }
+    return control(drive, estimate);
+}
+
 struct hal_outputs drive_control_cycle(struct drive *drive, const struct hal_samples *samples)
 {
-    const struct drive_params *params = &drive->params;
     const struct sample_set now =
-        measurement_step(&drive->measurement, &params->measurement, samples);
+        measurement_step(&drive->measurement, &drive->params.measurement, samples);
     const bool was_powered = state_machine_powered(drive);
-    struct hal_outputs duties = {.bridge_on = false};
 
     drive->bus = now.bus;
+    drive->period++;
     state_machine_step(drive, samples);
     /* The period that powers up only resets the blocks: the interrupt is spared the sum of both. */
-    if (was_powered && state_machine_powered(drive)) {
-        const struct estimate *estimate = observe(drive, &now);
-
-        state_machine_fault(drive, protection_check_estimate(&params->protection, estimate));
-        if (state_machine_powered(drive)) {
-            duties = control(drive, estimate);
-        }
-    }
-    drive->period++;
-    return duties;
+    return was_powered && state_machine_powered(drive) ? powered_cycle(drive, &now) : bridge_off;
 }

@@ -80,10 +80,19 @@ static bool design_hold(struct drive *drive, const struct drive_settings *settin
     return true;
 }
 
+/* Sampling ends what the model can follow: a quarter of an electrical turn in a period. */
+static double speed_limit(const struct drive_settings *settings, const struct per_unit *base)
+{
+    const double sampled = 0.24 / base->turns_per_period * base->speed_rad_s;
+
+    return settings->speed_limit_rad_s < sampled ? settings->speed_limit_rad_s : sampled;
+}
+
 bool drive_init(struct drive *drive, const struct hal *board, const struct drive_settings *settings,
                 char error[DRIVE_ERROR_TEXT])
 {
-    static const struct drive powered_down = {.state = DRIVE_SWITCH_ON_DISABLED};
+    static const struct drive powered_down = {.state = DRIVE_SWITCH_ON_DISABLED,
+                                              .period = UINT32_MAX};
     const struct hal_facts *facts = board->facts;
     const double period_s = facts->control_period_s;
     struct drive_params *params = &drive->params;
@@ -95,6 +104,7 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
     drive->board = board;
     drive->settings = *settings;
     drive->base = per_unit_base(&settings->motor, period_s);
+    drive->settings.speed_limit_rad_s = speed_limit(settings, &drive->base);
     params->measurement = measurement_design(facts, &drive->base);
     params->model =
         motor_model_design(&settings->motor, &drive->base, period_s, facts->bridge_resistance_ohm);
@@ -105,7 +115,7 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
     params->current_control = current_control_design(&settings->motor, &drive->base, period_s,
                                                      settings->current_bandwidth_rad_s);
     params->modulator = modulator_design(facts->pwm_half_period_counts);
-    params->protection = protection_design(&drive->base, facts, settings);
+    params->protection = protection_design(&drive->base, facts, &drive->settings);
     params->calibrate_offsets = settings->calibrate_offsets;
     params->feed_forward = settings->feed_forward;
     params->hold_on_enable_periods =

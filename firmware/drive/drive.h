@@ -52,7 +52,7 @@ struct drive {
     /* supervision */
     enum drive_state state;
     enum drive_fault fault;
-    uint32_t period; /* index of the next control interrupt */
+    uint32_t period; /* index of the present or last control interrupt; 0 is the first */
     uint32_t state_periods;
     struct command_queue commands;
 

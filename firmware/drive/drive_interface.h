@@ -53,7 +53,8 @@ struct drive_settings {
     double current_bandwidth_rad_s; /* of the d-q current control; 1500 */
     double current_limit_A;         /* limit of the current reference; rated current */
     double overcurrent_trip_A;      /* software trip on a sampled phase current; 1.8 x rated */
-    double speed_limit_rad_s;       /* estimates beyond it open the bridge; from supply and Km */
+    double speed_limit_rad_s; /* estimates beyond it open the bridge; 1.3 supply/Km, cut to 0.24
+                                 electrical turn per period */
 
     bool resistance_adaptation; /* track the series resistance while holding; true */
     double hold_current_A;      /* d-axis current at rest; half the rated current */

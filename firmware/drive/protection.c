@@ -31,9 +31,10 @@ struct protection_params protection_design(const struct per_unit *base,
     return params;
 }
 
+/* One comparison: a code below -limit wraps to a large number. */
 static bool beyond(int32_t codes, int32_t limit)
 {
-    return codes > limit || codes < -limit;
+    return (uint32_t)(codes + limit) > 2u * (uint32_t)limit;
 }
 
 enum drive_fault protection_check_samples(const struct protection_params *params,

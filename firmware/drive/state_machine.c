@@ -25,7 +25,7 @@ static void power_up(struct drive *drive)
 {
     reset_blocks(drive);
     if (drive->params.hold_on_enable_periods > 0u) {
-        drive->hold.active = true;
+        standstill_hold_enter(&drive->hold, drive->params.initial_position.fraction);
         enter(drive, DRIVE_ALIGNING);
     } else {
         enter(drive, DRIVE_OPERATION_ENABLED);
@@ -48,9 +48,14 @@ static void disable(struct drive *drive)
     enter(drive, DRIVE_SWITCH_ON_DISABLED);
 }
 
-/* true: done with the command; false: it waits for the reference to come to rest. */
-static bool obey(struct drive *drive, const struct queued_command *command)
+/* true: done with the command; false: it waits for its period or for the reference to rest. */
+static bool obey(struct drive *drive, struct queued_command *command)
 {
+    const bool ahead = command->at_period == drive->period + 1u;
+
+    if (ahead && !queued_command_is_move(command)) {
+        return false;
+    }
     if (command->kind == DRIVE_COMMAND_ENABLE) {
         if (drive->state == DRIVE_SWITCH_ON_DISABLED) {
             start_enabling(drive);
@@ -71,22 +76,27 @@ static bool obey(struct drive *drive, const struct queued_command *command)
     return true;
 }
 
+/* One command a period, and the check for more only in a period without: short worst case. */
 static void take_commands(struct drive *drive)
 {
     struct command_queue *queue = &drive->commands;
-    const struct queued_command *command;
+    struct queued_command *command;
 
     if (command_queue_take_urgent(queue, &queue->disable, drive->period)) {
         disable(drive);
+        return;
     }
     if (command_queue_take_urgent(queue, &queue->stop, drive->period)) {
         reference_stop(&drive->reference);
+        return;
     }
-    command = command_queue_due(queue, drive->period);
-    if (command != NULL && obey(drive, command)) {
+    /* A move is loaded a period ahead: it begins with the period it is addressed to. */
+    command = command_queue_due(queue, drive->period + 1u);
+    if (command == NULL) {
+        command_queue_rest(queue);
+    } else if (obey(drive, command)) {
         command_queue_drop(queue);
     }
-    command_queue_rest(queue);
 }
 
 static void calibrate_offsets(struct drive *drive, const struct hal_samples *samples)

@@ -17,10 +17,10 @@ struct estimate {
 /* Fills in what follows from current, rotor and winding. */
 static inline void estimate_look_ahead(struct estimate *x, const struct motor_model_params *model)
 {
-    const angle_t rotation = half_period_rotation(model, x->rotor.speed);
+    const int32_t rotation = half_period_rotation(model, x->rotor.speed);
 
-    x->half_turn = sincos_of(rotation);
-    x->mid_period = sincos_of(x->rotor.position.fraction + rotation);
+    x->half_turn = sincos_of_small(rotation);
+    x->mid_period = sincos_of(x->rotor.position.fraction + (angle_t)rotation);
     x->free_current = free_current(model, &x->winding, x->current, x->rotor.speed, x->mid_period);
 }
 

@@ -36,8 +36,8 @@ static void predict(struct steady_state_ekf *ekf, const struct steady_state_ekf_
     struct dq i = ekf->current;
     num_t resistance = ekf->estimate.winding.resistance;
     num_t rotation = num_mul_coef(rotor->speed, params->rotation);
-    num_t u_d = voltage.d - num_mul(resistance, i.d);
-    num_t u_q = voltage.q - num_mul(resistance, i.q) - rotor->speed;
+    num_t u_d = voltage.d - num_mul(i.d, resistance);
+    num_t u_q = voltage.q - num_mul(i.q, resistance) - rotor->speed;
     num_t torque = i.q - num_mul_coef(rotor->speed, model->friction) - rotor->load_torque;
     num_t turns = num_mul_coef(rotor->speed, model->turns_per_speed);
 

@@ -50,14 +50,14 @@ void reference_reset(struct reference *r, struct position position)
     place(r, position);
 }
 
-bool reference_load(struct reference *r, const struct profile *profile)
+bool reference_load(struct reference *r, struct profile *profile)
 {
     if (r->phase != REFERENCE_REST || r->next.position.turns != profile->start.turns ||
         r->next.position.fraction != profile->start.fraction) {
         return false;
     }
-    r->profile = *profile;
-    r->phase = REFERENCE_LOADED;
+    r->profile = profile;
+    r->phase = REFERENCE_QUEUED;
     r->speed = profile->rounding_speed;
     r->rest_periods = 0;
     r->stopped = false;
@@ -66,6 +66,10 @@ bool reference_load(struct reference *r, const struct profile *profile)
 
 void reference_stop(struct reference *r)
 {
+    if (r->phase == REFERENCE_QUEUED || r->phase == REFERENCE_LOADED) {
+        r->phase = REFERENCE_REST;
+        r->speed = 0;
+    }
     r->stop_requested = r->phase != REFERENCE_REST;
 }
 
@@ -83,30 +87,28 @@ static void advance(struct reference *r)
 
 /*
  * The ramp down mirrors the ramp up, so cutting the ramp up short where it stands leaves a profile
- * that ends at rest: the phases already behind keep the length they had.
+ * that ends at rest: the phases already behind keep the length they had. One period of the present
+ * phase is left, so that the next phase begins in an interrupt of its own.
  */
 static void cut_short(struct reference *r)
 {
-    struct profile *profile = &r->profile;
+    struct profile *profile = r->profile;
+    const uint32_t surplus = r->periods_left - 1u;
 
     switch (r->phase) {
-    case REFERENCE_LOADED:
-        profile->jerk_periods = 0;
-        profile->acceleration_periods = 0;
-        break;
     case REFERENCE_JERK_TO_ACCELERATE:
-        profile->jerk_periods -= r->periods_left;
+        profile->jerk_periods -= surplus;
         profile->acceleration_periods = 0;
-        r->periods_left = 0;
+        r->periods_left = 1;
         break;
     case REFERENCE_ACCELERATE:
-        profile->acceleration_periods -= r->periods_left;
-        r->periods_left = 0;
+        profile->acceleration_periods -= surplus;
+        r->periods_left = 1;
         break;
     case REFERENCE_JERK_TO_CRUISE:
         break;
     case REFERENCE_CRUISE:
-        r->periods_left = 0;
+        r->periods_left = 1;
         break;
     default: /* decelerates to rest already */
         return;
@@ -115,62 +117,60 @@ static void cut_short(struct reference *r)
     r->stopped = true;
 }
 
-static uint32_t periods_of(const struct profile *profile, enum reference_phase phase)
+static void begin(struct reference *r, enum reference_phase phase, uint32_t periods,
+                  int64_t acceleration)
 {
-    switch (phase) {
-    case REFERENCE_JERK_TO_ACCELERATE:
-    case REFERENCE_JERK_TO_CRUISE:
-    case REFERENCE_JERK_TO_DECELERATE:
-    case REFERENCE_JERK_TO_REST:
-        return profile->jerk_periods;
-    case REFERENCE_ACCELERATE:
-    case REFERENCE_DECELERATE:
-        return profile->acceleration_periods;
-    case REFERENCE_CRUISE:
-        return profile->cruise_periods;
-    default:
-        return 0;
-    }
-}
-
-/* Jerk phases take the acceleration on from the phase before; the others set it. */
-static void begin_next_phase(struct reference *r)
-{
-    const struct profile *profile = &r->profile;
-
-    do {
-        r->phase = (enum reference_phase)(r->phase + 1);
-        r->periods_left = periods_of(profile, r->phase);
-    } while (r->periods_left == 0u && r->phase != REFERENCE_REST);
-
+    r->phase = phase;
+    r->periods_left = periods;
+    r->acceleration = acceleration;
     r->jerk = 0;
     r->jerk_sixth = 0;
-    switch (r->phase) {
-    case REFERENCE_JERK_TO_ACCELERATE:
-    case REFERENCE_JERK_TO_REST:
-        r->jerk = profile->jerk;
-        r->jerk_sixth = profile->jerk_sixth;
-        break;
-    case REFERENCE_JERK_TO_CRUISE:
-    case REFERENCE_JERK_TO_DECELERATE:
-        r->jerk = -profile->jerk;
-        r->jerk_sixth = -profile->jerk_sixth;
-        break;
-    case REFERENCE_ACCELERATE:
-        r->acceleration = profile->acceleration;
-        break;
-    case REFERENCE_DECELERATE:
-        r->acceleration = -profile->acceleration;
-        break;
-    case REFERENCE_CRUISE:
+}
+
+/* A jerk phase takes the acceleration on from the phase before. */
+static void begin_jerk(struct reference *r, enum reference_phase phase, int64_t jerk,
+                       int64_t jerk_sixth)
+{
+    r->phase = phase;
+    r->periods_left = r->profile->jerk_periods;
+    r->jerk = jerk;
+    r->jerk_sixth = jerk_sixth;
+}
+
+static void come_to_rest(struct reference *r)
+{
+    begin(r, REFERENCE_REST, 0, 0);
+    r->stop_requested = false;
+    r->speed = 0;
+    place(r, r->stopped ? (struct position){r->turns, (angle_t)(r->fraction >> 32)}
+                        : r->profile->target);
+}
+
+/* Begins the first phase behind the one that has ended which has a length. */
+static void begin_next_phase(struct reference *r)
+{
+    const struct profile *profile = r->profile;
+    const enum reference_phase ended = r->phase;
+    const bool ramped = profile->acceleration_periods > 0u;
+    const bool smooth = profile->jerk_periods > 0u;
+
+    if (ended < REFERENCE_JERK_TO_ACCELERATE && smooth) {
         r->acceleration = 0;
-        break;
-    default:
-        r->speed = 0;
-        r->acceleration = 0;
-        place(r, r->stopped ? (struct position){r->turns, (angle_t)(r->fraction >> 32)}
-                            : profile->target);
-        break;
+        begin_jerk(r, REFERENCE_JERK_TO_ACCELERATE, profile->jerk, profile->jerk_sixth);
+    } else if (ended < REFERENCE_ACCELERATE && ramped) {
+        begin(r, REFERENCE_ACCELERATE, profile->acceleration_periods, profile->acceleration);
+    } else if (ended < REFERENCE_JERK_TO_CRUISE && smooth) {
+        begin_jerk(r, REFERENCE_JERK_TO_CRUISE, -profile->jerk, -profile->jerk_sixth);
+    } else if (ended < REFERENCE_CRUISE && profile->cruise_periods > 0u) {
+        begin(r, REFERENCE_CRUISE, profile->cruise_periods, 0);
+    } else if (ended < REFERENCE_JERK_TO_DECELERATE && smooth) {
+        begin_jerk(r, REFERENCE_JERK_TO_DECELERATE, -profile->jerk, -profile->jerk_sixth);
+    } else if (ended < REFERENCE_DECELERATE && ramped) {
+        begin(r, REFERENCE_DECELERATE, profile->acceleration_periods, -profile->acceleration);
+    } else if (ended < REFERENCE_JERK_TO_REST && smooth) {
+        begin_jerk(r, REFERENCE_JERK_TO_REST, profile->jerk, profile->jerk_sixth);
+    } else {
+        come_to_rest(r);
     }
 }
 
@@ -181,12 +181,13 @@ void reference_step(struct reference *r, const struct reference_params *params)
     } else if (r->phase == REFERENCE_REST && r->rest_periods < UINT32_MAX) {
         r->rest_periods++;
     }
-    if (r->stop_requested) {
+    if (r->phase == REFERENCE_QUEUED) {
+        r->phase = REFERENCE_LOADED;
+    } else if (r->periods_left == 0u && r->phase != REFERENCE_REST) {
+        begin_next_phase(r);
+    } else if (r->stop_requested && r->phase != REFERENCE_REST) {
         cut_short(r);
         r->stop_requested = false;
-    }
-    if (r->periods_left == 0u && r->phase != REFERENCE_REST) {
-        begin_next_phase(r);
     }
     r->now = r->next;
     r->next = sample_of(r, params);

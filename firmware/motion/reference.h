@@ -6,9 +6,11 @@
  * in 64-bit integers of 2^-64 electrical turn per period^n (profile.h makes the halves and sixths
  * exact). Additions only; the same bits in every number format.
  *
- * The drive computes at S(k) what acts from S(k+1) on; a profile loaded, or a stop asked for, at
- * S(k) therefore begins at S(k+1), and each step gives the reference of S(k+1). Where the
- * acceleration jumps, a sample shows its value behind the jump.
+ * The drive computes at S(k) what acts from S(k+1) on, so each step gives the reference of S(k+1).
+ * A profile loaded at S(k) begins at S(k+2): loading it and beginning its first phase are spread
+ * over two interrupts. A stop asked for at S(k) takes effect from S(k+2) on for the same reason,
+ * and a period later where a phase of the profile begins at S(k+1). Where the acceleration jumps, a
+ * sample shows its value behind the jump.
  */
 #ifndef STEADYSTEP_REFERENCE_H
 #define STEADYSTEP_REFERENCE_H
@@ -32,6 +34,7 @@ struct reference_sample {
 
 /* Phases of a profile, in order; those of no length are passed over. */
 enum reference_phase {
+    REFERENCE_QUEUED, /* loaded in this interrupt; begins in the next */
     REFERENCE_LOADED,
     REFERENCE_JERK_TO_ACCELERATE,
     REFERENCE_ACCELERATE,
@@ -48,7 +51,7 @@ struct reference {
     struct reference_sample next; /* at S(k+1) */
     uint32_t rest_periods;        /* since the reference came to rest, at S(k+1); saturates */
 
-    struct profile profile;
+    struct profile *profile; /* the one taken over */
     enum reference_phase phase;
     uint32_t periods_left; /* of the phase */
     bool stop_requested;
@@ -67,14 +70,16 @@ struct reference_params reference_design(const struct per_unit *base, double per
 void reference_reset(struct reference *reference, struct position position);
 
 /*
- * Takes a planned profile over. Refused (false) while another one runs or if it does not start
- * where the reference rests: the caller keeps it, or plans again from next.position.
+ * Takes a planned profile over, without copying it: it must live until the reference rests, and a
+ * stop changes it. Refused (false) while another one runs or if it does not start where the
+ * reference rests: the caller keeps it, or plans again from next.position.
  */
-bool reference_load(struct reference *reference, const struct profile *profile);
+bool reference_load(struct reference *reference, struct profile *profile);
 
 /*
  * Comes to rest as soon as the ramps of the profile allow: with its own acceleration and jerk,
- * without a step of position or speed. Nothing happens at rest or while it decelerates already.
+ * without a step of position or speed. Nothing happens at rest or while it decelerates already; a
+ * profile that has not begun is dropped.
  */
 void reference_stop(struct reference *reference);
 

@@ -7,6 +7,7 @@ struct motor_model_params motor_model_design(const struct motor_params *motor,
     const double rate = period_s / motor->inductance_H * base->resistance_ohm;
     const double nominal = (motor->resistance_ohm + bridge_resistance_ohm) / base->resistance_ohm;
     const double radians = base->turns_per_period * 6.283185307179586476925;
+    const double x = rate * nominal; /* T R/L */
     struct motor_model_params params;
 
     params.rate = coef_from_double(rate);
@@ -17,21 +18,20 @@ struct motor_model_params motor_model_design(const struct motor_params *motor,
         coef_from_double(motor->viscous_friction_Nms_rad * base->speed_rad_s / base->torque_Nm);
     params.turns_per_speed = coef_from_double(base->turns_per_period);
     params.nominal_resistance = num_from_double(nominal);
+    params.nominal_admittance =
+        num_from_double(rate * (1.0 - x * (1.0 / 2.0 - x * (1.0 / 6.0 - x / 24.0))));
+    params.admittance_per_resistance =
+        coef_from_double(rate * rate * (1.0 / 2.0 - x * (1.0 / 3.0 - x / 8.0)));
     params.resistance_min = num_from_double(0.25 * nominal);
     params.resistance_max = num_from_double(3.0 * nominal);
     return params;
 }
 
-/* (1 - exp(-x))/x by its series; x = T R/L stays below 1 for any sensible control period. */
 void winding_set_resistance(struct winding *winding, const struct motor_model_params *params,
                             num_t resistance)
 {
-    num_t x;
-    num_t series;
-
     winding->resistance = num_clamp(resistance, params->resistance_min, params->resistance_max);
-    x = num_mul_coef(winding->resistance, params->rate);
-    series = NUM(0.5) - num_mul(x, NUM(1.0 / 6.0) - num_mul(x, NUM(1.0 / 24.0)));
-    series = NUM(1.0) - num_mul(x, series);
-    winding->admittance = num_mul_coef(series, params->rate);
+    winding->admittance =
+        params->nominal_admittance - num_mul_coef(winding->resistance - params->nominal_resistance,
+                                                  params->admittance_per_resistance);
 }

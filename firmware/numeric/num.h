@@ -50,11 +50,11 @@ typedef struct {
 #define NUM(x)  ((num_t)((x)*67108864.0 + ((x) < 0 ? -0.5 : 0.5)))
 #define UNIT(x) ((unit_t)((x)*32768.0 + ((x) < 0 ? -0.5 : 0.5)))
 
-/* floor(a m / 2^16) for a 16-bit m (or 32768). */
-static inline int32_t num_mul_high16(int32_t a, int32_t m)
+/* floor(a m / 2^16) */
+static inline int32_t num_mul_high16(int32_t a, int16_t m)
 {
 #if defined(__ARM_ARCH_6M__)
-    return (a >> 16) * m + (((int32_t)(a & 0xffff) * m) >> 16);
+    return (a >> 16) * m + (((a & 0xffff) * m) >> 16);
 #else
     return (int32_t)(((int64_t)a * m) >> 16);
 #endif
@@ -65,10 +65,14 @@ static inline int32_t num_shift_left(int32_t a, unsigned bits)
     return (int32_t)((uint32_t)a << bits);
 }
 
+/* floor(a u / 2^15); a u just above one, as rounding leaves it in a sum of angles, is welcome. */
 static inline num_t num_mul_unit(num_t a, unit_t u)
 {
-    /* As floor(a u / 2^15), in two products of 16 bits. */
-    return num_shift_left((a >> 16) * u, 1) + ((int32_t)(a & 0xffff) * u >> 15);
+#if defined(__ARM_ARCH_6M__)
+    return (num_t)((uint32_t)(a >> 15) * (uint32_t)u + (uint32_t)(((a & 0x7fff) * u) >> 15));
+#else
+    return (num_t)(((int64_t)a * u) >> 15);
+#endif
 }
 
 static inline num_t num_mul_coef(num_t a, coef_t k)
@@ -76,24 +80,19 @@ static inline num_t num_mul_coef(num_t a, coef_t k)
     return num_shift_left(num_mul_high16(a, k.mantissa), k.left) >> k.right;
 }
 
-/* floor(a b / 2^26), the full product of two run-time quantities. */
+/*
+ * The product of two run-time quantities. The second counts with 16 bits, -2...2 with a resolution
+ * of 6e-5: floor(a floor(2^14 b) / 2^14).
+ */
 static inline num_t num_mul(num_t a, num_t b)
 {
+    const int32_t factor = b >> (NUM_FRACTION_BITS - 14);
+
 #if defined(__ARM_ARCH_6M__)
-    int32_t a_high = a >> 16;
-    int32_t b_high = b >> 16;
-    uint32_t a_low = (uint32_t)a & 0xffffu;
-    uint32_t b_low = (uint32_t)b & 0xffffu;
-    uint32_t low = a_low * b_low;
-    /* Sum of the cross terms may need 33 bits: the carry goes in halves, as in schoolbook form. */
-    int32_t cross1 = a_high * (int32_t)b_low;
-    int32_t cross2 = (int32_t)a_low * b_high;
-    uint32_t middle = (low >> 16) + ((uint32_t)cross1 & 0xffffu) + ((uint32_t)cross2 & 0xffffu);
-    int32_t high = a_high * b_high + (cross1 >> 16) + (cross2 >> 16) + (int32_t)(middle >> 16);
-    uint32_t product_low = (middle << 16) | (low & 0xffffu);
-    return (num_t)(((uint32_t)high << 6) | (product_low >> 26));
+    return num_shift_left((a >> 16) * factor, 2) +
+           ((int32_t)(((uint32_t)a & 0xffffu) * (uint32_t)factor) >> 14);
 #else
-    return (num_t)(((int64_t)a * b) >> NUM_FRACTION_BITS);
+    return (num_t)(((int64_t)a * factor) >> 14);
 #endif
 }
 
@@ -237,6 +236,17 @@ static inline num_t num_limit(num_t a, num_t limit)
         return a;
     }
     return a > NUM(0.0) ? limit : -limit;
+}
+
+/* Keeps a factor small enough for its product to fit; floating point has room enough. */
+static inline num_t num_headroom(num_t a, num_t limit)
+{
+#if STEADYSTEP_NUM == NUM_FIXED
+    return num_limit(a, limit);
+#else
+    (void)limit;
+    return a;
+#endif
 }
 
 /* ---- Start-up and telemetry only: conversions from and to double. ---- */

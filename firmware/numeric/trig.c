@@ -17,9 +17,9 @@
 /* A coefficient with as many fraction bits as its 16-bit product with x^2 leaves room for. */
 #define Q(x, bits) ((int32_t)((x) * (double)(1 << (bits)) + ((x) < 0 ? -0.5 : 0.5)))
 
-static struct sincos eighth_turn(int32_t rest)
+struct sincos sincos_of_small(int32_t angle)
 {
-    int32_t x = (rest + (1 << 13)) >> 14;
+    int32_t x = (angle + (1 << 13)) >> 14;
     int32_t x2 = (x * x) >> 15;
     int32_t sine = Q(S5, 22) + ((Q(S7, 27) * x2) >> 20);
     int32_t cosine = Q(C4, 20) + (((Q(C6, 24) * x2) >> 15) >> 4);
@@ -35,9 +35,9 @@ static struct sincos eighth_turn(int32_t rest)
 
 #else
 
-static struct sincos eighth_turn(int32_t rest)
+struct sincos sincos_of_small(int32_t angle)
 {
-    num_t x = (num_t)rest * NUM(1.0 / 536870912.0);
+    num_t x = (num_t)angle * NUM(1.0 / 536870912.0);
     num_t x2 = x * x;
     struct sincos r;
 
@@ -51,7 +51,7 @@ static struct sincos eighth_turn(int32_t rest)
 struct sincos sincos_of(angle_t angle)
 {
     uint32_t quarter = (angle + (1u << 29)) >> 30;
-    struct sincos r = eighth_turn((int32_t)(angle - (quarter << 30)));
+    struct sincos r = sincos_of_small((int32_t)(angle - (quarter << 30)));
 
     if ((quarter & 1u) != 0u) {
         unit_t cosine = r.cos;

@@ -15,6 +15,9 @@ struct sincos {
  */
 struct sincos sincos_of(angle_t angle);
 
+/* The same for an angle within an eighth of a turn of zero: the polynomials alone. */
+struct sincos sincos_of_small(int32_t angle);
+
 /* The sum of two angles: four products instead of another pair of polynomials. */
 static inline struct sincos sincos_add(struct sincos x, struct sincos y)
 {

@@ -29,7 +29,7 @@ static uint64_t hash_coefs(uint64_t hash, const coef_t *coefs, size_t bytes)
 static uint64_t hash_gains(uint64_t hash, const struct drive_params *p)
 {
     hash = HASH_RANGE(hash, p->measurement, current, bus_voltage);
-    hash = HASH_RANGE(hash, p->model, rate, turns_per_speed);
+    hash = HASH_RANGE(hash, p->model, rate, admittance_per_resistance);
     hash = HASH_RANGE(hash, p->estimator.invariant.moving, current, resistance);
     hash = HASH_RANGE(hash, p->estimator.invariant.holding, current, resistance);
     hash = HASH_RANGE(hash, p->estimator.invariant.following, current, resistance);

@@ -32,9 +32,9 @@ struct hal_sil {
     struct hal board; /* what the firmware is given */
     struct hal_facts facts;
 
-    uint64_t period;           /* index k of the present S(k) */
-    bool bridge_allowed;       /* between bridge_enable and bridge_disable */
-    bool trip_latched;         /* by hal_sil_trip, until bridge_disable */
+    uint64_t period;     /* index k of the present S(k) */
+    bool bridge_allowed; /* between bridge_enable and bridge_disable */
+    bool trip_latched;   /* by hal_sil_trip, until bridge_disable */
     bool watchdog_running;
     uint64_t watchdog_fed_us;
     struct hal_sil_stream to_drive, to_host;

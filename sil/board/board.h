@@ -17,7 +17,7 @@ namespace sil
 
 class Board
 {
-public:
+  public:
     /* Powers the board up: the image designs its gains. Throws std::invalid_argument with the
        drive's or the plant's own text when settings are refused. hardware_trip_A: a comparator
        opens the bridge at an S(k) where a phase current is beyond it; 0: not fitted. */
@@ -42,7 +42,7 @@ public:
     const hal_outputs &outputs() const;
     const hal_facts &facts() const;
 
-private:
+  private:
     void sample();
 
     struct Impl;

@@ -186,10 +186,8 @@ void Bridge::append(double duration_counts)
     const LegVoltage &b_plus = legs_[2].voltage_V, &b_minus = legs_[3].voltage_V;
     Segment &segment = timetable_.segments[timetable_.count++];
     segment.duration_s = duration_counts * count_s_;
-    segment.if_positive_V =
-        Phases{a_plus.leaves - a_minus.enters, b_plus.leaves - b_minus.enters};
-    segment.if_negative_V =
-        Phases{a_plus.enters - a_minus.leaves, b_plus.enters - b_minus.leaves};
+    segment.if_positive_V = Phases{a_plus.leaves - a_minus.enters, b_plus.leaves - b_minus.enters};
+    segment.if_negative_V = Phases{a_plus.enters - a_minus.leaves, b_plus.enters - b_minus.leaves};
     segment.diode_V = Phases{a_plus.diode + a_minus.diode, b_plus.diode + b_minus.diode};
     segment.dead_time = dead_legs_ > 0;
 }

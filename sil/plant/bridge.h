@@ -41,13 +41,13 @@ struct Timetable {
 
 class Bridge
 {
-public:
+  public:
     explicit Bridge(const BridgeConfig &config); /* throws std::invalid_argument */
 
     /* The segments of S(k)...S(k+1) with these duties in force; valid until the next call. */
     const Timetable &period(const Duties &duties);
 
-private:
+  private:
     static constexpr int legs = 4;
     static constexpr int max_edges = 4 * legs; /* pending, at the peak, rising, falling */
 

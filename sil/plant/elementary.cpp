@@ -28,7 +28,8 @@ Phases unit_vector(double angle_rad)
     const double sine = r + sum[1] * z * r;
 
     /* Turned back by whole quarters, without a branch. */
-    static constexpr Phases axes[5] = {{1.0, 0.0}, {0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}, {1.0, 0.0}};
+    static constexpr Phases axes[5] = {
+        {1.0, 0.0}, {0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}, {1.0, 0.0}};
     return cosine * axes[quarter] + sine * axes[quarter + 1];
 }
 

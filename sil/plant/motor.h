@@ -36,7 +36,7 @@ struct MotorCoefficients {
     double teeth, load_torque;                    /* N, T_L */
 
     /* -R/L, -Km/L, N, Km/J and -Kv/J over k + 1: from Taylor coefficient k to k + 1. */
-    static constexpr int highest_order = 6;
+    static constexpr int highest_order = 5;
     struct Share {
         Phases resistance, emf, teeth;
         double torque, friction;
@@ -51,7 +51,7 @@ struct MotorIntegrals {
 
 class Motor
 {
-public:
+  public:
     /* Throws std::invalid_argument. */
     Motor(const MotorConfig &config, double theta_rad, double omega_rad_s, bool track_energy);
 
@@ -75,8 +75,7 @@ public:
     double magnetic_J() const;
     double kinetic_J() const;
 
-private:
-
+  private:
     MotorCoefficients coefficients_ = {};
     MotorState state_;
     MotorIntegrals integrals_;

@@ -82,8 +82,7 @@ void Plant::observe()
 
 void Plant::set_load_torque(double load_torque_Nm)
 {
-    require(magnitude(load_torque_Nm) <= 1e3, "load_torque_Nm", load_torque_Nm,
-            "-1000...1000 N m");
+    require(magnitude(load_torque_Nm) <= 1e3, "load_torque_Nm", load_torque_Nm, "-1000...1000 N m");
     parts_->motor.set_load_torque(load_torque_Nm);
     state_.load_torque_Nm = load_torque_Nm;
 }

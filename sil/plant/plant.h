@@ -30,16 +30,16 @@ struct MotorConfig {
 struct BridgeConfig {
     BridgeModel model = BridgeModel::switched;
     double bus_V = 24.0;
-    double dead_time_s = 1e-6;  /* both gates of a leg off after each edge */
-    double diode_drop_V = 1.0;  /* a leg in dead time sits at -drop or bus + drop by current sign */
+    double dead_time_s = 1e-6; /* both gates of a leg off after each edge */
+    double diode_drop_V = 1.0; /* a leg in dead time sits at -drop or bus + drop by current sign */
     double period_s = 1e-4;
     int half_period_counts = 8500; /* resolution of the duties */
-    int delay_periods = 1;         /* 1: duties computed from S(k) act S(k+1)...S(k+2); 0: at once */
+    int delay_periods = 1; /* 1: duties computed from S(k) act S(k+1)...S(k+2); 0: at once */
 };
 
 struct SensorConfig {
-    bool exact = false;         /* true: no noise and no offset; codes stay 12 bit */
-    double current_range_A = 6.0;       /* +- full scale, 12 bit */
+    bool exact = false;           /* true: no noise and no offset; codes stay 12 bit */
+    double current_range_A = 6.0; /* +- full scale, 12 bit */
     double current_noise_rms_A = 3e-3;
     double current_offset_a_A = 0.0;
     double current_offset_b_A = 0.0;
@@ -47,7 +47,7 @@ struct SensorConfig {
     double phase_voltage_noise_rms_V = 20e-3;
     double phase_voltage_offset_a_V = 0.0;
     double phase_voltage_offset_b_V = 0.0;
-    double bus_range_V = 31.2;           /* full scale, 12 bit */
+    double bus_range_V = 31.2; /* full scale, 12 bit */
 };
 
 struct Config {
@@ -57,7 +57,7 @@ struct Config {
     std::uint64_t seed = 1;
     double initial_theta_rad = 0.0;
     double initial_omega_rad_s = 0.0;
-    bool track_energy = false; /* keep Energy; costs about a third of the speed */
+    bool track_energy = false; /* keep Energy; costs about a fifth of the speed */
 };
 
 /* Times high per half period of the four half-bridges: A+, A-, B+, B-; as in hal_outputs. */
@@ -89,7 +89,7 @@ struct Energy {
 
 class Plant
 {
-public:
+  public:
     explicit Plant(const Config &config); /* throws std::invalid_argument naming the field */
     ~Plant();
     Plant(const Plant &) = delete;
@@ -99,15 +99,24 @@ public:
        applies the configured delay. */
     void step(const Duties &duties);
 
-    const State &state() const { return state_; }
-    const Samples &samples() const { return samples_; } /* of the present S(k) */
-    const Energy &energy() const { return energy_; }
+    const State &state() const
+    {
+        return state_;
+    }
+    const Samples &samples() const
+    {
+        return samples_;
+    } /* of the present S(k) */
+    const Energy &energy() const
+    {
+        return energy_;
+    }
 
     /* Changes that act from the present S(k) on. */
     void set_load_torque(double load_torque_Nm);
     void set_motor(const MotorConfig &motor); /* drift and faults: currents, angle, speed go on */
 
-private:
+  private:
     struct Parts; /* motor, bridge, sensors */
 
     void observe();

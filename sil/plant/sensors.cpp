@@ -75,11 +75,11 @@ Samples Sensors::sample(std::uint64_t period, Phases current_A, Phases phase_vol
                         double bus_V) const
 {
     if (!config_.exact) {
-        current_A += current_offset_A_ + config_.current_noise_rms_A *
-                                             gaussian_pair(seed_, current_channel, period);
+        current_A += current_offset_A_ +
+                     config_.current_noise_rms_A * gaussian_pair(seed_, current_channel, period);
         phase_voltage_V +=
-            phase_voltage_offset_V_ + config_.phase_voltage_noise_rms_V *
-                                          gaussian_pair(seed_, phase_voltage_channel, period);
+            phase_voltage_offset_V_ +
+            config_.phase_voltage_noise_rms_V * gaussian_pair(seed_, phase_voltage_channel, period);
     }
     const Phases current = current_A * codes_per_A_ + current_zero_code;
     const Phases voltage = phase_voltage_V * codes_per_phase_V_ + converter_codes / 2;
@@ -87,8 +87,10 @@ Samples Sensors::sample(std::uint64_t period, Phases current_A, Phases phase_vol
     samples.current_a = static_cast<std::uint16_t>(converted(current[0]));
     samples.current_b = static_cast<std::uint16_t>(converted(current[1]));
     samples.bus_voltage = static_cast<std::uint16_t>(converted(bus_V * codes_per_bus_V_));
-    samples.phase_voltage_a = static_cast<std::int16_t>(converted(voltage[0]) - converter_codes / 2);
-    samples.phase_voltage_b = static_cast<std::int16_t>(converted(voltage[1]) - converter_codes / 2);
+    samples.phase_voltage_a =
+        static_cast<std::int16_t>(converted(voltage[0]) - converter_codes / 2);
+    samples.phase_voltage_b =
+        static_cast<std::int16_t>(converted(voltage[1]) - converter_codes / 2);
     return samples;
 }
 

@@ -21,14 +21,14 @@ double bus_V_per_code(const SensorConfig &config);
 
 class Sensors
 {
-public:
+  public:
     Sensors(const SensorConfig &config, std::uint64_t seed); /* throws std::invalid_argument */
 
     /* current_A at S(period); phase_voltage_V: mean over the period that ends there. */
     Samples sample(std::uint64_t period, Phases current_A, Phases phase_voltage_V,
                    double bus_V) const;
 
-private:
+  private:
     SensorConfig config_;
     std::uint64_t seed_;
     Phases current_offset_A_, phase_voltage_offset_V_;

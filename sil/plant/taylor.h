@@ -2,8 +2,6 @@
 #ifndef STEADYSTEP_PLANT_TAYLOR_H
 #define STEADYSTEP_PLANT_TAYLOR_H
 
-#include <utility>
-
 namespace plant
 {
 
@@ -57,13 +55,15 @@ template <int order, int k = 0, typename X> inline X integral_of_square(const X 
 }
 
 /*
- * Where a polynomial that is >= 0 at 0 and < 0 at h becomes negative: Newton's method inside a
- * shrinking bracket, from the right, to rounding. In (0, h].
+ * Where a polynomial x that is >= 0 at 0 and < 0 at h, where it has the value at_h, becomes
+ * negative: Newton's method from the chord's zero, kept inside a shrinking bracket. In [0, h].
  */
-inline double falling_zero(const double *x, int order, double h)
+template <int order> inline double falling_zero(const double *x, double h, double at_h)
 {
+    /* Newton doubles the digits: after a change this small, rounding is all that is left. */
+    const double last_change = 1e-8 * h;
     double low = 0.0, high = h;
-    double t = h;
+    double t = h * x[0] / (x[0] - at_h);
     for (int iteration = 0; iteration < 60; iteration++) {
         double value = x[order], slope = 0.0;
         for (int k = order - 1; k >= 0; k--) {
@@ -77,7 +77,7 @@ inline double falling_zero(const double *x, int order, double h)
         }
         const double change = next - t;
         t = next;
-        if (change < 1e-15 * h && change > -1e-15 * h) {
+        if (change < last_change && change > -last_change) {
             break;
         }
     }

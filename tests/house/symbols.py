@@ -4,9 +4,12 @@ shows nothing but itself.
 
 usage: symbols.py NM OBJECT...          objects or archives of the portable firmware
        symbols.py NM --image NAME OBJECT  NAME must be the one global definition
+       symbols.py NM --self-test CC       compiles planted violations and expects each to be found
 """
+import pathlib
 import subprocess
 import sys
+import tempfile
 
 # What a freestanding compiler may call of its own accord; the rest must be ours.
 FREESTANDING = {"memcpy", "memmove", "memset", "memcmp"}
@@ -51,7 +54,41 @@ def check_image(nm, name, path):
         yield f"{path}: shows {', '.join(shown) or 'nothing'}; expected {name} alone"
 
 
+PLANTED = [
+    ("int counter;", "counter is a global variable"),
+    ("static int calls; int count(void) { return ++calls; }", "calls is a global variable"),
+    ("void *malloc(unsigned long); void *take(void) { return malloc(8); }", "calls malloc"),
+    ("double sin(double); double f(double x) { return sin(x); }", "calls sin"),
+    ("int puts(const char *); void say(void) { puts(\"x\"); }", "calls puts"),
+    ("static const char *const names[] = {\"a\", \"b\"};"
+     " const char *name(int i) { return names[i]; }", None),
+]
+
+
+def self_test(nm, compiler):
+    """Every planted violation is found; a constant table is none."""
+    missed = 0
+    with tempfile.TemporaryDirectory() as scratch:
+        source, planted = pathlib.Path(scratch, "planted.c"), pathlib.Path(scratch, "planted.o")
+        for code, expected in PLANTED:
+            source.write_text(code + "\n", encoding="utf-8")
+            subprocess.run([compiler, "-O1", "-fPIC", "-c", source, "-o", planted], check=True)
+            found = list(check_firmware(nm, [planted]))
+            if len(found) != (expected is not None) or expected and expected not in found[0]:
+                print(f"planted: {code}\n  reported: {found}")
+                missed += 1
+        source.write_text("int shown; int shown_too;\n", encoding="utf-8")
+        subprocess.run([compiler, "-c", source, "-o", planted], check=True)
+        if not list(check_image(nm, "shown", planted)):
+            print("planted: a second visible name in an image; not reported")
+            missed += 1
+    print(f"{len(PLANTED) + 1 - missed} of {len(PLANTED) + 1} judged rightly")
+    return missed == 0
+
+
 def main(arguments):
+    if len(arguments) == 3 and arguments[1] == "--self-test":
+        return 0 if self_test(arguments[0], arguments[2]) else 1
     if len(arguments) == 4 and arguments[1] == "--image":
         found = list(check_image(arguments[0], arguments[2], arguments[3]))
     elif len(arguments) >= 2:

@@ -214,7 +214,7 @@ void test_fast_with_dead_time()
 {
     plant::Config config = bench();
     config.initial_omega_rad_s = 130.0;
-    agrees(compare(config, 21.0, 60, 60), 6e-8);
+    agrees(compare(config, 21.0, 60, 60), 2e-7);
 }
 
 void test_small_currents_that_end_in_the_dead_times()
@@ -235,7 +235,7 @@ void test_a_driven_rotor_feeds_the_bus_through_the_diodes()
 {
     plant::Config config = bench();
     config.initial_omega_rad_s = 260.0; /* 40.8 V against 24 V and two diodes */
-    agrees(compare(config, 0.0, 60, 0), 1e-6);
+    agrees(compare(config, 0.0, 60, 0), 2e-7);
 }
 
 } // namespace

@@ -117,21 +117,24 @@ static void test_an_angle_and_its_turns_are_one(void)
         int32_t angle = angle_from_turns(num_from_double(turns[i]));
 
         TEST_ASSERT_DOUBLE_WITHIN(6e-8, turns[i], (double)angle / 4294967296.0);
+        TEST_ASSERT_EQUAL_INT32(angle, angle_from_any_turns(num_from_double(turns[i])));
         TEST_ASSERT_DOUBLE_WITHIN(6e-8, turns[i], num_to_double(turns_from_angle(angle)));
     }
     TEST_ASSERT_DOUBLE_WITHIN(1e-7, -0.5, num_to_double(turns_from_angle(INT32_MIN)));
 }
 
-static void test_an_angle_never_wraps_to_the_other_side(void)
+static void test_an_angle_of_any_number_never_wraps_to_the_other_side(void)
 {
-    static const double beyond[] = {0.5, 0.75, 1.0, 5.0, 30.0};
+    static const double beyond[] = {0.4991, 0.5, 0.75, 1.0, 5.0, 30.0};
 
     for (unsigned i = 0; i < sizeof beyond / sizeof beyond[0]; i++) {
-        TEST_ASSERT_TRUE(angle_from_turns(num_from_double(beyond[i])) > 0x7f000000);
-        TEST_ASSERT_TRUE(angle_from_turns(num_from_double(-beyond[i])) < -0x7f000000);
+        TEST_ASSERT_TRUE(angle_from_any_turns(num_from_double(beyond[i])) > 0x7f000000);
+        TEST_ASSERT_TRUE(angle_from_any_turns(num_from_double(-beyond[i])) < -0x7f000000);
     }
 #if STEADYSTEP_NUM != NUM_FIXED
-    TEST_ASSERT_TRUE(angle_from_turns((num_t)__builtin_nan("")) > 0x7f000000);
+    TEST_ASSERT_TRUE(angle_from_any_turns((num_t)__builtin_nan("")) < -0x7f000000);
+    TEST_ASSERT_TRUE(angle_from_any_turns((num_t)__builtin_inf()) > 0x7f000000);
+    TEST_ASSERT_TRUE(angle_from_any_turns(-(num_t)__builtin_inf()) < -0x7f000000);
 #endif
 }
 
@@ -175,7 +178,7 @@ int main(void)
     RUN_TEST(test_a_difference_is_as_fine_far_out_as_at_zero);
     RUN_TEST(test_a_large_difference_saturates_with_its_sign);
     RUN_TEST(test_an_angle_and_its_turns_are_one);
-    RUN_TEST(test_an_angle_never_wraps_to_the_other_side);
+    RUN_TEST(test_an_angle_of_any_number_never_wraps_to_the_other_side);
     RUN_TEST(test_radians_become_electrical_turns);
     RUN_TEST(test_radians_survive_the_way_there_and_back);
     RUN_TEST(test_radians_beyond_the_range_saturate);

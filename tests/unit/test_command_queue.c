@@ -75,13 +75,16 @@ static void test_commands_act_in_the_order_they_were_posted(void)
     TEST_ASSERT_TRUE(nothing_is_due(200));
 }
 
+/* One entry less than its length: the last may be the profile that is being moved along. */
+#define CAPACITY (COMMAND_QUEUE_LENGTH - 1u)
+
 static void test_a_full_queue_refuses_and_loses_nothing(void)
 {
-    for (uint32_t i = 0; i < COMMAND_QUEUE_LENGTH; i++) {
+    for (uint32_t i = 0; i < CAPACITY; i++) {
         TEST_ASSERT_TRUE(put(i, 0));
     }
     TEST_ASSERT_FALSE(put(99, 0));
-    for (uint32_t i = 0; i < COMMAND_QUEUE_LENGTH; i++) {
+    for (uint32_t i = 0; i < CAPACITY; i++) {
         TEST_ASSERT_TRUE(is_due(i, 0));
         command_queue_drop(&queue);
     }
@@ -107,7 +110,7 @@ static void test_the_queue_goes_on_when_its_counters_wrap(void)
 {
     queue.written = UINT32_MAX - 1u;
     queue.read = UINT32_MAX - 1u;
-    for (uint32_t i = 0; i < COMMAND_QUEUE_LENGTH; i++) {
+    for (uint32_t i = 0; i < CAPACITY; i++) {
         TEST_ASSERT_TRUE(put(i, 0));
     }
     TEST_ASSERT_FALSE(put(99, 0));
@@ -185,6 +188,27 @@ static void test_a_flush_never_brings_commands_back(void)
     TEST_ASSERT_TRUE(is_due(3, 50));
 }
 
+/* What lets the interrupt pass the queue by. */
+static void test_attention_is_asked_for_as_long_as_anything_waits(void)
+{
+    command_queue_rest(&queue);
+    TEST_ASSERT_FALSE(queue.attention);
+    put(1, 100);
+    command_queue_rest(&queue);
+    TEST_ASSERT_TRUE(queue.attention);
+    command_queue_drop(&queue);
+    command_queue_put_urgent(&queue, &queue.disable, 100);
+    command_queue_rest(&queue);
+    TEST_ASSERT_TRUE(queue.attention);
+    (void)command_queue_take_urgent(&queue, &queue.disable, 100);
+    command_queue_put_urgent(&queue, &queue.stop, 100);
+    command_queue_rest(&queue);
+    TEST_ASSERT_TRUE(queue.attention);
+    (void)command_queue_take_urgent(&queue, &queue.stop, 100);
+    command_queue_rest(&queue);
+    TEST_ASSERT_FALSE(queue.attention);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -201,5 +225,6 @@ int main(void)
     RUN_TEST(test_of_two_stops_the_last_counts);
     RUN_TEST(test_stop_and_disable_do_not_stand_in_each_others_way);
     RUN_TEST(test_a_flush_never_brings_commands_back);
+    RUN_TEST(test_attention_is_asked_for_as_long_as_anything_waits);
     return UNITY_END();
 }

@@ -142,7 +142,7 @@ static void test_the_voltage_vector_never_exceeds_its_limit(void)
         for (int j = -8; j <= 8; j++) {
             setUp();
             for (int k = 0; k < 5; k++) {
-                TEST_ASSERT_TRUE(length(step(0.125 * i, 0.125 * j)) <= LIMIT * (1.0 + 1e-6));
+                TEST_ASSERT_TRUE(length(step(0.5 * i, 0.5 * j)) <= LIMIT * (1.0 + 1e-4));
             }
         }
     }

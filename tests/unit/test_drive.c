@@ -172,16 +172,37 @@ static void test_the_first_hold_aligns_the_rotor_and_finds_the_resistance(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 1.5, signals().i_d_A);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.45, signals().resistance_est_ohm);
     TEST_ASSERT_DOUBLE_WITHIN(2e-4, 0.0, motor.angle_rad);
+    TEST_ASSERT_DOUBLE_WITHIN(0.05, 0.45 * 1.5, signals().u_d_V);
+    TEST_ASSERT_DOUBLE_WITHIN(0.05, 0.0, signals().u_q_V);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 24.0, signals().bus_V);
 }
 
+static void test_the_drive_knows_what_the_bridge_takes_away(void)
+{
+    enable();
+    run(100);
+    TEST_ASSERT_NUM_WITHIN(0.02 / 24.0, -DEAD_TIME_LOSS_V / 24.0, drive.actuation.loss.a);
+}
+
+static void test_without_adaptation_the_resistance_stays_as_it_was_told(void)
+{
+    motor.motor.resistance_ohm = 0.45;
+    settings.resistance_adaptation = false;
+    enable();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.37, signals().resistance_est_ohm);
+    motor.load_torque_Nm = 0.05; /* brings in the hold's quick gains */
+    run(300);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.37, signals().resistance_est_ohm);
+}
+
+/* A single period of delay left out of account would show: 2.7 mrad at 27 rad/s. */
 static void test_a_move_is_followed_without_lag_and_ends_where_it_should(void)
 {
     enable();
     move(1.5, 0.08);
     for (int k = 0; k < 80; k++) {
         run(10);
-        TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.0, following_error_rad());
+        TEST_ASSERT_DOUBLE_WITHIN(2.5e-3, 0.0, following_error_rad());
     }
     run(600);
     TEST_ASSERT_TRUE(signals().holding);
@@ -208,8 +229,10 @@ static void test_a_load_is_estimated_and_carried_while_turning(void)
     motor.load_torque_Nm = 0.1;
     run(300);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.1, signals().load_torque_est_Nm);
+    TEST_ASSERT_DOUBLE_WITHIN(0.3, motor.speed_rad_s, signals().omega_est_rad_s);
     TEST_ASSERT_DOUBLE_WITHIN(0.05, 0.1 / 0.157 + 0.307e-3 * motor.speed_rad_s / 0.157,
                               signals().i_q_ref_A);
+    TEST_ASSERT_DOUBLE_WITHIN(0.05, signals().i_q_ref_A, signals().i_q_A);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.0, following_error_rad());
 }
 
@@ -231,15 +254,16 @@ static void test_both_directions_are_the_same_to_the_drive(void)
     TEST_ASSERT_DOUBLE_WITHIN(2e-4, -end[0], end[1]);
 }
 
-static void test_a_bus_that_sags_to_18_V_in_motion_is_not_noticed(void)
+/* At 57 rad/s the motor needs 9 V, of which 14 V for 24 would leave 5. */
+static void test_a_bus_that_sags_to_14_V_in_motion_is_not_noticed(void)
 {
     enable();
-    move(2.0, 0.12);
+    move(4.0, 0.1);
     run(500);
-    bridge.bus_V = 18.0;
-    for (int k = 0; k < 70; k++) {
-        run(10);
-        TEST_ASSERT_DOUBLE_WITHIN(0.012, 0.0, following_error_rad());
+    bridge.bus_V = 14.0;
+    for (int k = 0; k < 150; k++) {
+        run(1);
+        TEST_ASSERT_DOUBLE_WITHIN(0.6, signals().i_q_ref_A, signals().i_q_A);
     }
 }
 
@@ -299,11 +323,13 @@ int main(void)
     RUN_TEST(test_settings_out_of_range_are_refused_before_anything_is_designed);
     RUN_TEST(test_a_motor_slower_than_the_control_is_refused);
     RUN_TEST(test_the_first_hold_aligns_the_rotor_and_finds_the_resistance);
+    RUN_TEST(test_the_drive_knows_what_the_bridge_takes_away);
+    RUN_TEST(test_without_adaptation_the_resistance_stays_as_it_was_told);
     RUN_TEST(test_a_move_is_followed_without_lag_and_ends_where_it_should);
     RUN_TEST(test_without_feed_forward_the_rotor_lags_by_twice_the_speed_over_the_bandwidth);
     RUN_TEST(test_a_load_is_estimated_and_carried_while_turning);
     RUN_TEST(test_both_directions_are_the_same_to_the_drive);
-    RUN_TEST(test_a_bus_that_sags_to_18_V_in_motion_is_not_noticed);
+    RUN_TEST(test_a_bus_that_sags_to_14_V_in_motion_is_not_noticed);
     RUN_TEST(test_the_pid_holds_its_place_and_follows);
     RUN_TEST(test_the_steady_state_ekf_serves_a_slow_move);
     RUN_TEST(test_twenty_electrical_degrees_told_wrong_are_found_by_the_first_move);

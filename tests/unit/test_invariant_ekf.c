@@ -7,6 +7,8 @@
 
 static struct per_unit base;
 static struct motor_model_params model;
+static struct invariant_ekf_gains moving;
+static struct invariant_ekf_gains holding;
 static struct invariant_ekf_params params;
 static struct invariant_ekf ekf;
 static struct bench_motor motor;
@@ -22,8 +24,6 @@ void setUp(void)
     static bool designed = false;
 
     if (!designed) {
-        struct invariant_ekf_gains moving;
-        struct invariant_ekf_gains holding;
         struct invariant_ekf_gains following;
         char error[DESIGN_ERROR_TEXT];
 
@@ -93,6 +93,109 @@ static void hold(double i_q, int periods)
             motor.motor.resistance_ohm * motor.i_b + stiffness * (i_q - motor.i_b)};
 
         period(voltage, true);
+    }
+}
+
+/* The state of the header's equations, SI. */
+struct state {
+    double i_a, i_b, speed, angle, load, bias_d, bias_q, resistance;
+};
+
+static struct state predicted(struct state x, struct bench_vector u)
+{
+    const struct motor_params *m = &bench_params;
+    const double h = 50.0 * PERIOD_S * x.speed;
+    const double mid = 50.0 * x.angle + 0.5 * h;
+    const double b = (1.0 - exp(-PERIOD_S * x.resistance / m->inductance_H)) / x.resistance;
+    const double emf = m->torque_constant_Nm_A * x.speed * (1.0 - h * h / 24.0);
+    const struct bench_vector lost = bench_to_phases(x.bias_d, x.bias_q + emf, mid);
+    struct state y = x;
+    double i_q;
+
+    y.i_a += b * (u.a - lost.a - x.resistance * x.i_a);
+    y.i_b += b * (u.b - lost.b - x.resistance * x.i_b);
+    i_q = bench_to_rotor(0.5 * (x.i_a + y.i_a), 0.5 * (x.i_b + y.i_b), mid).b;
+    y.speed += PERIOD_S / m->inertia_kgm2 *
+               (m->torque_constant_Nm_A * i_q - m->viscous_friction_Nms_rad * x.speed - x.load);
+    y.angle += 0.5 * PERIOD_S * (x.speed + y.speed);
+    return y;
+}
+
+static struct state corrected(struct state x, struct state y, const struct invariant_ekf_gains *k,
+                              struct bench_vector i)
+{
+    const double h = 50.0 * PERIOD_S * x.speed;
+    const struct bench_vector nu = bench_to_rotor(i.a - y.i_a, i.b - y.i_b, 50.0 * x.angle + h);
+    const double direction = fmin(fmax(y.speed / k->angle_d_full_speed_rad_s, -1.0), 1.0);
+    const double k_current = 0.5 * (k->k_current_d + k->k_current_q);
+    const double past_middle = 50.0 * x.angle + 0.5 * h;
+
+    y.i_a += k_current * (i.a - y.i_a);
+    y.i_b += k_current * (i.b - y.i_b);
+    y.angle += k->k_angle_d_rad_A * direction * nu.a + k->k_angle_q_rad_A * nu.b;
+    y.speed += k->k_speed_q_rad_As * nu.b;
+    y.load = k->load_decay * x.load + k->k_load_q_Nm_A * nu.b;
+    y.bias_d = k->bias_decay * x.bias_d + k->k_bias_d_V_A * nu.a;
+    y.bias_q = k->bias_decay * x.bias_q + k->k_bias_q_V_A * nu.b;
+    y.resistance += k->k_resistance_ohm_AV * bench_to_rotor(y.i_a, y.i_b, past_middle).a * y.bias_d;
+    return y;
+}
+
+static void set(struct state x)
+{
+    struct estimate *estimate = &ekf.estimate;
+
+    invariant_ekf_reset(&ekf, &params, position_from_rad(x.angle, 50),
+                        num_from_double(x.resistance / base.resistance_ohm));
+    estimate->current = bench_phases(x.i_a, x.i_b, base.current_A);
+    estimate->rotor.speed = num_from_double(x.speed / base.speed_rad_s);
+    estimate->rotor.load_torque = num_from_double(x.load / base.torque_Nm);
+    ekf.bias.d = num_from_double(x.bias_d / base.voltage_V);
+    ekf.bias.q = num_from_double(x.bias_q / base.voltage_V);
+    estimate_look_ahead(estimate, &model);
+}
+
+static void is_state(struct state x)
+{
+    const struct estimate *estimate = &ekf.estimate;
+    /* 1e-4: the admittance is linear about the nominal resistance. */
+    const double rounding = 1e-4 + 20.0 * (NUM_ROUNDING + COEF_ROUNDING) + 4.0 * SINE_ERROR;
+
+    TEST_ASSERT_NUM_WITHIN(rounding, x.i_a / base.current_A, estimate->current.a);
+    TEST_ASSERT_NUM_WITHIN(rounding, x.i_b / base.current_A, estimate->current.b);
+    TEST_ASSERT_NUM_WITHIN(rounding, x.speed / base.speed_rad_s, estimate->rotor.speed);
+    TEST_ASSERT_NUM_WITHIN(rounding, x.load / base.torque_Nm, estimate->rotor.load_torque);
+    TEST_ASSERT_NUM_WITHIN(0.02 * rounding + 4.0 * NUM_ROUNDING, x.bias_d / base.voltage_V,
+                           ekf.bias.d);
+    TEST_ASSERT_NUM_WITHIN(0.02 * rounding + 4.0 * NUM_ROUNDING, x.bias_q / base.voltage_V,
+                           ekf.bias.q);
+    TEST_ASSERT_NUM_WITHIN(0.02 * rounding, x.resistance / base.resistance_ohm,
+                           estimate->winding.resistance);
+    TEST_ASSERT_DOUBLE_WITHIN(rounding * base.rad_per_turn, x.angle,
+                              position_to_rad(estimate->rotor.position, 50));
+}
+
+static void test_a_step_is_that_of_the_equations_in_motion_and_in_hold(void)
+{
+    static const struct state starts[] = {
+        {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.37},
+        {0.8, -0.5, 45.0, 0.02, 0.05, 0.0, 0.0, 0.37},
+        {-0.4, 1.2, -30.0, -0.7, -0.1, 0.0, 0.0, 0.5},
+        {1.4, 0.3, 0.4, 3.3, 0.1, 0.1, -0.05, 0.3},
+        {-1.2, 0.9, -0.6, 1.02, -0.2, -0.2, 0.1, 0.45},
+    };
+    static const struct bench_vector voltage = {3.0, -2.0};
+    static const struct bench_vector current = {0.95, -0.4};
+
+    for (unsigned i = 0; i < sizeof starts / sizeof starts[0]; i++) {
+        const struct state next = predicted(starts[i], voltage);
+
+        for (int hold = 0; hold < 2; hold++) {
+            set(starts[i]);
+            invariant_ekf_step(&ekf, &params, bench_phases(current.a, current.b, base.current_A),
+                               bench_phases(voltage.a, voltage.b, base.voltage_V), hold != 0);
+            is_state(corrected(starts[i], next, hold != 0 ? &holding : &moving, current));
+        }
     }
 }
 
@@ -222,6 +325,7 @@ static void test_a_load_step_in_hold_is_followed_before_the_rotor_has_turned_far
                 TEST_ASSERT_DOUBLE_WITHIN(0.2 * 0.05, loads[i], estimated_load_Nm());
             }
         }
+        TEST_ASSERT_EQUAL_UINT32(0, ekf.following_periods); /* and is over */
     }
 }
 
@@ -248,6 +352,8 @@ static void test_a_reset_forgets_all_but_what_it_is_told(void)
 {
     turn(45.0, 300);
     hold(0.0, 50);
+    ekf.following_periods = 7;
+    ekf.innovation_mean = NUM(0.1);
     invariant_ekf_reset(&ekf, &params, position_from_rad(1.0, 50), NUM(0.1));
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.0, position_to_rad(ekf.estimate.rotor.position, 50));
     TEST_ASSERT_NUM_WITHIN(0.0, 0.0, ekf.estimate.rotor.speed);
@@ -255,12 +361,14 @@ static void test_a_reset_forgets_all_but_what_it_is_told(void)
     TEST_ASSERT_NUM_WITHIN(0.0, 0.0, ekf.estimate.current.a);
     TEST_ASSERT_NUM_WITHIN(0.0, 0.0, ekf.bias.d);
     TEST_ASSERT_NUM_WITHIN(0.0, 0.0, ekf.innovation_mean);
+    TEST_ASSERT_EQUAL_UINT32(0, ekf.following_periods);
     TEST_ASSERT_NUM_WITHIN(NUM_ROUNDING, 0.1, ekf.estimate.winding.resistance);
 }
 
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_a_step_is_that_of_the_equations_in_motion_and_in_hold);
     RUN_TEST(test_a_right_start_is_tracked_from_rest_through_an_acceleration);
     RUN_TEST(test_the_estimate_locks_from_thirty_electrical_degrees_either_way);
     RUN_TEST(test_steady_rotation_is_tracked_both_ways);

@@ -28,6 +28,7 @@ static const struct profile_move smooth = {.shape = PROFILE_SMOOTH,
 
 static struct reference_params params;
 static struct reference reference;
+static struct profile profile; /* the one the reference has taken over */
 static char error[DESIGN_ERROR_TEXT];
 
 void setUp(void)
@@ -68,26 +69,33 @@ static double round_to_int(double x)
 
 static struct profile plan(const struct profile_move *move)
 {
-    struct profile profile;
+    struct profile planned;
 
-    TEST_ASSERT_TRUE_MESSAGE(profile_plan(&profile, reference.next.position, move, &drive, error),
+    TEST_ASSERT_TRUE_MESSAGE(profile_plan(&planned, reference.next.position, move, &drive, error),
                              error);
-    return profile;
-}
-
-/* Loads a move; the step that follows gives the reference at the start of the profile. */
-static struct profile begin(const struct profile_move *move)
-{
-    struct profile profile = plan(move);
-
-    TEST_ASSERT_TRUE(reference_load(&reference, &profile));
-    return profile;
+    return planned;
 }
 
 static struct reference_sample step(void)
 {
     reference_step(&reference, &params);
     return reference.next;
+}
+
+static void load(const struct profile_move *move)
+{
+    profile = plan(move);
+    TEST_ASSERT_TRUE(reference_load(&reference, &profile));
+}
+
+/* Loads a move; the step that follows gives the reference at the start of the profile. */
+static void begin(const struct profile_move *move)
+{
+    const struct position start = reference.next.position;
+
+    load(move);
+    TEST_ASSERT_TRUE(step().moving);
+    TEST_ASSERT_EQUAL_INT64(angle_of(start), angle_of(reference.next.position));
 }
 
 static void run_to_rest(void)
@@ -251,11 +259,10 @@ static void test_slow_and_fast_moves_land_without_a_correction(void)
     };
 
     for (unsigned i = 0; i < sizeof moves / sizeof moves[0]; i++) {
-        struct profile profile;
         struct motion before_last;
 
         reference_reset(&reference, origin);
-        profile = begin(&moves[i]);
+        begin(&moves[i]);
         run_to_rest();
         before_last =
             continuous(&moves[i], 0.0, round_to_int(moves[i].duration_s / drive.period_s) - 1.0);
@@ -284,7 +291,7 @@ static void test_a_million_turns_are_covered_without_loss(void)
     TEST_ASSERT_EQUAL_INT64((int64_t)1000000 << 32, angle_of(reference.next.position));
     /* J/6 of the last period is 4e-9 turn; what the snap to the target adds must be far below. */
     last = angle_of(reference.next.position) - angle_of(reference.now.position);
-    TEST_ASSERT_INT64_WITHIN(2, reference.profile.jerk_sixth >> 32, last);
+    TEST_ASSERT_INT64_WITHIN(2, profile.jerk_sixth >> 32, last);
 
     begin(&back);
     run_to_rest();
@@ -313,13 +320,22 @@ static void test_a_smooth_move_has_bounded_jerk_and_continuous_acceleration(void
     TEST_ASSERT_DOUBLE_WITHIN(3e-9, jerk, largest);
 }
 
-/* Stops `move` in period `at` and checks how it comes to rest. Returns the periods it takes. */
+static uint32_t periods_of(double time_s)
+{
+    return (uint32_t)(time_s / drive.period_s + 0.5);
+}
+
+/*
+ * Stops `move` in period `at` and checks how it comes to rest. Returns the periods it still moves
+ * for after the one that shows position `at` of the profile.
+ */
 static uint32_t stops_without_a_kink(const struct profile_move *move, uint32_t at)
 {
-    const uint32_t ramp = (uint32_t)(move->ramp_s / drive.period_s + 0.5);
-    const uint32_t jerk = (uint32_t)(move->jerk_s / drive.period_s + 0.5);
+    const uint32_t duration = periods_of(move->duration_s);
+    const uint32_t ramp = periods_of(move->ramp_s);
+    const uint32_t jerk = periods_of(move->jerk_s);
     const double distance = turns_of_rad(move->position_rad);
-    const double acceleration = magnitude(distance) / (4000.0 - ramp) / (ramp - jerk);
+    const double acceleration = magnitude(distance) / (duration - ramp) / (ramp - jerk);
     const double sign = distance < 0.0 ? -1.0 : 1.0;
     double x[4] = {0.0, 0.0, 0.0, 0.0};
     uint32_t periods = 0;
@@ -344,9 +360,44 @@ static uint32_t stops_without_a_kink(const struct profile_move *move, uint32_t a
             TEST_ASSERT_TRUE(magnitude(x[3] - 3.0 * x[2] + 3.0 * x[1] - x[0]) <=
                              acceleration / jerk + 3e-9);
         }
-        TEST_ASSERT_TRUE_MESSAGE(k < 5000u, "does not come to rest");
+        TEST_ASSERT_TRUE_MESSAGE(k <= duration + 3u, "does not come to rest");
     }
     return periods;
+}
+
+/*
+ * Periods from a stop to rest: one more of the present phase, then the ramp up is mirrored from
+ * where it stands, its last, easing part run to its end. Where `at` is the corner to a new phase,
+ * that phase begins first.
+ */
+static uint32_t stopping_periods(const struct profile_move *move, uint32_t at)
+{
+    const uint32_t duration = periods_of(move->duration_s);
+    const uint32_t ramp = periods_of(move->ramp_s);
+    const uint32_t jerk = periods_of(move->jerk_s);
+
+    if ((jerk > 0u && (at == jerk || at == ramp - jerk)) || at == ramp) {
+        return 1u + stopping_periods(move, at + 1u);
+    }
+    return at < jerk              ? 3u * (at + 1u)
+           : at < ramp - jerk     ? 2u * jerk + at + 1u
+           : at < ramp            ? 2u * ramp - 1u - at
+           : at < duration - ramp ? ramp
+                                  : duration - 1u - at;
+}
+
+static void stops_from_any_point(const struct profile_move *move)
+{
+    static const uint32_t corners[] = {1, 300, 700, 1000, 3000, 3300, 3700, 3996};
+
+    for (uint32_t at = 1; at < 4000u; at += 83u) {
+        TEST_ASSERT_EQUAL_UINT32(stopping_periods(move, at), stops_without_a_kink(move, at));
+    }
+    for (unsigned i = 0; i < sizeof corners / sizeof corners[0]; i++) {
+        for (uint32_t at = corners[i] - (i > 0u ? 3u : 0u); at <= corners[i] + 3u; at++) {
+            TEST_ASSERT_EQUAL_UINT32(stopping_periods(move, at), stops_without_a_kink(move, at));
+        }
+    }
 }
 
 static void test_a_trapezoid_stops_from_any_point_with_its_own_deceleration(void)
@@ -354,24 +405,34 @@ static void test_a_trapezoid_stops_from_any_point_with_its_own_deceleration(void
     struct profile_move move = trapezoid;
 
     move.duration_s = 0.4;
-    for (uint32_t at = 1; at < 4000u; at += 83u) {
-        uint32_t expected = at < 1000u ? at : (at < 3000u ? 1000u : 4000u - at);
-
-        TEST_ASSERT_UINT32_WITHIN(1, expected, stops_without_a_kink(&move, at));
-    }
+    stops_from_any_point(&move);
 }
 
 static void test_a_smooth_move_stops_from_any_point_with_its_own_jerk(void)
 {
-    for (uint32_t at = 1; at < 4000u; at += 83u) {
-        /* The ramp up is mirrored from where it stands; its last, easing part is run to its end. */
-        uint32_t expected = at < 300u    ? 3u * at
-                            : at < 700u  ? 600u + at
-                            : at < 1000u ? 2000u - at
-                            : at < 3000u ? 1000u
-                                         : 4000u - at;
+    stops_from_any_point(&smooth);
+}
 
-        TEST_ASSERT_UINT32_WITHIN(3, expected, stops_without_a_kink(&smooth, at));
+static void test_a_move_with_phases_of_one_period_stops_in_any_of_them(void)
+{
+    static const struct profile_move moves[] = {
+        {PROFILE_TRAPEZOID, 0.0002, 0.0004, 0.0002, 0.0},
+        {PROFILE_TRAPEZOID, -0.0002, 0.0005, 0.0002, 0.0},
+        {PROFILE_SMOOTH, 0.0002, 0.0004, 0.0002, 0.0001},
+        {PROFILE_SMOOTH, -0.0002, 0.0005, 0.0002, 0.0001},
+        {PROFILE_SMOOTH, 0.0002, 0.0006, 0.0003, 0.0001},
+        {PROFILE_SMOOTH, 0.0002, 0.0007, 0.0003, 0.0001},
+        {PROFILE_SMOOTH, 0.0002, 0.0011, 0.0005, 0.0002},
+    };
+
+    for (unsigned i = 0; i < sizeof moves / sizeof moves[0]; i++) {
+        for (uint32_t at = 1; at <= periods_of(moves[i].duration_s) + 1u; at++) {
+            struct profile_move onwards = smooth;
+
+            stops_without_a_kink(&moves[i], at);
+            onwards.position_rad = 5.0;
+            follows_the_continuous_profile(&onwards); /* the stop is over and done with */
+        }
     }
 }
 
@@ -393,10 +454,20 @@ static void test_a_move_stopped_before_it_begins_stays_where_it_is(void)
     const struct profile_move *moves[] = {&trapezoid, &smooth, &jump};
 
     for (int i = 0; i < 3; i++) {
-        begin(moves[i]);
-        reference_stop(&reference);
-        TEST_ASSERT_FALSE(step().moving);
-        TEST_ASSERT_EQUAL_INT64(0, angle_of(step().position));
+        for (int periods = 0; periods < 2; periods++) {
+            load(moves[i]);
+            for (int k = 0; k < periods; k++) {
+                step();
+            }
+            reference_stop(&reference);
+            for (int k = 0; k < 3; k++) {
+                struct reference_sample s = step();
+
+                TEST_ASSERT_FALSE(s.moving);
+                TEST_ASSERT_EQUAL_INT64(0, angle_of(s.position));
+                TEST_ASSERT_TRUE(s.speed == NUM(0.0) && s.acceleration == NUM(0.0));
+            }
+        }
     }
 }
 
@@ -409,13 +480,45 @@ static void test_a_stop_at_rest_leaves_the_next_move_alone(void)
                             angle_of(reference.next.position));
 }
 
+static void test_a_stop_shortens_the_profile_that_was_handed_over(void)
+{
+    begin(&trapezoid);
+    for (int k = 0; k < 700; k++) {
+        step();
+    }
+    reference_stop(&reference);
+    run_to_rest();
+    TEST_ASSERT_EQUAL_UINT32(701, profile.acceleration_periods);
+    TEST_ASSERT_EQUAL_UINT32(0, profile.cruise_periods);
+    TEST_ASSERT_TRUE(turns_of(profile.target) > turns_of(reference.next.position));
+}
+
+static void test_a_profile_begins_two_periods_after_it_is_loaded(void)
+{
+    const struct profile_move *moves[] = {&trapezoid, &smooth};
+
+    for (int i = 0; i < 2; i++) {
+        const int64_t there = angle_of(reference.next.position);
+
+        load(moves[i]);
+        for (int k = 1; k <= 2; k++) {
+            TEST_ASSERT_TRUE(step().moving);
+            TEST_ASSERT_EQUAL_INT64(there, angle_of(reference.next.position));
+            TEST_ASSERT_EQUAL(k == 2, reference.periods_left > 0u);
+        }
+        step();
+        TEST_ASSERT_TRUE(angle_of(reference.next.position) != there);
+        run_to_rest();
+    }
+}
+
 static void test_after_a_stop_a_move_starts_from_where_the_reference_rests(void)
 {
     struct profile follow_on;
     struct profile_move home = smooth;
 
     begin(&trapezoid);
-    TEST_ASSERT_TRUE(profile_plan(&follow_on, reference.profile.target, &smooth, &drive, error));
+    TEST_ASSERT_TRUE(profile_plan(&follow_on, profile.target, &smooth, &drive, error));
     for (int k = 0; k < 700; k++) {
         step();
     }
@@ -444,12 +547,12 @@ static void test_a_move_is_refused_while_another_one_runs(void)
 
 static void test_a_move_planned_from_elsewhere_is_refused(void)
 {
-    struct profile profile = plan(&trapezoid);
+    struct profile stray = plan(&trapezoid);
 
-    profile.start = (struct position){1, 0};
-    TEST_ASSERT_FALSE(reference_load(&reference, &profile));
-    profile.start = (struct position){0, 1};
-    TEST_ASSERT_FALSE(reference_load(&reference, &profile));
+    stray.start = (struct position){1, 0};
+    TEST_ASSERT_FALSE(reference_load(&reference, &stray));
+    stray.start = (struct position){0, 1};
+    TEST_ASSERT_FALSE(reference_load(&reference, &stray));
     TEST_ASSERT_FALSE(step().moving);
 }
 
@@ -473,7 +576,11 @@ static void test_a_reset_in_full_motion_leaves_nothing_of_it(void)
     }
     TEST_ASSERT_EQUAL_UINT32(3, reference.rest_periods);
 
+    load(&smooth);
+    reference_reset(&reference, elsewhere);
+    TEST_ASSERT_FALSE(step().moving);
     begin(&smooth);
+    step();
     reference_stop(&reference);
     reference_reset(&reference, elsewhere);
     follows_the_continuous_profile(&trapezoid);
@@ -497,7 +604,7 @@ static void test_each_step_hands_the_next_sample_on_as_the_present_one(void)
 {
     struct reference_sample before = reference.next;
 
-    begin(&smooth);
+    load(&smooth);
     for (int k = 0; k < 4100; k++) {
         struct reference_sample s = step();
 
@@ -545,15 +652,15 @@ static void test_the_positions_are_the_same_bits_in_every_number_format(void)
             }
         } while (reference.next.moving);
     }
-    TEST_ASSERT_EQUAL_HEX64(0xA143D235AE89A263, hash);
+    TEST_ASSERT_EQUAL_HEX64(0x3769D377FADF97BF, hash);
 }
 
 static void refuses(struct profile_move move, const char *text)
 {
-    struct profile profile;
+    struct profile planned;
 
     error[0] = '\0';
-    TEST_ASSERT_FALSE_MESSAGE(profile_plan(&profile, origin, &move, &drive, error), text);
+    TEST_ASSERT_FALSE_MESSAGE(profile_plan(&planned, origin, &move, &drive, error), text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error, text), error);
 }
 
@@ -633,21 +740,21 @@ static void test_the_range_of_the_reference_binds_where_the_drive_sets_no_limit(
                                             .speed_limit_rad_s = 1e9,
                                             .acceleration_limit_rad_s2 = 1e9};
     struct profile_move move = trapezoid;
-    struct profile profile;
+    struct profile planned;
 
     /* 0.45 turn per period is 565.49 rad/s */
     move.position_rad = 0.33 * 565.0;
-    TEST_ASSERT_TRUE(profile_plan(&profile, origin, &move, &unlimited, error));
+    TEST_ASSERT_TRUE(profile_plan(&planned, origin, &move, &unlimited, error));
     move.position_rad = 0.33 * 566.0;
-    TEST_ASSERT_FALSE(profile_plan(&profile, origin, &move, &unlimited, error));
+    TEST_ASSERT_FALSE(profile_plan(&planned, origin, &move, &unlimited, error));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error, "at most 565.5 rad/s"), error);
     /* 2^-7 turn per period^2 is 98175 rad/s^2 */
     move.duration_s = 0.1;
     move.ramp_s = 0.005;
     move.position_rad = 0.095 * 0.005 * 98100.0;
-    TEST_ASSERT_TRUE(profile_plan(&profile, origin, &move, &unlimited, error));
+    TEST_ASSERT_TRUE(profile_plan(&planned, origin, &move, &unlimited, error));
     move.position_rad = 0.095 * 0.005 * 98200.0;
-    TEST_ASSERT_FALSE(profile_plan(&profile, origin, &move, &unlimited, error));
+    TEST_ASSERT_FALSE(profile_plan(&planned, origin, &move, &unlimited, error));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error, "acceleration"), error);
 }
 
@@ -665,9 +772,12 @@ int main(void)
     RUN_TEST(test_a_smooth_move_has_bounded_jerk_and_continuous_acceleration);
     RUN_TEST(test_a_trapezoid_stops_from_any_point_with_its_own_deceleration);
     RUN_TEST(test_a_smooth_move_stops_from_any_point_with_its_own_jerk);
+    RUN_TEST(test_a_move_with_phases_of_one_period_stops_in_any_of_them);
     RUN_TEST(test_a_stop_while_decelerating_still_lands_on_the_target);
     RUN_TEST(test_a_move_stopped_before_it_begins_stays_where_it_is);
     RUN_TEST(test_a_stop_at_rest_leaves_the_next_move_alone);
+    RUN_TEST(test_a_stop_shortens_the_profile_that_was_handed_over);
+    RUN_TEST(test_a_profile_begins_two_periods_after_it_is_loaded);
     RUN_TEST(test_after_a_stop_a_move_starts_from_where_the_reference_rests);
     RUN_TEST(test_a_move_is_refused_while_another_one_runs);
     RUN_TEST(test_a_move_planned_from_elsewhere_is_refused);

@@ -49,6 +49,12 @@ static double resolution(double x)
 }
 
 #if STEADYSTEP_NUM == NUM_FIXED
+#define UNIT_ROUNDING (1.0 / 32768.0)
+#else
+#define UNIT_ROUNDING 0.0
+#endif
+
+#if STEADYSTEP_NUM == NUM_FIXED
 
 static const int32_t extremes[] = {INT32_MIN,  INT32_MIN + 1, -65537,   -65536, -65535, -32769,
                                    -32768,     -32767,        -2,       -1,     0,      1,
@@ -64,45 +70,50 @@ static int64_t floor_of(int64_t a, unsigned bits)
     return a / divisor - (a % divisor < 0 ? 1 : 0);
 }
 
-static void product_is_the_floor_of_the_exact_one(int32_t a, int32_t b)
+/* Of the second factor 16 bits count, and it is below 2 in magnitude. */
+static void product_is_the_floor_with_16_bits_of_the_second(int32_t a, int32_t b)
 {
-    int64_t product = floor_of((int64_t)a * b, NUM_FRACTION_BITS);
+    int64_t product = floor_of((int64_t)a * floor_of(b, NUM_FRACTION_BITS - 14), 14);
 
     if (product >= INT32_MIN && product <= INT32_MAX) {
         TEST_ASSERT_EQUAL_INT32((int32_t)product, num_mul(a, b));
     }
 }
 
-static void test_a_product_is_the_floor_of_the_exact_one(void)
+static void test_a_product_is_the_floor_with_16_bits_of_the_second_factor(void)
 {
     random_state = 1;
     for (int i = 0; i < EXTREMES; i++) {
         for (int j = 0; j < EXTREMES; j++) {
-            product_is_the_floor_of_the_exact_one(extremes[i], extremes[j]);
+            product_is_the_floor_with_16_bits_of_the_second(extremes[i], extremes[j] >> 4);
+            if (extremes[j] > NUM(-2.0) && extremes[j] < NUM(2.0)) {
+                product_is_the_floor_with_16_bits_of_the_second(extremes[i], extremes[j]);
+            }
         }
     }
     for (int i = 0; i < 1000000; i++) {
-        /* The second factor gets every magnitude, so that most products are in range. */
-        int32_t a = (int32_t)random_bits();
-        int32_t b = (int32_t)random_bits() >> (random_bits() % 32u);
+        /* Either factor gets every magnitude. */
+        int32_t a = (int32_t)random_bits() >> (random_bits() % 32u);
+        int32_t b = (int32_t)random_bits() >> (4u + random_bits() % 28u);
 
-        product_is_the_floor_of_the_exact_one(a, b);
-        product_is_the_floor_of_the_exact_one(b, a);
+        product_is_the_floor_with_16_bits_of_the_second(a, b);
     }
+    TEST_ASSERT_EQUAL_INT32(NUM(31.5), num_mul(NUM(31.5), NUM(1.0)));
+    TEST_ASSERT_EQUAL_INT32(NUM(-31.5), num_mul(NUM(31.5), NUM(-1.0)));
 }
 
 static void test_the_upper_half_of_a_16_bit_product_is_its_floor(void)
 {
     random_state = 2;
     for (int i = 0; i < EXTREMES; i++) {
-        for (int32_t m = -32768; m <= 32768; m++) {
+        for (int32_t m = INT16_MIN; m <= INT16_MAX; m++) {
             TEST_ASSERT_EQUAL_INT32((int32_t)floor_of((int64_t)extremes[i] * m, 16),
-                                    num_mul_high16(extremes[i], m));
+                                    num_mul_high16(extremes[i], (int16_t)m));
         }
     }
     for (int i = 0; i < 1000000; i++) {
         int32_t a = (int32_t)random_bits();
-        int32_t m = (int16_t)(random_bits() & 0xffffu);
+        int16_t m = (int16_t)(random_bits() & 0xffffu);
 
         TEST_ASSERT_EQUAL_INT32((int32_t)floor_of((int64_t)a * m, 16), num_mul_high16(a, m));
     }
@@ -127,20 +138,44 @@ static void test_a_gain_is_rounded_down_once_and_shifted(void)
     }
 }
 
-static void test_a_ratio_never_rounds_up_and_less_than_two_steps_down(void)
+static void ratio_is_the_floor_of_the_exact_one(int32_t a, int32_t u)
+{
+    int64_t product = floor_of((int64_t)a * u, 15);
+
+    if (product >= INT32_MIN && product <= INT32_MAX) {
+        TEST_ASSERT_EQUAL_INT32((int32_t)product, num_mul_unit(a, u));
+    }
+}
+
+static void test_a_ratio_is_the_floor_of_the_exact_one(void)
 {
     random_state = 4;
+    for (int i = 0; i < EXTREMES; i++) {
+        /* sincos_add may leave one by some bits. */
+        for (int32_t u = -32780; u <= 32780; u++) {
+            ratio_is_the_floor_of_the_exact_one(extremes[i], u);
+        }
+    }
     for (int i = 0; i < 1000000; i++) {
         int32_t a = (int32_t)random_bits();
-        int32_t u = (int32_t)(random_bits() % 65537u) - 32768;
-        int64_t lost = (int64_t)a * u - (int64_t)num_mul_unit(a, u) * 32768;
 
-        if (a != INT32_MIN) { /* times -1 it has no place in the range */
-            TEST_ASSERT_TRUE(lost >= 0 && lost < 2 * 32768);
-        }
+        ratio_is_the_floor_of_the_exact_one(a, (int32_t)(random_bits() % 65537u) - 32768);
     }
     TEST_ASSERT_EQUAL_INT32(NUM(-31.5), num_mul_unit(NUM(31.5), UNIT(-1.0)));
     TEST_ASSERT_EQUAL_INT32(NUM(31.5), num_mul_unit(NUM(31.5), UNIT(1.0)));
+}
+
+static void test_a_product_of_ratios_is_the_floor_of_the_exact_one(void)
+{
+    random_state = 11;
+    for (int i = 0; i < 1000000; i++) {
+        int32_t u = (int32_t)(random_bits() % 65537u) - 32768;
+        int32_t w = (int32_t)(random_bits() % 65537u) - 32768;
+
+        TEST_ASSERT_EQUAL_INT32((int32_t)floor_of((int64_t)u * w, 15), unit_mul(u, w));
+    }
+    TEST_ASSERT_EQUAL_INT32(UNIT(1.0), unit_mul(UNIT(-1.0), UNIT(-1.0)));
+    TEST_ASSERT_EQUAL_INT32(UNIT(-1.0), unit_mul(UNIT(1.0), UNIT(-1.0)));
 }
 
 static void test_halves_and_ratios_are_floors(void)
@@ -192,15 +227,6 @@ static void test_only_a_gain_of_16_bits_is_kept(void)
 
 #else
 
-static void test_a_nan_or_an_infinity_is_not_finite(void)
-{
-    TEST_ASSERT_TRUE(num_is_finite(NUM(0.0)));
-    TEST_ASSERT_TRUE(num_is_finite(NUM(-3e38)));
-    TEST_ASSERT_FALSE(num_is_finite((num_t)__builtin_nan("")));
-    TEST_ASSERT_FALSE(num_is_finite((num_t)__builtin_inf()));
-    TEST_ASSERT_FALSE(num_is_finite(-(num_t)__builtin_inf()));
-}
-
 static void test_a_nan_becomes_the_upper_bound(void)
 {
     TEST_ASSERT_TRUE(num_clamp((num_t)__builtin_nan(""), NUM(-2.0), NUM(3.0)) == NUM(3.0));
@@ -208,23 +234,57 @@ static void test_a_nan_becomes_the_upper_bound(void)
     TEST_ASSERT_TRUE(num_clamp(-(num_t)__builtin_inf(), NUM(-2.0), NUM(3.0)) == NUM(-2.0));
 }
 
+static void test_a_limit_holds_an_infinity_and_turns_a_nan_into_the_lower_bound(void)
+{
+    TEST_ASSERT_TRUE(num_limit((num_t)__builtin_inf(), NUM(3.0)) == NUM(3.0));
+    TEST_ASSERT_TRUE(num_limit(-(num_t)__builtin_inf(), NUM(3.0)) == NUM(-3.0));
+    TEST_ASSERT_TRUE(num_limit((num_t)__builtin_nan(""), NUM(3.0)) == NUM(-3.0));
+    TEST_ASSERT_TRUE(num_limit(-(num_t)__builtin_nan(""), NUM(3.0)) == NUM(-3.0));
+}
+
+static void test_a_magnitude_has_no_sign_and_keeps_a_nan(void)
+{
+    num_t nothing = num_abs(-NUM(0.0));
+    num_t nan = num_abs((num_t)__builtin_nan(""));
+
+    TEST_ASSERT_TRUE(NUM(1.0) / nothing > NUM(0.0));
+    TEST_ASSERT_TRUE(num_abs(-(num_t)__builtin_inf()) == (num_t)__builtin_inf());
+    TEST_ASSERT_TRUE(nan != nan);
+}
+
 #endif
+
+/* What counts of the second factor of a product. */
+static double second_factor(double b)
+{
+#if STEADYSTEP_NUM == NUM_FIXED
+    return (double)floor_of(num_from_double(b), NUM_FRACTION_BITS - 14) / 16384.0;
+#else
+    return b;
+#endif
+}
 
 static void test_products_are_right_to_their_resolution(void)
 {
     random_state = 5;
     for (int i = 0; i < 20000; i++) {
         double a = num_to_double(num_from_double(random_within(5.0)));
-        double b = num_to_double(num_from_double(random_within(5.0)));
-        double u = magnitude(b) / 5.0;
+        double b = num_to_double(num_from_double(random_within(1.9999)));
+        double u = b / 2.0;
+        double w = a / 5.0;
         num_t x = num_from_double(a);
 
-        TEST_ASSERT_DOUBLE_WITHIN(resolution(a * b), a * b,
+        TEST_ASSERT_DOUBLE_WITHIN(resolution(a * b), a * second_factor(b),
                                   num_to_double(num_mul(x, num_from_double(b))));
         u = num_to_double(num_from_unit(unit_from_num(num_from_double(u))));
         TEST_ASSERT_DOUBLE_WITHIN(
-            2.0 * resolution(a * u), a * u,
+            resolution(a * u), a * u,
             num_to_double(num_mul_unit(x, unit_from_num(num_from_double(u)))));
+        w = num_to_double(num_from_unit(unit_from_num(num_from_double(w))));
+        TEST_ASSERT_DOUBLE_WITHIN(
+            UNIT_ROUNDING + resolution(u * w), u * w,
+            num_to_double(num_from_unit(
+                unit_mul(unit_from_num(num_from_double(u)), unit_from_num(num_from_double(w))))));
         TEST_ASSERT_DOUBLE_WITHIN(resolution(a), a / 2.0, num_to_double(num_half(x)));
     }
 }
@@ -281,18 +341,27 @@ static void test_a_converter_code_becomes_a_number(void)
 
 static void test_a_number_becomes_the_nearest_count(void)
 {
+    static const int32_t middles[] = {4250, 2125, 65535};
     const coef_t half_period = coef_from_double(4250.0 * NUM_COUNT_SCALE);
+    const coef_t half_of_it = coef_from_double(2125.0 * NUM_COUNT_SCALE);
 
-    for (double modulation = -0.92; modulation <= 0.92; modulation += 0.00037) {
-        double exact = 4250.0 * modulation;
+    for (int i = 0; i < 3; i++) {
+        const int32_t middle = middles[i];
+        const coef_t k = middle < 4250 ? half_of_it : half_period;
+        const double counts = middle < 4250 ? 2125.0 : 4250.0;
 
-        TEST_ASSERT_DOUBLE_WITHIN(
-            0.501 + magnitude(exact) / 32768.0, exact,
-            (double)counts_from_num(num_from_double(modulation), half_period));
+        for (double modulation = -0.92; modulation <= 0.92; modulation += 0.00037) {
+            double exact = counts * modulation;
+
+            TEST_ASSERT_DOUBLE_WITHIN(
+                0.501 + magnitude(exact) / 32768.0, middle + exact,
+                (double)counts_from_num(num_from_double(modulation), k, middle));
+        }
+        TEST_ASSERT_EQUAL_INT32(middle, counts_from_num(NUM(0.0), k, middle));
     }
-    TEST_ASSERT_EQUAL_INT32(0, counts_from_num(NUM(0.0), half_period));
-    TEST_ASSERT_EQUAL_INT32(2125, counts_from_num(NUM(0.5), half_period));
-    TEST_ASSERT_EQUAL_INT32(-2125, counts_from_num(NUM(-0.5), half_period));
+    TEST_ASSERT_EQUAL_INT32(4250 + 2125, counts_from_num(NUM(0.5), half_period, 4250));
+    TEST_ASSERT_EQUAL_INT32(4250 - 2125, counts_from_num(NUM(-0.5), half_period, 4250));
+    TEST_ASSERT_EQUAL_INT32(2125, counts_from_num(NUM(0.5), half_period, 0));
 }
 
 static void test_a_square_root_keeps_16_bits(void)
@@ -320,7 +389,24 @@ static void test_clamps_and_magnitudes(void)
     TEST_ASSERT_TRUE(num_clamp(NUM(-9.0), NUM(-2.0), NUM(3.0)) == NUM(-2.0));
     TEST_ASSERT_TRUE(num_abs(NUM(-1.5)) == NUM(1.5));
     TEST_ASSERT_TRUE(num_abs(NUM(1.5)) == NUM(1.5));
-    TEST_ASSERT_TRUE(num_is_finite(NUM(31.0)));
+}
+
+static void test_a_limit_is_the_same_on_either_side(void)
+{
+    TEST_ASSERT_TRUE(num_limit(NUM(1.0), NUM(2.0)) == NUM(1.0));
+    TEST_ASSERT_TRUE(num_limit(NUM(-1.0), NUM(2.0)) == NUM(-1.0));
+    TEST_ASSERT_TRUE(num_limit(NUM(0.0), NUM(2.0)) == NUM(0.0));
+    TEST_ASSERT_TRUE(num_limit(NUM(2.0), NUM(2.0)) == NUM(2.0));
+    TEST_ASSERT_TRUE(num_limit(NUM(-2.0), NUM(2.0)) == NUM(-2.0));
+    TEST_ASSERT_TRUE(num_limit(NUM(31.0), NUM(2.0)) == NUM(2.0));
+    TEST_ASSERT_TRUE(num_limit(NUM(-31.0), NUM(2.0)) == NUM(-2.0));
+    random_state = 12;
+    for (int i = 0; i < 20000; i++) {
+        num_t a = num_from_double(random_within(31.9));
+        num_t limit = num_abs(num_from_double(random_within(31.9))) + NUM(0.001);
+
+        TEST_ASSERT_TRUE(num_limit(a, limit) == num_clamp(a, -limit, limit));
+    }
 }
 
 static void test_numbers_survive_the_way_to_double_and_back(void)
@@ -364,17 +450,19 @@ int main(void)
 {
     UNITY_BEGIN();
 #if STEADYSTEP_NUM == NUM_FIXED
-    RUN_TEST(test_a_product_is_the_floor_of_the_exact_one);
+    RUN_TEST(test_a_product_is_the_floor_with_16_bits_of_the_second_factor);
     RUN_TEST(test_the_upper_half_of_a_16_bit_product_is_its_floor);
     RUN_TEST(test_a_gain_is_rounded_down_once_and_shifted);
-    RUN_TEST(test_a_ratio_never_rounds_up_and_less_than_two_steps_down);
+    RUN_TEST(test_a_ratio_is_the_floor_of_the_exact_one);
+    RUN_TEST(test_a_product_of_ratios_is_the_floor_of_the_exact_one);
     RUN_TEST(test_halves_and_ratios_are_floors);
     RUN_TEST(test_literals_are_rounded_to_the_nearest);
     RUN_TEST(test_conversions_saturate_and_a_nan_is_a_number);
     RUN_TEST(test_only_a_gain_of_16_bits_is_kept);
 #else
-    RUN_TEST(test_a_nan_or_an_infinity_is_not_finite);
     RUN_TEST(test_a_nan_becomes_the_upper_bound);
+    RUN_TEST(test_a_limit_holds_an_infinity_and_turns_a_nan_into_the_lower_bound);
+    RUN_TEST(test_a_magnitude_has_no_sign_and_keeps_a_nan);
 #endif
     RUN_TEST(test_products_are_right_to_their_resolution);
     RUN_TEST(test_a_gain_of_any_size_keeps_15_bits);
@@ -383,6 +471,7 @@ int main(void)
     RUN_TEST(test_a_number_becomes_the_nearest_count);
     RUN_TEST(test_a_square_root_keeps_16_bits);
     RUN_TEST(test_clamps_and_magnitudes);
+    RUN_TEST(test_a_limit_is_the_same_on_either_side);
     RUN_TEST(test_numbers_survive_the_way_to_double_and_back);
     RUN_TEST(test_a_double_becomes_the_nearest_number);
     RUN_TEST(test_every_bit_of_a_number_reaches_its_hash);

@@ -190,8 +190,7 @@ void test_freewheeling_takes_the_time_of_the_exponential()
     plant.step(bench::off());
     const double against_A = 26.0 / bench::resistance_ohm;
     const double decay = std::exp(-bench::period_s * bench::resistance_ohm / bench::inductance_H);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, (start_A + against_A) * decay - against_A,
-                              plant.state().i_a_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, (start_A + against_A) * decay - against_A, plant.state().i_a_A);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, -26.0, plant.state().u_a_V);
 }
 

@@ -54,8 +54,8 @@ void test_back_emf_of_a_forward_turning_rotor_leads_by_a_quarter_turn()
             bench::rotor_teeth * (config.initial_theta_rad + 0.5 * 10.0 * bench::period_s);
         const double half = 0.5 * bench::rotor_teeth * 10.0 * bench::period_s;
         const double emf_V = bench::torque_constant_Nm_A * 10.0 * std::sin(half) / half;
-        TEST_ASSERT_DOUBLE_WITHIN(1e-10, -emf_V * std::sin(middle), plant.state().u_a_V);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-10, emf_V * std::cos(middle), plant.state().u_b_V);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-8, -emf_V * std::sin(middle), plant.state().u_a_V);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-8, emf_V * std::cos(middle), plant.state().u_b_V);
     }
 }
 
@@ -67,9 +67,8 @@ void test_current_of_a_locked_rotor_rises_as_the_exponential()
         plant.step(duties);
         const double time_constant_s = bench::inductance_H / bench::resistance_ohm;
         const double rise = 1.0 - std::exp(-k * bench::period_s / time_constant_s);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-10, 2.4 / bench::resistance_ohm * rise, plant.state().i_a_A);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-10, -4.8 / bench::resistance_ohm * rise,
-                                  plant.state().i_b_A);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-8, 2.4 / bench::resistance_ohm * rise, plant.state().i_a_A);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-8, -4.8 / bench::resistance_ohm * rise, plant.state().i_b_A);
     }
 }
 
@@ -83,8 +82,7 @@ void test_a_short_circuited_winding_at_constant_speed_carries_the_phasor_current
     bench::run(plant, bench::voltages(0.0, 0.0), 1000); /* 41 time constants */
     const double reactance_ohm = bench::rotor_teeth * omega_rad_s * bench::inductance_H;
     const double emf_V = bench::torque_constant_Nm_A * omega_rad_s;
-    const double z2 =
-        bench::resistance_ohm * bench::resistance_ohm + reactance_ohm * reactance_ohm;
+    const double z2 = bench::resistance_ohm * bench::resistance_ohm + reactance_ohm * reactance_ohm;
     const double i_d_A = -emf_V * reactance_ohm / z2;
     const double i_q_A = -emf_V * bench::resistance_ohm / z2;
     const double angle = bench::rotor_teeth * plant.state().theta_rad;
@@ -158,11 +156,11 @@ void test_shorter_steps_converge_to_the_same_end()
     const plant::MotorState finest = after_one_millisecond(400);
     double error_A[3];
     for (int n = 0; n < 3; n++) {
-        error_A[n] = std::fabs(after_one_millisecond(30 << n).current_A[0] - finest.current_A[0]);
+        error_A[n] = std::fabs(after_one_millisecond(60 << n).current_A[0] - finest.current_A[0]);
     }
     TEST_ASSERT_TRUE(error_A[0] < 1e-7);
-    TEST_ASSERT_TRUE(error_A[1] < error_A[0] / 32.0); /* order 6: 64 in the limit */
-    TEST_ASSERT_TRUE(error_A[2] < error_A[1] / 32.0);
+    TEST_ASSERT_TRUE(error_A[1] < error_A[0] / 16.0); /* order 5: 32 in the limit */
+    TEST_ASSERT_TRUE(error_A[2] < error_A[1] / 16.0);
 }
 
 void test_sine_cosine_and_logarithm_are_those_of_the_library()

@@ -22,8 +22,8 @@ plant::Samples exact(double i_a_A, double u_a_V, double bus_V)
 {
     plant::SensorConfig config;
     config.exact = true;
-    return plant::Sensors(config, 1).sample(0, plant::Phases{i_a_A, 0.0},
-                                            plant::Phases{u_a_V, 0.0}, bus_V);
+    return plant::Sensors(config, 1).sample(0, plant::Phases{i_a_A, 0.0}, plant::Phases{u_a_V, 0.0},
+                                            bus_V);
 }
 
 void test_zero_is_the_middle_code()

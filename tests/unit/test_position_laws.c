@@ -175,11 +175,11 @@ static void test_pid_does_not_wind_up_while_the_current_is_limited(void)
     design(POSITION_LAW_PID);
 
     for (int k = 0; k < 5000; k++) {
-        (void)current_A(input(0.5, 0.0, 0.0, 0.0, 0.0));
+        (void)current_A(input(0.05, 0.0, 0.0, 0.0, 0.0));
     }
     is_current(0.0, 0.0, current_A(at_rest_in_place));
     for (int k = 0; k < 5000; k++) {
-        (void)current_A(input(-0.5, 0.0, 0.0, 0.0, 0.0));
+        (void)current_A(input(-0.05, 0.0, 0.0, 0.0, 0.0));
     }
     is_current(0.0, 0.0, current_A(at_rest_in_place));
 }

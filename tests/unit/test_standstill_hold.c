@@ -20,12 +20,14 @@ static const struct standstill_hold_task task = {
 static struct per_unit base;
 static struct standstill_hold_params params;
 static struct standstill_hold hold;
+static angle_t reference;
 
 void setUp(void)
 {
     base = per_unit_base(&bench_params, PERIOD_S);
     params = standstill_hold_design(&base, &task);
     standstill_hold_reset(&hold);
+    reference = 0;
 }
 
 void tearDown(void)
@@ -34,7 +36,7 @@ void tearDown(void)
 
 static void step(uint32_t rest_periods, double error_electrical_deg, double speed_rad_s)
 {
-    standstill_hold_step(&hold, &params, rest_periods,
+    standstill_hold_step(&hold, &params, reference, rest_periods,
                          num_from_double(error_electrical_deg / 360.0),
                          num_from_double(speed_rad_s / base.speed_rad_s));
 }
@@ -91,6 +93,15 @@ static void test_a_hold_once_begun_lasts_whatever_the_rotor_does(void)
     step(RESTING, 0.0, 0.0);
     step(RESTING + 1u, 60.0, 20.0);
     TEST_ASSERT_TRUE(hold.active);
+}
+
+/* Both directions of the current are those of the reference, whatever the rotor does. */
+static void test_the_current_frame_is_that_of_the_reference(void)
+{
+    reference = 0x2aaaaaaau; /* 60 degrees */
+    step(RESTING, 10.0, 0.0);
+    TEST_ASSERT_NUM_WITHIN(SINE_ERROR, 0.5, num_from_unit(hold.frame.cos));
+    TEST_ASSERT_NUM_WITHIN(SINE_ERROR, sqrt(0.75), num_from_unit(hold.frame.sin));
 }
 
 static void test_the_current_ramps_in_within_ten_milliseconds(void)
@@ -154,6 +165,7 @@ int main(void)
     RUN_TEST(test_the_hold_waits_until_the_rotor_is_near);
     RUN_TEST(test_the_hold_waits_until_the_rotor_is_slow);
     RUN_TEST(test_a_hold_once_begun_lasts_whatever_the_rotor_does);
+    RUN_TEST(test_the_current_frame_is_that_of_the_reference);
     RUN_TEST(test_the_current_ramps_in_within_ten_milliseconds);
     RUN_TEST(test_a_reference_that_moves_ends_the_hold_at_once_and_ramps_the_current_out);
     RUN_TEST(test_the_torque_current_carries_the_load_and_damps);

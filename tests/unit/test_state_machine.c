@@ -60,30 +60,8 @@ static struct drive_command move_to(double position_rad)
                                   .ramp_s = 0.005};
 }
 
-enum { MOVE_PERIODS = 200 };
-
-static void is_in(enum drive_state state, bool bridge_on)
-{
-    TEST_ASSERT_EQUAL_STRING(drive_state_name(state), drive_state_name(drive.state));
-    TEST_ASSERT_EQUAL(bridge_on, outputs.bridge_on);
-}
-
-static void has_fault(enum drive_fault fault)
-{
-    is_in(DRIVE_FAULT, false);
-    TEST_ASSERT_EQUAL_STRING(drive_fault_name(fault), drive_fault_name(drive.fault));
-}
-
-/* Ready by the shortest way. */
-static void enable(void)
-{
-    settings.calibrate_offsets = false;
-    settings.hold_on_enable = false;
-    power_up();
-    post_kind(DRIVE_COMMAND_ENABLE);
-    run(1);
-    is_in(DRIVE_OPERATION_ENABLED, true);
-}
+/* A move, and some periods for its begin and for the one it is looked at in. */
+enum { MOVE_PERIODS = 200, MOVE_AND_REST = MOVE_PERIODS + 5 };
 
 static struct drive_signals signals(void)
 {
@@ -91,6 +69,29 @@ static struct drive_signals signals(void)
 
     drive_signals_read(&drive, &now);
     return now;
+}
+
+static void is_in(enum drive_state state, bool bridge_on)
+{
+    TEST_ASSERT_EQUAL_STRING(drive_state_name(state), drive_state_name(signals().state));
+    TEST_ASSERT_EQUAL(bridge_on, outputs.bridge_on);
+}
+
+static void has_fault(enum drive_fault fault)
+{
+    is_in(DRIVE_FAULT, false);
+    TEST_ASSERT_EQUAL_STRING(drive_fault_name(fault), drive_fault_name(signals().fault));
+}
+
+/* Ready by the shortest way. The period that powers up does no more; the next one drives. */
+static void enable(void)
+{
+    settings.calibrate_offsets = false;
+    settings.hold_on_enable = false;
+    power_up();
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(2);
+    is_in(DRIVE_OPERATION_ENABLED, true);
 }
 
 static void the_reference_is_at(double position_rad)
@@ -104,7 +105,7 @@ static void test_a_drive_powers_up_disabled_and_stays_so(void)
 {
     run(100);
     is_in(DRIVE_SWITCH_ON_DISABLED, false);
-    TEST_ASSERT_EQUAL(DRIVE_FAULT_NONE, drive.fault);
+    TEST_ASSERT_EQUAL(DRIVE_FAULT_NONE, signals().fault);
     TEST_ASSERT_FALSE(fake_board.bridge_enabled);
 }
 
@@ -117,9 +118,11 @@ static void test_enabling_goes_through_offsets_and_alignment_to_operation(void)
     run(OFFSET_SAMPLES - 2u);
     is_in(DRIVE_CALIBRATING_OFFSETS, false);
     run(1);
+    is_in(DRIVE_ALIGNING, false);
+    run(1);
     is_in(DRIVE_ALIGNING, true);
     TEST_ASSERT_TRUE(signals().holding);
-    run(HOLD_PERIODS);
+    run(HOLD_PERIODS - 1u);
     is_in(DRIVE_ALIGNING, true);
     run(1);
     is_in(DRIVE_OPERATION_ENABLED, true);
@@ -131,9 +134,9 @@ static void test_without_calibration_enabling_begins_with_the_alignment(void)
     settings.calibrate_offsets = false;
     power_up();
     post_kind(DRIVE_COMMAND_ENABLE);
-    run(1);
+    run(2);
     is_in(DRIVE_ALIGNING, true);
-    run(HOLD_PERIODS + 1u);
+    run(HOLD_PERIODS);
     is_in(DRIVE_OPERATION_ENABLED, true);
 }
 
@@ -144,12 +147,12 @@ static void test_without_hold_on_enable_operation_follows_the_calibration(void)
     post_kind(DRIVE_COMMAND_ENABLE);
     run(OFFSET_SAMPLES - 1u);
     is_in(DRIVE_CALIBRATING_OFFSETS, false);
-    run(1);
+    run(2);
     is_in(DRIVE_OPERATION_ENABLED, true);
     TEST_ASSERT_FALSE(signals().holding);
 }
 
-static void test_without_either_the_drive_is_ready_in_the_same_period(void)
+static void test_without_either_the_drive_is_ready_at_once(void)
 {
     enable();
     TEST_ASSERT_FALSE(signals().holding);
@@ -172,7 +175,7 @@ static void test_enabling_waits_for_the_period_it_is_addressed_to(void)
     run(7); /* periods 0...6 */
     is_in(DRIVE_SWITCH_ON_DISABLED, false);
     run(1);
-    is_in(DRIVE_ALIGNING, true);
+    is_in(DRIVE_ALIGNING, false);
     TEST_ASSERT_EQUAL_UINT32(7, signals().period);
 }
 
@@ -198,14 +201,42 @@ static void test_enabling_an_enabled_drive_changes_nothing(void)
 {
     enable();
     must_post(move_to(0.1));
-    run(MOVE_PERIODS + 2);
+    run(MOVE_AND_REST);
     post_kind(DRIVE_COMMAND_ENABLE);
     must_post(move_to(0.2));
     run(1);
     is_in(DRIVE_OPERATION_ENABLED, true);
     the_reference_is_at(0.1);
-    run(MOVE_PERIODS + 2);
+    run(MOVE_AND_REST);
     the_reference_is_at(0.2);
+}
+
+/* What the last operation left behind would be a kick at the begin of the next. */
+static void test_enabling_begins_with_all_blocks_at_rest(void)
+{
+    settings.law = POSITION_LAW_PID;
+    settings.law_bandwidth_rad_s = 150.0;
+    enable();
+    samples.current_a = 2048 + 300;
+    samples.phase_voltage_a = 100;
+    must_post(move_to(0.003));
+    run(MOVE_AND_REST);
+    post_kind(DRIVE_COMMAND_HOLD);
+    run(10);
+    TEST_ASSERT_TRUE(signals().holding);
+    TEST_ASSERT_TRUE(drive.law.integral != NUM(0.0));
+    post_kind(DRIVE_COMMAND_DISABLE);
+    run(1);
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(1);
+    TEST_ASSERT_FALSE(drive.hold.active);
+    TEST_ASSERT_NUM_WITHIN(0.0, 0.0, drive.hold.i_d);
+    TEST_ASSERT_NUM_WITHIN(0.0, 0.0, drive.law.integral);
+    TEST_ASSERT_NUM_WITHIN(0.0, 0.0, drive.current_control.integral.d);
+    TEST_ASSERT_NUM_WITHIN(0.0, 0.0, drive.current_control.integral.q);
+    TEST_ASSERT_NUM_WITHIN(0.0, 0.0, actuation_in_force(&drive.actuation).a);
+    TEST_ASSERT_NUM_WITHIN(0.0, 0.0, drive.estimator.invariant.estimate.rotor.speed);
+    TEST_ASSERT_FALSE(drive.reference.next.moving);
 }
 
 /* ---- disabling ---- */
@@ -217,7 +248,7 @@ static void disabling_works_at_once(void)
     is_in(DRIVE_SWITCH_ON_DISABLED, false);
     run(50);
     is_in(DRIVE_SWITCH_ON_DISABLED, false);
-    TEST_ASSERT_EQUAL(DRIVE_FAULT_NONE, drive.fault);
+    TEST_ASSERT_EQUAL(DRIVE_FAULT_NONE, signals().fault);
 }
 
 static void test_a_drive_can_be_disabled_from_everywhere(void)
@@ -258,7 +289,7 @@ static void test_a_disable_flushes_the_moves_before_it(void)
     post_kind(DRIVE_COMMAND_DISABLE);
     run(1);
     post_kind(DRIVE_COMMAND_ENABLE);
-    run(2 * MOVE_PERIODS);
+    run(2 * MOVE_AND_REST);
     the_reference_is_at(0.0);
 }
 
@@ -271,9 +302,21 @@ static void test_after_disabling_the_drive_can_be_enabled_and_moved_again(void)
     run(1);
     post_kind(DRIVE_COMMAND_ENABLE);
     must_post(move_to(0.1));
-    run(MOVE_PERIODS + 3);
+    run(MOVE_AND_REST);
     is_in(DRIVE_OPERATION_ENABLED, true);
     the_reference_is_at(0.1);
+}
+
+static void test_an_enable_right_behind_a_disable_still_opens_the_bridge(void)
+{
+    enable();
+    run(10);
+    post_kind(DRIVE_COMMAND_DISABLE);
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(1);
+    is_in(DRIVE_SWITCH_ON_DISABLED, false);
+    run(2);
+    is_in(DRIVE_OPERATION_ENABLED, true);
 }
 
 /* ---- faults ---- */
@@ -343,16 +386,39 @@ static void test_a_disabled_drive_needs_no_supply(void)
     samples.flags = HAL_FLAG_DEADLINE_MISSED;
     run(10);
     is_in(DRIVE_SWITCH_ON_DISABLED, false);
-    TEST_ASSERT_EQUAL(DRIVE_FAULT_NONE, drive.fault);
+    TEST_ASSERT_EQUAL(DRIVE_FAULT_NONE, signals().fault);
 }
 
 static void test_an_estimate_out_of_range_opens_the_bridge_in_the_same_period(void)
 {
+    static const double speeds[] = {1.4, -1.4, 5.0, -25.0}; /* of the no-load speed */
+
+    for (unsigned i = 0; i < sizeof speeds / sizeof speeds[0]; i++) {
+        enable();
+        run(10);
+        drive.estimator.invariant.estimate.rotor.speed = num_from_double(speeds[i]);
+        run(1);
+        has_fault(DRIVE_FAULT_ESTIMATE_RANGE);
+    }
+}
+
+static bool trips_at(double speed_rad_s)
+{
     enable();
     run(10);
-    drive.estimator.invariant.estimate.rotor.speed = NUM(1.5);
+    drive.estimator.invariant.estimate.rotor.speed =
+        num_from_double(speed_rad_s / drive.base.speed_rad_s);
     run(1);
-    has_fault(DRIVE_FAULT_ESTIMATE_RANGE);
+    return drive.state == DRIVE_FAULT;
+}
+
+/* 0.24 electrical turn a period is 301.6 rad/s. */
+static void test_no_limit_lets_the_speed_pass_what_the_sampling_can_follow(void)
+{
+    settings.speed_limit_rad_s = 1000.0;
+    TEST_ASSERT_FALSE(trips_at(295.0));
+    TEST_ASSERT_TRUE(trips_at(305.0));
+    TEST_ASSERT_TRUE(trips_at(-305.0));
 }
 
 #if STEADYSTEP_NUM != NUM_FIXED
@@ -387,9 +453,9 @@ static void test_a_fault_is_cleared_by_disabling_only(void)
     run(1);
     is_in(DRIVE_SWITCH_ON_DISABLED, false);
     post_kind(DRIVE_COMMAND_ENABLE);
-    run(1);
+    run(2);
     is_in(DRIVE_OPERATION_ENABLED, true);
-    TEST_ASSERT_EQUAL(DRIVE_FAULT_NONE, drive.fault);
+    TEST_ASSERT_EQUAL(DRIVE_FAULT_NONE, signals().fault);
 }
 
 /* ---- moves, stops, holds ---- */
@@ -398,12 +464,43 @@ static void test_moves_follow_one_another_without_waiting_to_be_posted(void)
 {
     enable();
     must_post(move_to(0.1));
-    must_post(move_to(0.25));
-    run(MOVE_PERIODS + 2);
-    the_reference_is_at(0.1);
-    run(MOVE_PERIODS + 1);
-    the_reference_is_at(0.25);
+    must_post(move_to(-0.05));
+    run(MOVE_AND_REST);
+    TEST_ASSERT_TRUE(signals().theta_ref_rad > 0.0999);
+    TEST_ASSERT_TRUE(signals().reference_moving);
+    run(MOVE_AND_REST);
+    the_reference_is_at(-0.05);
     TEST_ASSERT_FALSE(signals().reference_moving);
+}
+
+static void test_steps_and_smooth_moves_are_made_too(void)
+{
+    enable();
+    must_post((struct drive_command){.kind = DRIVE_COMMAND_STEP, .position_rad = 0.02});
+    must_post((struct drive_command){.kind = DRIVE_COMMAND_MOVE_SMOOTH,
+                                     .position_rad = 0.1,
+                                     .duration_s = 0.03,
+                                     .ramp_s = 0.01,
+                                     .jerk_s = 0.002});
+    run(5);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.02, signals().theta_ref_rad);
+    run(310);
+    the_reference_is_at(0.1);
+}
+
+/* The interrupt of that period computes what acts from the next on; a period later it has moved. */
+static void test_a_move_begins_with_the_period_it_is_addressed_to(void)
+{
+    struct drive_command command = move_to(0.1);
+
+    enable();
+    command.at_period = 50;
+    must_post(command);
+    run(50); /* enabled in 2 */
+    TEST_ASSERT_EQUAL_UINT32(51, signals().period);
+    the_reference_is_at(0.0);
+    run(1);
+    TEST_ASSERT_TRUE(signals().theta_ref_rad > 1e-7);
 }
 
 static void test_a_stop_brings_the_reference_to_rest_short_of_its_target(void)
@@ -428,7 +525,7 @@ static void test_a_stop_overtakes_the_moves_that_wait(void)
     must_post(move_to(0.4));
     run(80);
     post_kind(DRIVE_COMMAND_STOP);
-    run(3 * MOVE_PERIODS);
+    run(3 * MOVE_AND_REST);
     TEST_ASSERT_TRUE(signals().theta_ref_rad < 0.2);
 }
 
@@ -445,8 +542,37 @@ static void test_moves_are_refused_while_a_stop_is_under_way_and_accepted_after(
     TEST_ASSERT_FALSE(post(move_to(0.3)));
     run(60);
     must_post(move_to(0.3));
-    run(MOVE_PERIODS + 2);
+    run(MOVE_AND_REST);
     the_reference_is_at(0.3);
+}
+
+static void test_after_a_stop_moves_can_be_queued_again(void)
+{
+    enable();
+    must_post(move_to(0.2));
+    run(80);
+    post_kind(DRIVE_COMMAND_STOP);
+    run(60);
+    must_post(move_to(0.1));
+    run(10);
+    must_post(move_to(0.3));
+    run(2 * MOVE_AND_REST);
+    the_reference_is_at(0.3);
+}
+
+static void test_a_stop_cut_off_by_a_disable_does_not_block_later_moves(void)
+{
+    enable();
+    must_post(move_to(0.2));
+    run(80);
+    post_kind(DRIVE_COMMAND_STOP);
+    run(1);
+    post_kind(DRIVE_COMMAND_DISABLE);
+    run(1);
+    post_kind(DRIVE_COMMAND_ENABLE);
+    must_post(move_to(0.1));
+    run(MOVE_AND_REST);
+    the_reference_is_at(0.1);
 }
 
 static void test_a_stop_at_rest_is_harmless(void)
@@ -455,7 +581,7 @@ static void test_a_stop_at_rest_is_harmless(void)
     post_kind(DRIVE_COMMAND_STOP);
     run(1);
     must_post(move_to(0.1));
-    run(MOVE_PERIODS + 2);
+    run(MOVE_AND_REST);
     the_reference_is_at(0.1);
 }
 
@@ -468,7 +594,7 @@ static void test_a_move_before_the_drive_is_ready_is_not_made_and_leaves_no_trac
     is_in(DRIVE_OPERATION_ENABLED, true);
     the_reference_is_at(0.0);
     must_post(move_to(0.2));
-    run(MOVE_PERIODS + 2);
+    run(MOVE_AND_REST);
     the_reference_is_at(0.2);
 }
 
@@ -503,18 +629,18 @@ static void test_a_move_too_fast_is_refused_and_the_next_one_starts_where_the_la
     TEST_ASSERT_FALSE(post(move_to(50.0)));
     TEST_ASSERT_TRUE(strstr(error, "must be at most") != NULL);
     must_post(move_to(0.2));
-    run(2 * MOVE_PERIODS + 3);
+    run(2 * MOVE_AND_REST);
     the_reference_is_at(0.2);
 }
 
-static void test_a_seventeenth_command_is_refused(void)
+static void test_one_command_too_many_is_refused(void)
 {
     enable();
-    for (int i = 0; i < 16; i++) {
+    for (int i = 0; i < 15; i++) {
         must_post(move_to(0.01 * i));
     }
     TEST_ASSERT_FALSE(post(move_to(0.2)));
-    TEST_ASSERT_EQUAL_STRING("command refused: 16 commands are waiting already", error);
+    TEST_ASSERT_EQUAL_STRING("command refused: 15 commands are waiting already", error);
     post_kind(DRIVE_COMMAND_DISABLE);
     run(1);
     is_in(DRIVE_SWITCH_ON_DISABLED, false);
@@ -527,34 +653,41 @@ int main(void)
     RUN_TEST(test_enabling_goes_through_offsets_and_alignment_to_operation);
     RUN_TEST(test_without_calibration_enabling_begins_with_the_alignment);
     RUN_TEST(test_without_hold_on_enable_operation_follows_the_calibration);
-    RUN_TEST(test_without_either_the_drive_is_ready_in_the_same_period);
+    RUN_TEST(test_without_either_the_drive_is_ready_at_once);
     RUN_TEST(test_the_hold_current_is_in_when_the_alignment_ends);
     RUN_TEST(test_enabling_waits_for_the_period_it_is_addressed_to);
     RUN_TEST(test_enabling_is_refused_while_the_boards_trip_is_latched);
     RUN_TEST(test_a_drive_starts_at_the_angle_it_is_told);
     RUN_TEST(test_enabling_an_enabled_drive_changes_nothing);
+    RUN_TEST(test_enabling_begins_with_all_blocks_at_rest);
     RUN_TEST(test_a_drive_can_be_disabled_from_everywhere);
     RUN_TEST(test_a_disable_flushes_the_moves_before_it);
     RUN_TEST(test_after_disabling_the_drive_can_be_enabled_and_moved_again);
+    RUN_TEST(test_an_enable_right_behind_a_disable_still_opens_the_bridge);
     RUN_TEST(test_every_fault_opens_the_bridge_in_the_period_of_its_sample_and_stays);
     RUN_TEST(test_a_fault_while_aligning_opens_the_bridge_too);
     RUN_TEST(test_a_supply_that_is_missing_on_enable_is_a_fault_before_the_bridge_is_on);
     RUN_TEST(test_an_offset_out_of_range_is_a_fault);
     RUN_TEST(test_a_disabled_drive_needs_no_supply);
     RUN_TEST(test_an_estimate_out_of_range_opens_the_bridge_in_the_same_period);
+    RUN_TEST(test_no_limit_lets_the_speed_pass_what_the_sampling_can_follow);
 #if STEADYSTEP_NUM != NUM_FIXED
     RUN_TEST(test_an_estimate_that_is_not_finite_opens_the_bridge_in_the_same_period);
 #endif
     RUN_TEST(test_a_fault_is_cleared_by_disabling_only);
     RUN_TEST(test_moves_follow_one_another_without_waiting_to_be_posted);
+    RUN_TEST(test_steps_and_smooth_moves_are_made_too);
+    RUN_TEST(test_a_move_begins_with_the_period_it_is_addressed_to);
     RUN_TEST(test_a_stop_brings_the_reference_to_rest_short_of_its_target);
     RUN_TEST(test_a_stop_overtakes_the_moves_that_wait);
     RUN_TEST(test_moves_are_refused_while_a_stop_is_under_way_and_accepted_after);
+    RUN_TEST(test_after_a_stop_moves_can_be_queued_again);
+    RUN_TEST(test_a_stop_cut_off_by_a_disable_does_not_block_later_moves);
     RUN_TEST(test_a_stop_at_rest_is_harmless);
     RUN_TEST(test_a_move_before_the_drive_is_ready_is_not_made_and_leaves_no_trace);
     RUN_TEST(test_a_hold_command_holds_without_the_delay);
     RUN_TEST(test_the_drive_holds_by_itself_15_ms_after_a_move);
     RUN_TEST(test_a_move_too_fast_is_refused_and_the_next_one_starts_where_the_last_ended);
-    RUN_TEST(test_a_seventeenth_command_is_refused);
+    RUN_TEST(test_one_command_too_many_is_refused);
     return UNITY_END();
 }

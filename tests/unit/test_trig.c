@@ -145,6 +145,92 @@ static void test_sines_of_many_angles_are_without_bias(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.0, cosine / 65536.0);
 }
 
+static void test_a_small_angle_needs_the_polynomials_alone(void)
+{
+    const int32_t eighth = (int32_t)(QUARTER_TURN / 2u);
+
+    for (int32_t angle = -eighth; angle < eighth - (int32_t)STRIDE; angle += (int32_t)STRIDE) {
+        struct sincos small = sincos_of_small(angle);
+        struct sincos full = sincos_of((angle_t)angle);
+
+        TEST_ASSERT_TRUE(small.cos == full.cos && small.sin == full.sin);
+    }
+    /* The end of the range belongs to the next quarter turn; there the two agree to the bound. */
+    TEST_ASSERT_DOUBLE_WITHIN(error_bound(), sqrt(0.5), ratio(sincos_of_small(eighth).sin));
+    TEST_ASSERT_DOUBLE_WITHIN(error_bound(), sqrt(0.5), ratio(sincos_of_small(eighth).cos));
+}
+
+/*
+ * Either angle brings its error, on a vector of length one at most sqrt(2) times the bound; the
+ * products are rounded twice.
+ */
+static double error_bound_of_a_sum(void)
+{
+#if STEADYSTEP_NUM == NUM_FIXED
+    return 2.0 * sqrt(2.0) * error_bound() + 2.0 / 32768.0;
+#elif STEADYSTEP_NUM == NUM_FLOAT
+    return 2.0 * sqrt(2.0) * error_bound() + 2.0 / 16777216.0;
+#else
+    return 2.0 * sqrt(2.0) * error_bound();
+#endif
+}
+
+static void test_the_sum_of_two_angles_has_their_sine_and_cosine(void)
+{
+    angle_t x = 0;
+
+    for (uint32_t i = 0; i < 300000u; i++) {
+        angle_t y = i * 2654435769u; /* a golden section of the turn: everywhere */
+        struct sincos sum = sincos_add(sincos_of(x), sincos_of(y));
+        double rad = (double)(angle_t)(x + y) / 4294967296.0 * two_pi;
+
+        TEST_ASSERT_DOUBLE_WITHIN(error_bound_of_a_sum(), cos(rad), ratio(sum.cos));
+        TEST_ASSERT_DOUBLE_WITHIN(error_bound_of_a_sum(), sin(rad), ratio(sum.sin));
+        x += 1000003u * 7u;
+    }
+}
+
+static void test_a_quarter_turn_is_added_exactly(void)
+{
+    const struct sincos quarter = sincos_of(QUARTER_TURN);
+    const struct sincos nothing = sincos_of(0);
+    angle_t angle = 0;
+
+    do {
+        struct sincos here = sincos_of(angle);
+        struct sincos same = sincos_add(here, nothing);
+        struct sincos on = sincos_add(here, quarter);
+
+        TEST_ASSERT_TRUE(same.cos == here.cos && same.sin == here.sin);
+        TEST_ASSERT_TRUE(on.sin == here.cos && on.cos == -here.sin);
+        angle += 10u * STRIDE;
+    } while (angle >= 10u * STRIDE);
+}
+
+static void test_a_small_turn_added_keeps_the_length_of_a_vector(void)
+{
+    for (uint32_t i = 0; i < 300000u; i++) {
+        struct sincos frame = sincos_of(i * 2654435769u);
+        int32_t turn = (int32_t)(i * 3571u) - (int32_t)(QUARTER_TURN / 2u);
+        struct sincos turned = sincos_add(frame, sincos_of_small(turn));
+        double square =
+            ratio(turned.cos) * ratio(turned.cos) + ratio(turned.sin) * ratio(turned.sin);
+
+        TEST_ASSERT_DOUBLE_WITHIN(2.0 * error_bound_of_a_sum(), 1.0, square);
+    }
+}
+
+static void test_a_sum_exceeds_one_by_its_error_at_most(void)
+{
+    /* An angle and nearly its opposite: where the cosine of the sum is largest. */
+    for (uint32_t i = 0; i < 300000u; i++) {
+        angle_t x = i * 2654435769u;
+        struct sincos sum = sincos_add(sincos_of(x), sincos_of(0u - x + (i % 2048u) * 64u));
+
+        TEST_ASSERT_TRUE(ratio(sum.cos) <= 1.0 + error_bound_of_a_sum());
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -156,5 +242,10 @@ int main(void)
     RUN_TEST(test_a_quarter_turn_on_the_sine_is_the_cosine);
     RUN_TEST(test_backwards_the_sine_is_odd_and_the_cosine_even);
     RUN_TEST(test_sines_of_many_angles_are_without_bias);
+    RUN_TEST(test_a_small_angle_needs_the_polynomials_alone);
+    RUN_TEST(test_the_sum_of_two_angles_has_their_sine_and_cosine);
+    RUN_TEST(test_a_quarter_turn_is_added_exactly);
+    RUN_TEST(test_a_small_turn_added_keeps_the_length_of_a_vector);
+    RUN_TEST(test_a_sum_exceeds_one_by_its_error_at_most);
     return UNITY_END();
 }

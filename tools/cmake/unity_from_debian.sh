@@ -24,7 +24,7 @@ cat /etc/apt/sources.list /etc/apt/sources.list.d/*.list 2>/dev/null |
 apt() {
     apt-get -qq -o Dir::Etc::sourcelist=/dev/null -o Dir::Etc::sourceparts="$scratch/sources" \
         -o Dir::State::lists="$scratch/lists" -o Dir::Cache="$scratch/cache" \
-        -o APT::Sandbox::User= -o APT::Update::Post-Invoke::=true "$@"
+        -o APT::Sandbox::User= "$@"
 }
 apt update
 cd "$scratch"
