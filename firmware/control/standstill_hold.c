@@ -36,14 +36,16 @@ void standstill_hold_enter(struct standstill_hold *hold, angle_t reference)
 }
 
 num_t standstill_hold_step(struct standstill_hold *hold,
-                           const struct standstill_hold_params *params, uint32_t rest_periods)
+                           const struct standstill_hold_params *params)
 {
-    if (rest_periods == 0u) {
-        hold->active = false;
-    }
     hold->i_d += hold->active ? params->current_ramp : -params->current_ramp;
     hold->i_d = num_clamp(hold->i_d, NUM(0.0), params->current);
     return hold->i_d;
+}
+
+void standstill_hold_leave(struct standstill_hold *hold, uint32_t rest_periods)
+{
+    hold->active = hold->active && rest_periods > 0u;
 }
 
 void standstill_hold_consider(struct standstill_hold *hold,

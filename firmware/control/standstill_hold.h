@@ -49,12 +49,15 @@ void standstill_hold_reset(struct standstill_hold *hold);
 /* Holds from now on, the current frame fixed to this reference. */
 void standstill_hold_enter(struct standstill_hold *hold, angle_t reference);
 
-/*
- * One period: leaves the hold when the reference moves (`rest_periods` is 0), ramps the d current
- * and returns it.
- */
+/* One period: ramps the d current in or out and returns it. */
 num_t standstill_hold_step(struct standstill_hold *hold,
-                           const struct standstill_hold_params *params, uint32_t rest_periods);
+                           const struct standstill_hold_params *params);
+
+/*
+ * At the end of a period: the hold ends with it if the reference moves (`rest_periods` is 0). So no
+ * interrupt pays for both the hold and the position law.
+ */
+void standstill_hold_leave(struct standstill_hold *hold, uint32_t rest_periods);
 
 /*
  * Enters the hold, from the next period on, if the reference has rested for long enough and the

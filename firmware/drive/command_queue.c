@@ -53,5 +53,5 @@ void command_queue_drop(struct command_queue *queue)
 
 void command_queue_rest(struct command_queue *queue)
 {
-    queue->attention = queue->written != queue->read || queue->disable.posted || queue->stop.posted;
+    queue->attention = queue->stop.posted || queue->disable.posted || queue->written != queue->read;
 }

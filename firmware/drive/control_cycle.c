@@ -35,10 +35,9 @@ static struct dq wanted_current(struct drive *drive, const struct rotor *rotor)
 {
     const struct drive_params *params = &drive->params;
     const struct reference_sample *reference = &drive->reference.next;
-    const uint32_t rest_periods = drive->reference.rest_periods;
     struct dq current;
 
-    current.d = standstill_hold_step(&drive->hold, &params->hold, rest_periods);
+    current.d = standstill_hold_step(&drive->hold, &params->hold);
     if (drive->hold.active) {
         current.q = standstill_hold_torque_current(&params->hold, rotor->speed, rotor->load_torque);
     } else {
@@ -52,7 +51,7 @@ static struct dq wanted_current(struct drive *drive, const struct rotor *rotor)
 
         current.q = position_law_step(params->position_law, &drive->law, &params->law, &input);
         standstill_hold_consider(&drive->hold, &params->hold, reference->position.fraction,
-                                 rest_periods, input.position_error, rotor->speed);
+                                 drive->reference.rest_periods, input.position_error, rotor->speed);
     }
     return current;
 }
@@ -92,12 +91,15 @@ static struct hal_outputs modulate(struct drive *drive, struct phases voltage)
 
 static struct hal_outputs control(struct drive *drive, const struct estimate *estimate)
 {
+    struct hal_outputs duties;
     struct prediction next;
 
     reference_step(&drive->reference, &drive->params.reference);
     next = predict(drive, estimate);
     drive->current_reference = wanted_current(drive, &next.rotor);
-    return modulate(drive, regulate_current(drive, estimate, &next));
+    duties = modulate(drive, regulate_current(drive, estimate, &next));
+    standstill_hold_leave(&drive->hold, drive->reference.rest_periods);
+    return duties;
 }
 
 static const struct estimate *observe(struct drive *drive, const struct sample_set *now)
@@ -125,11 +127,8 @@ struct hal_outputs drive_control_cycle(struct drive *drive, const struct hal_sam
 {
     const struct sample_set now =
         measurement_step(&drive->measurement, &drive->params.measurement, samples);
-    const bool was_powered = state_machine_powered(drive);
 
     drive->bus = now.bus;
     drive->period++;
-    state_machine_step(drive, samples);
-    /* The period that powers up only resets the blocks: the interrupt is spared the sum of both. */
-    return was_powered && state_machine_powered(drive) ? powered_cycle(drive, &now) : bridge_off;
+    return state_machine_step(drive, samples) ? powered_cycle(drive, &now) : bridge_off;
 }

@@ -52,8 +52,8 @@ struct drive {
     /* supervision */
     enum drive_state state;
     enum drive_fault fault;
-    uint32_t period; /* index of the present or last control interrupt; 0 is the first */
-    uint32_t state_periods;
+    uint32_t period;      /* index of the present or last control interrupt; 0 is the first */
+    uint32_t state_since; /* period in which the state was entered */
     struct command_queue commands;
 
     /* this period's inner signals, shown by drive_signals_read */

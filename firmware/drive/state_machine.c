@@ -3,7 +3,7 @@
 static void enter(struct drive *drive, enum drive_state state)
 {
     drive->state = state;
-    drive->state_periods = 0;
+    drive->state_since = drive->period;
 }
 
 /* All blocks at rest at the position the drive is told; a calibrated resistance is kept. */
@@ -56,17 +56,18 @@ static bool obey(struct drive *drive, struct queued_command *command)
     if (ahead && !queued_command_is_move(command)) {
         return false;
     }
-    if (command->kind == DRIVE_COMMAND_ENABLE) {
-        if (drive->state == DRIVE_SWITCH_ON_DISABLED) {
-            start_enabling(drive);
-        }
+    if (drive->state == DRIVE_SWITCH_ON_DISABLED && command->kind == DRIVE_COMMAND_ENABLE) {
+        start_enabling(drive);
         return true;
     }
     if (drive->state != DRIVE_OPERATION_ENABLED) {
         return true;
     }
     if (drive->reference.next.moving) {
-        return false;
+        return false; /* and so the profile in use stays in the queue's memory */
+    }
+    if (command->kind == DRIVE_COMMAND_ENABLE) {
+        return true;
     }
     if (command->kind == DRIVE_COMMAND_HOLD) {
         drive->reference.rest_periods = UINT32_MAX;
@@ -88,6 +89,7 @@ static void take_commands(struct drive *drive)
     }
     if (command_queue_take_urgent(queue, &queue->stop, drive->period)) {
         reference_stop(&drive->reference);
+        command_queue_rest(queue); /* here, because the next interrupt cuts the ramp */
         return;
     }
     /* A move is loaded a period ahead: it begins with the period it is addressed to. */
@@ -121,19 +123,24 @@ void state_machine_fault(struct drive *drive, enum drive_fault fault)
     }
 }
 
-void state_machine_step(struct drive *drive, const struct hal_samples *samples)
+bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
 {
-    drive->state_periods++;
+    const bool was_powered = state_machine_powered(drive);
+
     if (drive->commands.attention) {
         take_commands(drive);
     }
     if (drive->state == DRIVE_CALIBRATING_OFFSETS) {
         calibrate_offsets(drive, samples);
     } else if (drive->state == DRIVE_ALIGNING &&
-               drive->state_periods > drive->params.hold_on_enable_periods) {
+               drive->period - drive->state_since > drive->params.hold_on_enable_periods) {
         enter(drive, DRIVE_OPERATION_ENABLED);
     }
-    if (state_machine_powered(drive)) {
-        state_machine_fault(drive, protection_check_samples(&drive->params.protection, samples));
+    if (!state_machine_powered(drive)) {
+        return false;
     }
+    const enum drive_fault fault = protection_check_samples(&drive->params.protection, samples);
+
+    state_machine_fault(drive, fault);
+    return was_powered && fault == DRIVE_FAULT_NONE;
 }

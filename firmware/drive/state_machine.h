@@ -19,8 +19,12 @@ static inline bool state_machine_powered(const struct drive *drive)
     return drive->state == DRIVE_ALIGNING || drive->state == DRIVE_OPERATION_ENABLED;
 }
 
-/* One period: takes due commands, the steps of enabling and the faults seen in the samples. */
-void state_machine_step(struct drive *drive, const struct hal_samples *samples);
+/*
+ * One period: takes due commands, the steps of enabling and the faults seen in the samples. true:
+ * the bridge was on before and stays on. The period that powers up only resets the blocks, so that
+ * no interrupt pays for both.
+ */
+bool state_machine_step(struct drive *drive, const struct hal_samples *samples);
 
 /* Enters the fault state if there is a fault; the bridge opens in the same period. */
 void state_machine_fault(struct drive *drive, enum drive_fault fault);

@@ -25,7 +25,7 @@ static struct reference_sample sample_of(const struct reference *r,
 
     return (struct reference_sample){
         .position = {.turns = r->turns, .fraction = (angle_t)(r->fraction >> 32)},
-        .speed = num_mul_coef(speed, params->speed) + num_mul_coef(speed, params->speed_remainder),
+        .speed = num_mul_coef_fine(speed, params->speed, params->speed_remainder),
         .acceleration = num_mul_coef(acceleration, params->acceleration),
         .moving = r->phase != REFERENCE_REST,
     };
@@ -59,7 +59,6 @@ bool reference_load(struct reference *r, struct profile *profile)
     r->profile = profile;
     r->phase = REFERENCE_QUEUED;
     r->speed = profile->rounding_speed;
-    r->rest_periods = 0;
     r->stopped = false;
     return true;
 }
@@ -75,14 +74,15 @@ void reference_stop(struct reference *r)
 
 static void advance(struct reference *r)
 {
-    int64_t travel = r->speed + (r->acceleration >> 1) + r->jerk_sixth;
-    uint64_t fraction = r->fraction + (uint64_t)travel;
+    const int64_t travel = r->speed + (r->acceleration >> 1) + r->jerk_sixth;
+    const uint64_t fraction = r->fraction + (uint64_t)travel;
 
-    r->turns += (travel < 0 ? -1 : 0) + (fraction < r->fraction ? 1 : 0);
+    r->turns += (int32_t)(travel >> 63) + (fraction < r->fraction ? 1 : 0);
     r->fraction = fraction;
     r->speed += r->acceleration + (r->jerk >> 1);
     r->acceleration += r->jerk;
     r->periods_left--;
+    r->rest_periods = 0;
 }
 
 /*
@@ -142,6 +142,7 @@ static void come_to_rest(struct reference *r)
     begin(r, REFERENCE_REST, 0, 0);
     r->stop_requested = false;
     r->speed = 0;
+    r->rest_periods = 0;
     place(r, r->stopped ? (struct position){r->turns, (angle_t)(r->fraction >> 32)}
                         : r->profile->target);
 }

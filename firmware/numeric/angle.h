@@ -37,14 +37,15 @@ static inline struct position position_add(struct position p, int32_t angle)
 /* a - b in electrical turns, saturated at +-POSITION_DIFFERENCE_MAX. */
 static inline num_t position_difference(struct position a, struct position b)
 {
-    const int64_t limit = (int64_t)POSITION_DIFFERENCE_MAX << 32;
-    int64_t turns = (int32_t)((uint32_t)a.turns - (uint32_t)b.turns);
+    const int32_t limit = (int32_t)POSITION_DIFFERENCE_MAX;
+    const int64_t turns = (int32_t)((uint32_t)a.turns - (uint32_t)b.turns);
     int64_t difference = turns * ((int64_t)1 << 32) + a.fraction - b.fraction;
+    const int32_t whole = (int32_t)(difference >> 32);
 
-    if (difference > limit) {
-        difference = limit;
-    } else if (difference < -limit) {
-        difference = -limit;
+    if (whole >= limit) {
+        difference = (int64_t)limit << 32;
+    } else if (whole < -limit) {
+        difference = -((int64_t)limit << 32);
     }
 #if STEADYSTEP_NUM == NUM_FIXED
     return (num_t)(difference >> (32 - NUM_FRACTION_BITS));

@@ -238,6 +238,17 @@ static inline num_t num_limit(num_t a, num_t limit)
     return a > NUM(0.0) ? limit : -limit;
 }
 
+/* A gain that 16 bits are too coarse for: k and what it leaves over. */
+static inline num_t num_mul_coef_fine(num_t a, coef_t k, coef_t remainder)
+{
+#if STEADYSTEP_NUM == NUM_FIXED
+    return num_mul_coef(a, k) + num_mul_coef(a, remainder);
+#else
+    (void)remainder;
+    return num_mul_coef(a, k);
+#endif
+}
+
 /* Keeps a factor small enough for its product to fit; floating point has room enough. */
 static inline num_t num_headroom(num_t a, num_t limit)
 {

@@ -34,6 +34,7 @@ class Build:
         self.unity = unity
         self.compiler = compiler
         self.scratch = scratch
+        self.dependencies = {}  # (numeric, source): files
 
     def compile(self, tree, source, numeric, target):
         """Compiles `source` of `tree`; returns the house's files it depends on."""
@@ -43,7 +44,7 @@ class Build:
                    "-c", str(source), "-o", str(target)]
         result = subprocess.run(command, check=False, capture_output=True, text=True)
         if result.returncode:
-            raise Failure("does not compile:\n" + result.stderr)
+            raise Failure(f"{source.name} does not compile:\n{result.stderr}")
         words = pathlib.Path(f"{target}.d").read_text(encoding="utf-8").split()
         prefix = f"{tree}/"
         return {word[len(prefix):] for word in words if word.startswith(prefix)}
@@ -155,8 +156,12 @@ def main():
     with tempfile.TemporaryDirectory() as scratch, \
             concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         build = Build(arguments.root, arguments.unity, arguments.compiler, pathlib.Path(scratch))
-        build.prepare(pool, wanted)
-        unbroken = unbroken_outputs(build, wanted)
+        try:
+            build.prepare(pool, wanted)
+            unbroken = unbroken_outputs(build, wanted)
+        except Failure as failure:
+            print(f"without any mutant: {failure}")
+            return 1
         results = pool.map(lambda job: check(build, *job, unbroken), enumerate(mutants))
         failures = [failure for failure in results if failure]
     for failure in failures:

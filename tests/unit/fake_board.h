@@ -6,7 +6,8 @@
 #include "tests/unit/bench.h"
 
 struct fake_board {
-    bool trip_latched; /* refuses to enable its bridge */
+    bool short_circuit; /* latches the trip again as soon as it is cleared */
+    bool trip_latched;  /* refuses to enable the bridge until it has been disabled */
     bool bridge_enabled;
 };
 
@@ -20,11 +21,20 @@ static inline bool fake_bridge_enable(void *context)
     return board->bridge_enabled;
 }
 
+static inline void fake_bridge_disable(void *context)
+{
+    struct fake_board *board = context;
+
+    board->bridge_enabled = false;
+    board->trip_latched = board->short_circuit;
+}
+
 /* All of the board that the drive asks for so far. */
 static const struct hal fake_hal = {
     .context = &fake_board,
     .facts = &bench_facts,
     .bridge_enable = fake_bridge_enable,
+    .bridge_disable = fake_bridge_disable,
 };
 
 /* No current, no voltage, 24 V on the bus. */
