@@ -7,10 +7,16 @@ static bool has_come(uint32_t at_period, uint32_t period)
 
 bool command_queue_put(struct command_queue *queue, const struct queued_command *command)
 {
+    struct queued_command *entry = &queue->entry[queue->written % COMMAND_QUEUE_LENGTH];
+
     if (queue->written - queue->read == COMMAND_QUEUE_LENGTH - 1u) {
         return false;
     }
-    queue->entry[queue->written % COMMAND_QUEUE_LENGTH] = *command;
+    entry->kind = command->kind;
+    entry->at_period = command->at_period;
+    if (queued_command_is_move(command)) { /* else the profile here may still be moved along */
+        entry->profile = command->profile;
+    }
     queue->written = queue->written + 1u;
     queue->attention = true;
     return true;

@@ -10,6 +10,20 @@ static enum profile_shape shape_of(enum drive_command_kind kind)
     return kind == DRIVE_COMMAND_MOVE_SMOOTH ? PROFILE_SMOOTH : PROFILE_TRAPEZOID;
 }
 
+/*
+ * Where the reference will rest when the next command acts. With nothing waiting and the reference
+ * at rest it is there already, whatever became of the commands before.
+ */
+static void update_planned_end(struct drive *drive)
+{
+    const struct command_queue *queue = &drive->commands;
+
+    if (queue->read == queue->written && !drive->reference.next.moving) {
+        drive->planned_end = drive->reference.next.position;
+        drive->stop_posted = drive->stop_posted && queue->stop.posted;
+    }
+}
+
 static bool plan(struct drive *drive, const struct drive_command *command, struct profile *profile,
                  char error[DRIVE_ERROR_TEXT])
 {
@@ -29,13 +43,10 @@ static bool plan(struct drive *drive, const struct drive_command *command, struc
                                      drive->settings.motor.inertia_kgm2,
     };
 
+    update_planned_end(drive);
     if (drive->stop_posted) {
-        if (drive->commands.stop.posted || drive->reference.next.moving) {
-            return design_refuse(error,
-                                 "move refused: the reference has not come to rest after the stop");
-        }
-        drive->planned_end = drive->reference.next.position;
-        drive->stop_posted = false;
+        return design_refuse(error,
+                             "move refused: the reference has not come to rest after the stop");
     }
     return profile_plan(profile, drive->planned_end, &move, &limits, error);
 }
@@ -61,8 +72,10 @@ bool drive_command(struct drive *drive, const struct drive_command *command,
         if (!drive->board->bridge_enable(drive->board->context)) {
             return design_refuse(error, "enable refused: the board's overcurrent trip is latched");
         }
-        drive->planned_end = drive->params.initial_position;
-        drive->stop_posted = false;
+        if (drive->state != DRIVE_OPERATION_ENABLED || drive->commands.disable.posted) {
+            drive->planned_end = drive->params.initial_position;
+            drive->stop_posted = false;
+        }
     }
     if (queued_command_is_move(&queued) && !plan(drive, command, &queued.profile, error)) {
         return false;

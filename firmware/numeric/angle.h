@@ -67,20 +67,23 @@ static inline num_t turns_from_angle(int32_t angle)
 #endif
 }
 
-/* Electrical turns to an angle; the caller vouches for less than half a turn. */
+/* Electrical turns to an angle. In fixed point the caller vouches for less than half a turn. */
 static inline int32_t angle_from_turns(num_t turns)
 {
 #if STEADYSTEP_NUM == NUM_FIXED
     return num_shift_left(turns, 32 - NUM_FRACTION_BITS);
 #else
-    return (int32_t)(turns * NUM(4294967296.0));
+    return num_to_int32(turns * NUM(4294967296.0));
 #endif
 }
 
-/* The same for any number, limited to just under half a turn. */
+/* The same for any number, limited to half a turn. */
 static inline int32_t angle_from_any_turns(num_t turns)
 {
-    return angle_from_turns(num_limit(turns, NUM(0.499)));
+#if STEADYSTEP_NUM == NUM_FIXED
+    turns = num_limit(turns, NUM(0.499));
+#endif
+    return angle_from_turns(turns);
 }
 
 /* Start-up and telemetry only. Mechanical rad, |rad| < 2^31 electrical turns. */

@@ -205,9 +205,28 @@ static inline num_t num_from_code(int32_t code, coef_t k)
 
 #define NUM_CODE_SCALE 1.0
 
+/* Towards zero, saturated, a NaN to zero: what the FPU of the Cortex-M4 does, on every core. */
+static inline int32_t num_to_int32(num_t a)
+{
+#if defined(__ARM_FP) && STEADYSTEP_NUM == NUM_FLOAT
+    int32_t whole;
+
+    __asm__("vcvt.s32.f32 %0, %1" : "=t"(whole) : "t"(a));
+    return whole;
+#else
+    if (a >= NUM(2147483648.0)) {
+        return INT32_MAX;
+    }
+    if (a < NUM(-2147483648.0)) {
+        return INT32_MIN;
+    }
+    return a == a ? (int32_t)a : 0;
+#endif
+}
+
 static inline int32_t counts_from_num(num_t a, coef_t k, int32_t middle)
 {
-    return (int32_t)(a * k + ((num_t)middle + NUM(0.5)));
+    return num_to_int32(a * k + ((num_t)middle + NUM(0.5)));
 }
 
 #define NUM_COUNT_SCALE 1.0

@@ -183,8 +183,8 @@ MUTANTS = [
            "if (drive->params.calibrate_offsets)", "if (true)"),
     Mutant(DRIVE + "state_machine.c", "state_machine",
            "a_fault_while_aligning_opens_the_bridge_too",
-           "    if (state_machine_powered(drive)) {\n        state_machine_fault(",
-           "    if (drive->state == DRIVE_OPERATION_ENABLED) {\n        state_machine_fault("),
+           "= protection_check_samples(", "= drive->state == DRIVE_ALIGNING ? DRIVE_FAULT_NONE :"
+           " protection_check_samples("),
     Mutant(DRIVE + "commands.c", "state_machine",
            "moves_are_refused_while_a_stop_is_under_way_and_accepted_after",
            "drive->stop_posted = true;", ""),

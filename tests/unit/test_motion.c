@@ -621,6 +621,8 @@ static void test_the_time_at_rest_is_counted_from_the_end_of_the_move(void)
     step();
     TEST_ASSERT_EQUAL_UINT32(2, reference.rest_periods);
     begin(&trapezoid);
+    step(); /* the first phase begins: at S(k+1) nothing has moved yet */
+    TEST_ASSERT_EQUAL_UINT32(2, reference.rest_periods);
     while (step().moving) {
         TEST_ASSERT_EQUAL_UINT32(0, reference.rest_periods);
     }
