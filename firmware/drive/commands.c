@@ -18,7 +18,7 @@ static void update_planned_end(struct drive *drive)
 {
     const struct command_queue *queue = &drive->commands;
 
-    if (queue->read == queue->written && !drive->reference.next.moving) {
+    if (queue->read == queue->written && !reference_busy(&drive->reference)) {
         drive->planned_end = drive->reference.next.position;
         drive->stop_posted = drive->stop_posted && queue->stop.posted;
     }

@@ -63,7 +63,7 @@ static bool obey(struct drive *drive, struct queued_command *command)
     if (drive->state != DRIVE_OPERATION_ENABLED) {
         return true;
     }
-    if (drive->reference.next.moving) {
+    if (reference_busy(&drive->reference)) {
         return false; /* and so the profile in use stays in the queue's memory */
     }
     if (command->kind == DRIVE_COMMAND_ENABLE) {

@@ -27,7 +27,7 @@ static struct reference_sample sample_of(const struct reference *r,
         .position = {.turns = r->turns, .fraction = (angle_t)(r->fraction >> 32)},
         .speed = num_mul_coef_fine(speed, params->speed, params->speed_remainder),
         .acceleration = num_mul_coef(acceleration, params->acceleration),
-        .moving = r->phase != REFERENCE_REST,
+        .moving = r->phase > REFERENCE_LOADED && r->phase < REFERENCE_REST,
     };
 }
 

@@ -69,6 +69,12 @@ struct reference_params reference_design(const struct per_unit *base, double per
 /* At rest at a position. */
 void reference_reset(struct reference *reference, struct position position);
 
+/* A profile is loaded or runs: another one would be refused. */
+static inline bool reference_busy(const struct reference *reference)
+{
+    return reference->phase != REFERENCE_REST;
+}
+
 /*
  * Takes a planned profile over, without copying it: it must live until the reference rests, and a
  * stop changes it. Refused (false) while another one runs or if it does not start where the

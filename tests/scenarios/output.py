@@ -101,8 +101,8 @@ def events_act_at_their_time(folder):
                 and math.isclose(ohm[299], 0.37 * 1.5) and ohm[-1] == ohm[299],
                 "resistance drifts between 0.01 and 0.03 s")
     moving = [row[head.index("reference_moving")] for row in rows]
-    CHECKS.that(moving[0] == 0 and moving[2] == 1 and moving[210] == 0,
-                "a move at time zero begins in the next period and takes its 0.02 s")
+    CHECKS.that(moving[2] == 0 and moving[3] == 1 and moving[210] == 0,
+                "a move at time zero begins two periods late and takes its 0.02 s")
 
 
 def a_drive_that_does_not_get_ready_fails(folder):

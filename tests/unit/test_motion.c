@@ -94,7 +94,8 @@ static void begin(const struct profile_move *move)
     const struct position start = reference.next.position;
 
     load(move);
-    TEST_ASSERT_TRUE(step().moving);
+    TEST_ASSERT_FALSE(step().moving);
+    TEST_ASSERT_TRUE(reference_busy(&reference));
     TEST_ASSERT_EQUAL_INT64(angle_of(start), angle_of(reference.next.position));
 }
 
@@ -502,7 +503,8 @@ static void test_a_profile_begins_two_periods_after_it_is_loaded(void)
 
         load(moves[i]);
         for (int k = 1; k <= 2; k++) {
-            TEST_ASSERT_TRUE(step().moving);
+            TEST_ASSERT_EQUAL(k == 2, step().moving);
+            TEST_ASSERT_TRUE(reference_busy(&reference));
             TEST_ASSERT_EQUAL_INT64(there, angle_of(reference.next.position));
             TEST_ASSERT_EQUAL(k == 2, reference.periods_left > 0u);
         }

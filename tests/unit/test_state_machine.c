@@ -646,7 +646,7 @@ static void test_the_drive_holds_by_itself_15_ms_after_a_move(void)
     enable();
     must_post(move_to(0.003)); /* near, for a board where nothing moves */
     run(1);
-    while (signals().reference_moving || drive.reference.next.moving) {
+    while (signals().reference_moving || reference_busy(&drive.reference)) {
         run(1);
     }
     run(149);
