@@ -75,6 +75,18 @@ def members(path, struct, member):
     return found
 
 
+def flash_of(path, root, folder):
+    """Bytes of the code that comes from a folder of sources: sizes of its functions with their
+    constants. Tables and texts, some hundred bytes, are not told apart from the test's and left out."""
+    source = SourceLines(path, root)
+    with open(path, "rb") as file:
+        symbols = ELFFile(file).get_section_by_name(".symtab").iter_symbols()
+        functions = {
+            s["st_value"] & ~1: s["st_size"] for s in symbols if s["st_info"]["type"] == "STT_FUNC"
+        }
+    return sum(size for start, size in functions.items() if source.at(start).startswith(folder))
+
+
 def _name(die):
     return die.attributes["DW_AT_name"].value.decode() if "DW_AT_name" in die.attributes else None
 

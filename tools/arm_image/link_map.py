@@ -31,7 +31,10 @@ def read(path):
 
 
 def of_firmware(pieces):
-    return [p for p in pieces if re.search(r"\bfirmware_\w+\.dir/|libfirmware_\w+\.a\(", p.origin)]
+    """What the project's own compilation made. Link-time optimisation hands firmware and test harness
+    over together, as one object; libraries of the toolchain are never part of it."""
+    own = re.compile(r"\bfirmware_\w+\.dir/|libfirmware_\w+\.a\(|\.ltrans\d*\.ltrans\.o$")
+    return [p for p in pieces if own.search(p.origin)]
 
 
 def origin_of(pieces, address):
