@@ -60,8 +60,8 @@ num_t standstill_hold_step(struct standstill_hold *hold,
 void standstill_hold_leave(struct standstill_hold *hold, uint32_t rest_periods);
 
 /*
- * Enters the hold, from the next period on, if the reference has rested for long enough and the
- * rotor has come near it. `position_error` in electrical turns.
+ * Enters the hold if the reference has rested for long enough and the rotor has come near it: the
+ * frame at once, its currents from the next period on. `position_error` in electrical turns.
  */
 void standstill_hold_consider(struct standstill_hold *hold,
                               const struct standstill_hold_params *params, angle_t reference,
