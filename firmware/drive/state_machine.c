@@ -89,7 +89,8 @@ static void take_commands(struct drive *drive)
     }
     if (command_queue_take_urgent(queue, &queue->stop, drive->period)) {
         reference_stop(&drive->reference);
-        command_queue_rest(queue); /* here, because the next interrupt cuts the ramp */
+        /* here, because the next interrupt cuts the ramp */
+        queue->attention = queue->disable.posted || queue->written != queue->read;
         return;
     }
     /* A move is loaded a period ahead: it begins with the period it is addressed to. */
