@@ -1,5 +1,7 @@
 #include "firmware/control/current_control.h"
 
+#include "firmware/control/voltage_limit.h"
+
 struct current_control_params current_control_design(const struct motor_params *motor,
                                                      const struct per_unit *base, double period_s,
                                                      double bandwidth_rad_s)
@@ -21,18 +23,6 @@ void current_control_reset(struct current_control *control)
 {
     control->integral.d = NUM(0.0);
     control->integral.q = NUM(0.0);
-}
-
-/* d keeps the field orientation, so it is served first; q gets the rest of the circle. */
-static struct dq limit_voltage(struct dq v, num_t limit)
-{
-    struct dq limited = v;
-
-    if (num_abs(v.d) + num_abs(v.q) > limit) {
-        limited.d = num_limit(v.d, limit);
-        limited.q = num_limit(v.q, num_sqrt(num_mul(limit, limit) - num_mul(limited.d, limited.d)));
-    }
-    return limited;
 }
 
 static num_t integrate(const struct current_control_params *params, num_t integral, num_t error,

@@ -14,7 +14,8 @@
 
 struct modulator_params {
     int32_t half_period_counts;
-    int32_t counts_max;       /* of a leg, at MODULATION_MAX */
+    int32_t middle_counts;    /* of a leg, at no voltage */
+    int32_t swing_counts;     /* about the middle, at MODULATION_MAX */
     coef_t counts;            /* modulation to counts of one leg */
     coef_t voltage_per_count; /* at nominal bus */
 };
@@ -40,7 +41,10 @@ struct modulator_params modulator_design(uint32_t half_period_counts);
 
 void modulator_reset(struct modulator *modulator);
 
-/* Takes the bus voltage of S(k). Valid for 0.5...1.9 of nominal, clamped beyond. */
+/*
+ * Takes the bus voltage of S(k), 0.5...1.9 of nominal: beyond it the protection opens the bridge.
+ * After any other value it finds back.
+ */
 void modulator_track_bus(struct modulator *modulator, num_t bus);
 
 /* Largest voltage vector that can be commanded in any direction. */

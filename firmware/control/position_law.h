@@ -1,7 +1,18 @@
 /*
- * One interface for every position law: from the position error and the estimates at S(k+1), when
- * the answer begins to act, to the torque-producing current. A law is a header and a source of its
- * own and one line of the registry (position_laws.h).
+ * What every position law has in common. A law answers from the position error and the estimates at
+ * the instant when its answer begins to act, S(k+1), in one of two ways:
+ *
+ *   current laws  give the torque-producing current; the shared current control
+ *                 (current_control.h) turns it to a voltage
+ *   voltage laws  give the voltage in the rotor frame themselves
+ *
+ * A law is a header and a source of its own and one line of the registry (position_laws.h). It has
+ *
+ *   struct <law>_law_params   constants, of coef_t and num_t only (they are hashed bit by bit)
+ *   struct <law>_law_state    all zero at rest
+ *   <law>_law_gains           the gains that may be given instead of bandwidths
+ *   <law>_law_design          at start-up, from motor, period and bandwidths
+ *   <law>_law_step            in the interrupt
  */
 #ifndef STEADYSTEP_POSITION_LAW_H
 #define STEADYSTEP_POSITION_LAW_H
@@ -10,35 +21,47 @@
 
 #include "firmware/design/refusal.h"
 #include "firmware/motor/motor_params.h"
+#include "firmware/motor/park.h"
 #include "firmware/motor/per_unit.h"
-#include "firmware/numeric/num.h"
+
+/* A gain that a law can be given by name, SI, instead of deriving it from the bandwidths. */
+struct law_gain {
+    const char *name; /* as scenarios spell it, unit at its end where it has one */
+    double min;
+    double max;
+};
+
+struct law_gain_list {
+    const struct law_gain *gain;
+    size_t count;
+};
+
+/* No law takes more gains than this. */
+enum { LAW_GAINS_MAX = 12 };
 
 /* What a law is designed from. */
 struct position_law_task {
     const struct motor_params *motor;
     const struct per_unit *base;
     double period_s;
+    uint32_t delay_periods;         /* from samples to voltage: 1, or 0 in a simulation */
     double bandwidth_rad_s;         /* of the position loop */
     double current_bandwidth_rad_s; /* of the loop inside it */
     double speed_limit_rad_s;
     double current_limit_A;
+    const double *gains; /* LAW_GAINS_MAX values in the order of <law>_law_gains; NaN: not given */
 };
 
-/* Gains, per-unit. Every law uses those it names; what it does not name stays zero. */
-struct position_law_params {
-    coef_t position;
-    coef_t speed;
-    coef_t integral;
-    coef_t reference_acceleration; /* J/Km */
-    coef_t reference_friction;     /* Kv/Km */
-    num_t position_error_limit;    /* electrical turns; keeps each term inside the number range */
-    num_t speed_error_limit;
-    num_t current_limit;
-};
+static inline bool law_gain_is_given(const struct position_law_task *task, size_t gain)
+{
+    return task->gains != NULL && task->gains[gain] == task->gains[gain];
+}
 
-struct position_law_state {
-    num_t integral;
-};
+/* The gain as given, or else what the bandwidths make of it. */
+static inline double law_gain_or(const struct position_law_task *task, size_t gain, double derived)
+{
+    return law_gain_is_given(task, gain) ? task->gains[gain] : derived;
+}
 
 /* One period's inputs. References of speed and acceleration are zero without feed-forward. */
 struct position_law_input {
@@ -49,33 +72,24 @@ struct position_law_input {
     num_t load_torque;
 };
 
-/* Gains that all laws share, SI. */
-struct position_law_gains {
-    double position_A_rad;
-    double speed_As_rad;
-    double reference_friction_As_rad;
-    double reference_acceleration_As2_rad;
+/* What a voltage law needs besides. Currents and voltages are in the rotor frame. */
+struct voltage_law_input {
+    struct position_law_input motion;
+    num_t reference_jerk;          /* change of reference_acceleration per control period */
+    num_t load_torque_change;      /* over the coming period, as far as it is known beforehand */
+    struct dq current;             /* when the voltage begins to act */
+    struct dq undisturbed_current; /* the same, had the demanded voltage acted and nothing else */
+    struct dq innovation;          /* current measured at S(k) less the undisturbed one for it */
+    num_t current_d_reference;     /* left over from the hold, else zero */
+    num_t resistance;              /* in series with a phase, as calibrated */
+    num_t voltage_limit;           /* magnitude of the voltage vector */
+    angle_t angle;                 /* electrical, of the rotor */
+    angle_t reference_angle;       /* electrical, of the reference */
 };
 
-/*
- * Scales gains to per-unit and limits the errors so that every term stays inside the number range
- * (one third of it each). Clears the rest.
- */
-void position_law_scale(struct position_law_params *params, const struct position_law_task *task,
-                        const struct position_law_gains *gains);
-
-/* Limited position and speed errors times their gains, plus the reference's own torque. */
-static inline num_t position_law_proportional(const struct position_law_params *params,
-                                              const struct position_law_input *input)
-{
-    num_t position_error = num_headroom(input->position_error, params->position_error_limit);
-    num_t speed_error = num_clamp(input->reference_speed - input->speed, -params->speed_error_limit,
-                                  params->speed_error_limit);
-
-    return num_mul_coef(position_error, params->position) +
-           num_mul_coef(speed_error, params->speed) +
-           num_mul_coef(input->reference_acceleration, params->reference_acceleration) +
-           num_mul_coef(input->reference_speed, params->reference_friction);
-}
+struct voltage_demand {
+    struct dq voltage;    /* of magnitude at most voltage_limit */
+    num_t torque_current; /* the q current it is meant to drive, for show; 0 if the law has none */
+};
 
 #endif

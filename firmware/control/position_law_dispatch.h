@@ -5,36 +5,102 @@
 #ifndef STEADYSTEP_POSITION_LAW_DISPATCH_H
 #define STEADYSTEP_POSITION_LAW_DISPATCH_H
 
+#include "firmware/control/csmc.h"
+#include "firmware/control/csmc_equivalent.h"
+#include "firmware/control/csmc_servo.h"
+#include "firmware/control/feedback_linearisation.h"
+#include "firmware/control/foc.h"
+#include "firmware/control/microstepping.h"
 #include "firmware/control/pid.h"
 #include "firmware/control/position_laws.h"
+#include "firmware/control/smc.h"
 #include "firmware/control/state_feedback.h"
+#include "firmware/control/stmms.h"
+#include "firmware/control/stmms_plus.h"
+
+union position_law_params {
+#define POSITION_LAW_PARAMS(constant, function, text) struct function##_law_params function;
+    POSITION_LAWS(POSITION_LAW_PARAMS)
+#undef POSITION_LAW_PARAMS
+};
+
+union position_law_state {
+#define POSITION_LAW_STATE(constant, function, text) struct function##_law_state function;
+    POSITION_LAWS(POSITION_LAW_STATE)
+#undef POSITION_LAW_STATE
+};
+
+/* Whether the law gives a voltage or a current. */
+static inline bool position_law_gives_voltage(enum position_law law)
+{
+    return law >= (enum position_law)POSITION_LAW_VOLTAGE_FIRST;
+}
+
+/* The gains that can be given to a law; none for a law that does not exist. */
+static inline struct law_gain_list position_law_gains(enum position_law law)
+{
+#define POSITION_LAW_GAINS(constant, function, text)                                               \
+    if (law == POSITION_LAW_##constant) {                                                          \
+        return function##_law_gains;                                                               \
+    }
+    POSITION_LAWS(POSITION_LAW_GAINS)
+#undef POSITION_LAW_GAINS
+    return (struct law_gain_list){NULL, 0};
+}
 
 /* At start-up. false: refused, reason in error. */
-static inline bool position_law_design(enum position_law law, struct position_law_params *params,
+static inline bool position_law_design(enum position_law law, union position_law_params *params,
                                        const struct position_law_task *task,
                                        char error[DESIGN_ERROR_TEXT])
 {
 #define POSITION_LAW_DESIGN(constant, function, text)                                              \
     if (law == POSITION_LAW_##constant) {                                                          \
-        return function##_law_design(params, task, error);                                         \
+        return function##_law_design(&params->function, task, error);                              \
     }
     POSITION_LAWS(POSITION_LAW_DESIGN)
 #undef POSITION_LAW_DESIGN
     return design_refuse(error, "no such position law");
 }
 
-/* One period: the q current, within +-current_limit. */
-static inline num_t position_law_step(enum position_law law, struct position_law_state *state,
-                                      const struct position_law_params *params,
-                                      const struct position_law_input *input)
+/* At rest: all zero. */
+static inline void position_law_reset(enum position_law law, union position_law_state *state)
 {
-#define POSITION_LAW_STEP(constant, function, text)                                                \
+#define POSITION_LAW_RESET(constant, function, text)                                               \
     if (law == POSITION_LAW_##constant) {                                                          \
-        return function##_law_step(state, params, input);                                          \
+        static const struct function##_law_state at_rest;                                          \
+        state->function = at_rest;                                                                 \
     }
-    POSITION_LAWS(POSITION_LAW_STEP)
-#undef POSITION_LAW_STEP
+    POSITION_LAWS(POSITION_LAW_RESET)
+#undef POSITION_LAW_RESET
+}
+
+/* One period of a current law: the q current, within +-current_limit. */
+static inline num_t position_law_current(enum position_law law, union position_law_state *state,
+                                         const union position_law_params *params,
+                                         const struct position_law_input *input)
+{
+#define POSITION_LAW_CURRENT(constant, function, text)                                             \
+    if (law == POSITION_LAW_##constant) {                                                          \
+        return function##_law_step(&state->function, &params->function, input);                    \
+    }
+    CURRENT_LAWS(POSITION_LAW_CURRENT)
+#undef POSITION_LAW_CURRENT
     return NUM(0.0);
+}
+
+/* One period of a voltage law. */
+static inline struct voltage_demand position_law_voltage(enum position_law law,
+                                                         union position_law_state *state,
+                                                         const union position_law_params *params,
+                                                         const struct voltage_law_input *input)
+{
+#define POSITION_LAW_VOLTAGE(constant, function, text)                                             \
+    if (law == POSITION_LAW_##constant) {                                                          \
+        return function##_law_step(&state->function, &params->function, input);                    \
+    }
+    VOLTAGE_LAWS(POSITION_LAW_VOLTAGE)
+#undef POSITION_LAW_VOLTAGE
+    return (struct voltage_demand){{NUM(0.0), NUM(0.0)}, NUM(0.0)};
 }
 
 #endif

@@ -9,15 +9,25 @@
 #ifndef STEADYSTEP_STATE_FEEDBACK_H
 #define STEADYSTEP_STATE_FEEDBACK_H
 
-#include "firmware/control/position_law.h"
+#include "firmware/control/error_feedback.h"
+
+struct state_feedback_law_params {
+    struct error_feedback_params feedback;
+};
+
+struct state_feedback_law_state {
+    num_t none; /* C knows no empty struct */
+};
+
+extern const struct law_gain_list state_feedback_law_gains;
 
 /* false: the loops cannot bear the bandwidth, the limit in error. */
-bool state_feedback_law_design(struct position_law_params *params,
+bool state_feedback_law_design(struct state_feedback_law_params *params,
                                const struct position_law_task *task, char error[DESIGN_ERROR_TEXT]);
 
 /* The q current, within +-current_limit. */
-num_t state_feedback_law_step(struct position_law_state *state,
-                              const struct position_law_params *params,
+num_t state_feedback_law_step(struct state_feedback_law_state *state,
+                              const struct state_feedback_law_params *params,
                               const struct position_law_input *input);
 
 #endif

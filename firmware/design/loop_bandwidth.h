@@ -19,9 +19,16 @@
 #define CURRENT_OVER_POSITION_BANDWIDTH_MIN 4.0
 
 /*
+ * True if the motor (motor_check.h) bears a current loop of this bandwidth sampled with `period_s`;
+ * else false and the limit in `error`.
+ */
+bool current_bandwidth_check(const struct motor_params *motor, double period_s,
+                             double current_bandwidth_rad_s, char error[DESIGN_ERROR_TEXT]);
+
+/*
  * True if `position_bandwidth_rad_s` can be had over a current control of
  * `current_bandwidth_rad_s` sampled with `period_s`; else false and the limit in `error`.
- * Checks the motor first (motor_check.h).
+ * Checks the current loop first.
  */
 bool loop_bandwidth_check(const struct motor_params *motor, double period_s,
                           double position_bandwidth_rad_s, double current_bandwidth_rad_s,

@@ -1,5 +1,8 @@
 #include "firmware/drive/command_queue.h"
 
+#include <stdatomic.h>
+#include <stddef.h>
+
 static bool has_come(uint32_t at_period, uint32_t period)
 {
     return (int32_t)(period - at_period) >= 0;
@@ -16,7 +19,10 @@ bool command_queue_put(struct command_queue *queue, const struct queued_command 
     entry->at_period = command->at_period;
     if (queued_command_is_move(command)) { /* else the profile here may still be moved along */
         entry->profile = command->profile;
+    } else if (queued_command_is_planned(command)) {
+        entry->request = command->request;
     }
+    atomic_signal_fence(memory_order_release);
     queue->written = queue->written + 1u;
     queue->attention = true;
     return true;
@@ -28,6 +34,7 @@ void command_queue_put_urgent(struct command_queue *queue, struct urgent_command
     urgent->posted = false;
     urgent->at_period = at_period;
     urgent->flush_to = queue->written;
+    atomic_signal_fence(memory_order_release);
     urgent->posted = true;
     queue->attention = true;
 }
@@ -57,7 +64,45 @@ void command_queue_drop(struct command_queue *queue)
     queue->read = queue->read + 1u;
 }
 
+void command_queue_put_take_over(struct command_queue *queue, const struct take_over *take_over)
+{
+    struct take_over *own = &queue->take_over;
+
+    own->posted = false;
+    own->at_period = take_over->at_period;
+    own->plan = take_over->plan;
+    own->of_command = take_over->of_command;
+    own->command = take_over->command;
+    atomic_signal_fence(memory_order_release);
+    own->posted = true;
+    queue->attention = true;
+}
+
+void command_queue_withdraw_take_over(struct command_queue *queue)
+{
+    queue->take_over.posted = false;
+}
+
+const struct motion_plan *command_queue_take_over(struct command_queue *queue, uint32_t period)
+{
+    struct take_over *own = &queue->take_over;
+
+    if (!own->posted || !has_come(own->at_period, period)) {
+        return NULL;
+    }
+    own->posted = false;
+    return own->of_command && own->command != queue->read ? NULL : own->plan;
+}
+
+void command_queue_accept_take_over(struct command_queue *queue)
+{
+    if (queue->take_over.of_command) {
+        command_queue_drop(queue);
+    }
+}
+
 void command_queue_rest(struct command_queue *queue)
 {
-    queue->attention = queue->stop.posted || queue->disable.posted || queue->written != queue->read;
+    queue->attention = queue->stop.posted || queue->disable.posted || queue->take_over.posted ||
+                       queue->written != queue->read;
 }

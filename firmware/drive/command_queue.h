@@ -2,19 +2,37 @@
  * Commands on their way from the background to the control interrupt: one writer, one reader, no
  * lock. Moves and mode changes act in the order they were posted; disable and stop overtake them
  * and flush what was posted before.
+ *
+ * The interrupt can pre-empt the background between any two instructions, never the other way
+ * round, and there is one core: the order in which the background writes is all that counts. What
+ * an entry holds is written before the flag or counter that shows it; a signal fence keeps the
+ * compiler to that order.
  */
 #ifndef STEADYSTEP_COMMAND_QUEUE_H
 #define STEADYSTEP_COMMAND_QUEUE_H
 
 #include "firmware/drive/drive_interface.h"
 #include "firmware/motion/profile.h"
+#include "firmware/motion/sine.h"
 
 #define COMMAND_QUEUE_LENGTH 16u
+
+/* What a planned command asks for, in the units of the reference; no profile comes with it. */
+struct motion_request {
+    struct motion_limits limits; /* turns per period^n; of a sine its peaks */
+    struct position target;      /* of a retarget */
+    double speed;                /* of a velocity */
+    uint32_t interval_periods;   /* of set-points */
+    struct sine sine;
+};
 
 struct queued_command {
     enum drive_command_kind kind;
     uint32_t at_period;
-    struct profile profile; /* of a move */
+    union {
+        struct profile profile;        /* of a move */
+        struct motion_request request; /* of a command the background plans */
+    };
 };
 
 /* A profile comes with it. */
@@ -24,11 +42,26 @@ static inline bool queued_command_is_move(const struct queued_command *command)
            command->kind == DRIVE_COMMAND_MOVE_SMOOTH || command->kind == DRIVE_COMMAND_STEP;
 }
 
+/* Planned by the background, which takes it out of the queue with the plan (planner.h). */
+static inline bool queued_command_is_planned(const struct queued_command *command)
+{
+    return command->kind >= DRIVE_COMMAND_SINE && command->kind <= DRIVE_COMMAND_RETARGET;
+}
+
 /* A command that waits for nothing but its period; the last one posted counts. */
 struct urgent_command {
     volatile bool posted;
     uint32_t at_period;
     uint32_t flush_to; /* queue entries posted before it */
+};
+
+/* A plan that takes the reference over in its period. */
+struct take_over {
+    volatile bool posted;
+    uint32_t at_period;
+    const struct motion_plan *plan;
+    bool of_command;  /* false: of a stop */
+    uint32_t command; /* queue entry that it obeys; leaves the queue with it */
 };
 
 struct command_queue {
@@ -38,6 +71,7 @@ struct command_queue {
     volatile bool attention; /* something may wait: spares the interrupt to look at all of it */
     struct urgent_command disable;
     struct urgent_command stop;
+    struct take_over take_over;
 };
 
 /* Background: false if COMMAND_QUEUE_LENGTH - 1 wait; the last entry may be a profile in use. */
@@ -58,6 +92,21 @@ bool command_queue_take_urgent(struct command_queue *queue, struct urgent_comman
 struct queued_command *command_queue_due(struct command_queue *queue, uint32_t period);
 
 void command_queue_drop(struct command_queue *queue);
+
+/* Background: `plan` must live until it is taken over and done, or withdrawn. */
+void command_queue_put_take_over(struct command_queue *queue, const struct take_over *take_over);
+
+/* Background: the take-over that has not acted, if any, never will. */
+void command_queue_withdraw_take_over(struct command_queue *queue);
+
+/*
+ * Interrupt: the plan whose period has come and whose command has not been flushed, once; else
+ * NULL.
+ */
+const struct motion_plan *command_queue_take_over(struct command_queue *queue, uint32_t period);
+
+/* Interrupt: the reference has accepted it; its command leaves the queue. */
+void command_queue_accept_take_over(struct command_queue *queue);
 
 /* Interrupt: lowers `attention` if nothing waits. The background cannot run in between. */
 void command_queue_rest(struct command_queue *queue);

@@ -1,6 +1,7 @@
 /* The background's side of the drive: commands in, signals out. */
 #include "firmware/design/refusal.h"
 #include "firmware/drive/drive.h"
+#include "firmware/drive/parameter_store.h"
 
 static enum profile_shape shape_of(enum drive_command_kind kind)
 {
@@ -20,8 +21,27 @@ static void update_planned_end(struct drive *drive)
 
     if (queue->read == queue->written && !reference_busy(&drive->reference)) {
         drive->planned_end = drive->reference.next.position;
-        drive->stop_posted = drive->stop_posted && queue->stop.posted;
+        if (!queue->stop.posted) {
+            drive->end_known = PLANNED_END_KNOWN;
+        }
     }
+}
+
+/* Nothing that moves is taken between a stop and rest. */
+static bool require_no_stop(struct drive *drive, char error[DRIVE_ERROR_TEXT])
+{
+    update_planned_end(drive);
+    return drive->end_known != PLANNED_END_AFTER_STOP ||
+           design_refuse(error, "move refused: the reference has not come to rest after the stop");
+}
+
+/* An absolute move or the first set-point needs to know where it starts. */
+static bool require_known_end(struct drive *drive, char error[DRIVE_ERROR_TEXT])
+{
+    return require_no_stop(drive, error) &&
+           (drive->end_known == PLANNED_END_KNOWN ||
+            design_refuse(error, "move refused: the reference follows a sine, set-points or a "
+                                 "speed: stop it and wait for rest, or retarget"));
 }
 
 static bool plan(struct drive *drive, const struct drive_command *command, struct profile *profile,
@@ -43,12 +63,76 @@ static bool plan(struct drive *drive, const struct drive_command *command, struc
                                      drive->settings.motor.inertia_kgm2,
     };
 
-    update_planned_end(drive);
-    if (drive->stop_posted) {
-        return design_refuse(error,
-                             "move refused: the reference has not come to rest after the stop");
+    return require_known_end(drive, error) &&
+           profile_plan(profile, drive->planned_end, &move, &limits, error);
+}
+
+/* One more set-point of a stream that is open. */
+static bool put_set_point(struct drive *drive, const struct drive_command *command,
+                          char error[DRIVE_ERROR_TEXT])
+{
+    const int32_t teeth = drive->settings.motor.rotor_teeth;
+    const double range = 1e9 * drive->base.rad_per_turn;
+
+    if (!(command->position_rad >= -range && command->position_rad <= range)) {
+        return design_refuse(error, "set-point refused: the position is out of range");
     }
-    return profile_plan(profile, drive->planned_end, &move, &limits, error);
+    return set_points_put(&drive->planner.set_points,
+                          position_from_rad(command->position_rad, teeth), error);
+}
+
+/* The first set-point: begins a stream. */
+static bool begin_set_points(struct drive *drive, const struct drive_command *command,
+                             const struct motion_request *request, char error[DRIVE_ERROR_TEXT])
+{
+    struct planner *planner = &drive->planner;
+    struct motion_limits limits = request->limits;
+
+    if (!require_known_end(drive, error)) {
+        return false;
+    }
+    if (drive->commands.written - drive->commands.read == COMMAND_QUEUE_LENGTH - 1u) {
+        return true; /* refused when it is put into the queue */
+    }
+    set_points_begin(&planner->set_points, drive->planned_end, request->interval_periods, &limits);
+    if (!put_set_point(drive, command, error)) {
+        return false;
+    }
+    planner->set_points_command = drive->commands.written;
+    planner->set_points_open = true;
+    return true;
+}
+
+static bool request(struct drive *drive, const struct drive_command *command,
+                    struct motion_request *asked, char error[DRIVE_ERROR_TEXT])
+{
+    if (!require_no_stop(drive, error) || !planner_request(drive, command, asked, error)) {
+        return false;
+    }
+    return command->kind != DRIVE_COMMAND_SET_POINT ||
+           begin_set_points(drive, command, asked, error);
+}
+
+/* Where the reference will rest behind the command. */
+static void note_planned_end(struct drive *drive, const struct queued_command *queued)
+{
+    if (queued_command_is_move(queued)) {
+        drive->planned_end = queued->profile.target;
+    } else if (queued->kind == DRIVE_COMMAND_RETARGET) {
+        drive->planned_end = queued->request.target;
+        drive->end_known = PLANNED_END_KNOWN;
+    } else if (queued_command_is_planned(queued)) {
+        drive->end_known = PLANNED_END_AFTER_MOTION;
+    }
+}
+
+static bool save(const struct drive *drive, char error[DRIVE_ERROR_TEXT])
+{
+    struct learned_parameters learned;
+
+    detent_compensation_get(&drive->detent, &drive->base, learned.detent_torque_Nm);
+    return parameter_store_write(drive->board, &learned) ||
+           design_refuse(error, "save refused: the board's parameter store cannot be written");
 }
 
 bool drive_command(struct drive *drive, const struct drive_command *command,
@@ -56,13 +140,16 @@ bool drive_command(struct drive *drive, const struct drive_command *command,
 {
     struct queued_command queued = {.kind = command->kind, .at_period = command->at_period};
 
+    if (command->kind == DRIVE_COMMAND_SAVE) {
+        return save(drive, error);
+    }
     if (command->kind == DRIVE_COMMAND_DISABLE) {
         command_queue_put_urgent(&drive->commands, &drive->commands.disable, command->at_period);
         return true;
     }
     if (command->kind == DRIVE_COMMAND_STOP) {
         command_queue_put_urgent(&drive->commands, &drive->commands.stop, command->at_period);
-        drive->stop_posted = true;
+        drive->end_known = PLANNED_END_AFTER_STOP;
         return true;
     }
     if (command->kind == DRIVE_COMMAND_ENABLE) {
@@ -74,18 +161,25 @@ bool drive_command(struct drive *drive, const struct drive_command *command,
         }
         if (drive->state != DRIVE_OPERATION_ENABLED || drive->commands.disable.posted) {
             drive->planned_end = drive->params.initial_position;
-            drive->stop_posted = false;
+            drive->end_known = PLANNED_END_KNOWN;
         }
     }
     if (queued_command_is_move(&queued) && !plan(drive, command, &queued.profile, error)) {
         return false;
     }
+    if (queued_command_is_planned(&queued)) {
+        planner_follow(drive);
+        if (command->kind == DRIVE_COMMAND_SET_POINT && drive->planner.set_points_open) {
+            return put_set_point(drive, command, error);
+        }
+        if (!request(drive, command, &queued.request, error)) {
+            return false;
+        }
+    }
     if (!command_queue_put(&drive->commands, &queued)) {
         return design_refuse(error, "command refused: 15 commands are waiting already");
     }
-    if (queued_command_is_move(&queued)) {
-        drive->planned_end = queued.profile.target;
-    }
+    note_planned_end(drive, &queued);
     return true;
 }
 
@@ -113,5 +207,6 @@ void drive_signals_read(const struct drive *drive, struct drive_signals *signals
     signals->u_d_V = num_to_double(drive->voltage_command.d) * base->voltage_V;
     signals->u_q_V = num_to_double(drive->voltage_command.q) * base->voltage_V;
     signals->resistance_est_ohm = num_to_double(x->winding.resistance) * base->resistance_ohm;
+    signals->reference_underruns = drive->planner.underruns;
     signals->bus_V = num_to_double(drive->bus) * base->voltage_V;
 }

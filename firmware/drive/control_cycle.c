@@ -7,66 +7,93 @@
  * What is computed from S(k) acts from S(k+1) on. So currents and rotor are predicted to S(k+1)
  * with the voltage already committed, and compared with the reference of S(k+1).
  */
-#include "firmware/control/position_law_dispatch.h"
 #include "firmware/drive/drive.h"
 #include "firmware/drive/state_machine.h"
 
 static const struct hal_outputs bridge_off = {.bridge_on = false};
 
-/* The motor at S(k+1) as known at S(k). */
+/* The motor at the instant at which the answer begins to act, as known at S(k). */
 struct prediction {
     struct phases current;
+    struct phases undisturbed_current; /* had what was demanded acted; for voltage laws */
     struct rotor rotor;
+    struct sincos frame; /* of the rotor */
+    const struct reference_sample *reference;
+    num_t load_torque_change; /* over the period after it, as far as it is known */
 };
 
+/* At S(k+1), with the voltage already committed. */
 static struct prediction predict(const struct drive *drive, const struct estimate *estimate)
 {
     const struct motor_model_params *model = &drive->params.model;
-    struct prediction next;
+    struct prediction next = {.rotor = estimate->rotor,
+                              .frame = estimate_end_of_period(estimate),
+                              .reference = &drive->reference.next};
 
-    next.rotor = estimate->rotor;
+    next.rotor.load_torque += drive->detent.torque;
     next.current = forced_current(&estimate->winding, estimate->free_current,
                                   actuation_in_force(&drive->actuation));
     predict_rotor(model, &next.rotor, park(next.current, estimate->mid_period).q);
     return next;
 }
 
-static struct dq wanted_current(struct drive *drive, const struct rotor *rotor)
+/* At S(k): without a delay nothing need be predicted. */
+static struct prediction present(const struct drive *drive, const struct estimate *estimate)
+{
+    return (struct prediction){.current = estimate->current,
+                               .rotor = estimate->rotor,
+                               .frame = estimate_begin_of_period(estimate),
+                               .reference = &drive->reference.now};
+}
+
+static struct position_law_input law_input(const struct drive *drive, const struct prediction *next)
+{
+    const struct reference_sample *reference = next->reference;
+    const bool feed_forward = drive->params.feed_forward;
+
+    return (struct position_law_input){
+        .position_error = position_difference(reference->position, next->rotor.position),
+        .reference_speed = feed_forward ? reference->speed : NUM(0.0),
+        .reference_acceleration = feed_forward ? reference->acceleration : NUM(0.0),
+        .speed = next->rotor.speed,
+        .load_torque = next->rotor.load_torque,
+    };
+}
+
+static void consider_hold(struct drive *drive, const struct prediction *next, num_t position_error)
+{
+    standstill_hold_consider(&drive->hold, &drive->params.hold, next->reference->position.fraction,
+                             drive->reference.rest_periods, position_error, next->rotor.speed);
+}
+
+static struct dq wanted_current(struct drive *drive, const struct prediction *next)
 {
     const struct drive_params *params = &drive->params;
-    const struct reference_sample *reference = &drive->reference.next;
     struct dq current;
 
     current.d = standstill_hold_step(&drive->hold, &params->hold);
     if (drive->hold.active) {
-        current.q = standstill_hold_torque_current(&params->hold, rotor->speed, rotor->load_torque);
+        current.q = standstill_hold_torque_current(&params->hold, next->rotor.speed,
+                                                   next->rotor.load_torque);
     } else {
-        const struct position_law_input input = {
-            .position_error = position_difference(reference->position, rotor->position),
-            .reference_speed = params->feed_forward ? reference->speed : NUM(0.0),
-            .reference_acceleration = params->feed_forward ? reference->acceleration : NUM(0.0),
-            .speed = rotor->speed,
-            .load_torque = rotor->load_torque,
-        };
+        const struct position_law_input input = law_input(drive, next);
 
-        current.q = position_law_step(params->position_law, &drive->law, &params->law, &input);
-        standstill_hold_consider(&drive->hold, &params->hold, reference->position.fraction,
-                                 drive->reference.rest_periods, input.position_error, rotor->speed);
+        current.q = position_law_current(params->position_law, &drive->law, &params->law, &input);
+        consider_hold(drive, next, input.position_error);
     }
     return current;
 }
 
-/* The hold fixes the current frame to the reference; in motion it turns with the rotor. */
-static struct sincos control_frame(const struct drive *drive, const struct estimate *estimate)
-{
-    return drive->hold.active ? drive->hold.frame : estimate_end_of_period(estimate);
-}
-
-/* The voltage turns back to phases at the angle of the middle of S(k+1)...S(k+2). */
+/*
+ * Hold or current law, then current control. The hold fixes the current frame to the reference; in
+ * motion it turns with the rotor.
+ */
 static struct phases regulate_current(struct drive *drive, const struct estimate *estimate,
                                       const struct prediction *next)
 {
-    const struct sincos frame = control_frame(drive, estimate);
+    drive->current_reference = wanted_current(drive, next);
+
+    const struct sincos frame = drive->hold.active ? drive->hold.frame : next->frame;
 
     drive->current = park(next->current, frame);
     drive->voltage_command = current_control_step(
@@ -75,9 +102,67 @@ static struct phases regulate_current(struct drive *drive, const struct estimate
     return inverse_park(drive->voltage_command, sincos_add(frame, estimate->half_turn));
 }
 
+/* A voltage law. */
+static struct phases regulate_voltage(struct drive *drive, const struct estimate *estimate,
+                                      const struct prediction *next)
+{
+    const struct drive_params *params = &drive->params;
+    const struct phases innovation = {estimate->current.a - drive->predicted_current.a,
+                                      estimate->current.b - drive->predicted_current.b};
+    const struct voltage_law_input input = {
+        .motion = law_input(drive, next),
+        .current = park(next->current, next->frame),
+        .undisturbed_current = park(next->undisturbed_current, next->frame),
+        .innovation = park(innovation, drive->predicted_frame),
+        .current_d_reference = standstill_hold_step(&drive->hold, &params->hold),
+        .reference_jerk =
+            params->feed_forward ? reference_jerk(&drive->reference, &params->reference) : NUM(0.0),
+        .load_torque_change = next->load_torque_change,
+        .resistance = estimate->winding.resistance,
+        .voltage_limit = modulator_voltage_limit(&drive->modulator),
+        .angle = next->rotor.position.fraction,
+        .reference_angle = next->reference->position.fraction,
+    };
+    const struct voltage_demand demand =
+        position_law_voltage(params->position_law, &drive->law, &params->law, &input);
+
+    consider_hold(drive, next, input.motion.position_error);
+    drive->current = input.current;
+    drive->current_reference = (struct dq){input.current_d_reference, demand.torque_current};
+    drive->voltage_command = demand.voltage;
+    return inverse_park(demand.voltage, sincos_add(next->frame, estimate->half_turn));
+}
+
+/*
+ * What would come of the demanded voltage alone, for the laws that observe what disturbs it: at
+ * S(k) the current of the coming one if there is a delay, else the present one, which is measured.
+ */
+static void expect_current(struct drive *drive, const struct estimate *estimate,
+                           struct prediction *next)
+{
+    next->undisturbed_current =
+        drive->params.immediate
+            ? estimate->current
+            : forced_current(&estimate->winding, estimate->free_current, drive->demanded_voltage);
+}
+
+/* Afterwards, with this period's voltage. */
+static void remember_demand(struct drive *drive, const struct estimate *estimate,
+                            const struct prediction *next, struct phases voltage)
+{
+    drive->predicted_current =
+        drive->params.immediate
+            ? forced_current(&estimate->winding, estimate->free_current, voltage)
+            : next->undisturbed_current;
+    drive->predicted_frame = estimate->mid_period;
+    drive->demanded_voltage = voltage;
+}
+
 static struct hal_outputs modulate(struct drive *drive, struct phases voltage)
 {
-    const struct phases command = actuation_compensate(&drive->actuation, voltage);
+    const struct phases command = drive->params.bridge_loss_compensation
+                                      ? actuation_compensate(&drive->actuation, voltage)
+                                      : voltage;
     const struct modulation out =
         modulator_step(&drive->modulator, &drive->params.modulator, command);
     const struct hal_outputs duties = {
@@ -86,28 +171,61 @@ static struct hal_outputs modulate(struct drive *drive, struct phases voltage)
     };
 
     actuation_commit(&drive->actuation, out.voltage);
+    if (drive->params.immediate) {
+        actuation_commit(&drive->actuation, out.voltage); /* measured at the next S(k) already */
+    }
     return duties;
+}
+
+/* The detent torque at the instant of action, learned from what the observer has left of it. */
+static void compensate_detent(struct drive *drive, const struct estimate *estimate,
+                              struct prediction *next)
+{
+    const num_t before = drive->detent.torque;
+
+    detent_compensation_step(&drive->detent, &drive->params.detent, next->rotor.position.fraction,
+                             next->frame, next->rotor.speed, estimate->rotor.load_torque);
+    drive->estimator.encoder.known_torque = drive->detent.torque;
+    next->load_torque_change = drive->detent.torque - before;
+    next->rotor.load_torque = estimate->rotor.load_torque + drive->detent.torque;
 }
 
 static struct hal_outputs control(struct drive *drive, const struct estimate *estimate)
 {
-    struct hal_outputs duties;
-    struct prediction next;
+    const bool observes_voltage = position_law_gives_voltage(drive->params.position_law);
+    const bool law_gives_voltage = observes_voltage && !drive->hold.active;
 
     reference_step(&drive->reference, &drive->params.reference);
-    next = predict(drive, estimate);
-    drive->current_reference = wanted_current(drive, &next.rotor);
-    duties = modulate(drive, regulate_current(drive, estimate, &next));
+
+    struct prediction next =
+        drive->params.immediate ? present(drive, estimate) : predict(drive, estimate);
+    if (drive->params.detent_learning) {
+        compensate_detent(drive, estimate, &next);
+    }
+    if (observes_voltage) {
+        expect_current(drive, estimate, &next);
+    }
+    const struct phases voltage = law_gives_voltage ? regulate_voltage(drive, estimate, &next)
+                                                    : regulate_current(drive, estimate, &next);
+    const struct hal_outputs duties = modulate(drive, voltage);
+
+    if (observes_voltage) {
+        remember_demand(drive, estimate, &next, voltage);
+    }
     standstill_hold_leave(&drive->hold, drive->reference.rest_periods);
     return duties;
 }
 
 static const struct estimate *observe(struct drive *drive, const struct sample_set *now)
 {
+    const struct estimator_input input = {.current = now->current,
+                                          .voltage = now->voltage,
+                                          .encoder_count = now->encoder_count,
+                                          .holding = drive->hold.active};
+
     modulator_track_bus(&drive->modulator, now->bus);
     actuation_observe(&drive->actuation, now->voltage);
-    return estimator_step(&drive->estimator, &drive->params.estimator, now->current, now->voltage,
-                          drive->hold.active);
+    return estimator_step(&drive->estimator, &drive->params.estimator, &input);
 }
 
 /* The bridge is on and stays on for this period: what it needs of estimate and duties. */
@@ -129,6 +247,7 @@ struct hal_outputs drive_control_cycle(struct drive *drive, const struct hal_sam
         measurement_step(&drive->measurement, &drive->params.measurement, samples);
 
     drive->bus = now.bus;
+    drive->encoder_count = now.encoder_count;
     drive->period++;
     return state_machine_step(drive, samples) ? powered_cycle(drive, &now) : bridge_off;
 }

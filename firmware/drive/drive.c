@@ -1,7 +1,23 @@
 #include "firmware/drive/drive.h"
 
-#include "firmware/control/position_law_dispatch.h"
 #include "firmware/design/state_feedback_design.h"
+#include "firmware/drive/parameter_store.h"
+
+static bool design_high_gain_observer(struct drive *drive, const struct drive_settings *settings,
+                                      double period_s, char error[DRIVE_ERROR_TEXT])
+{
+    struct estimator_params *params = &drive->params.estimator;
+    const struct high_gain_observer_task task = {
+        .base = &drive->base,
+        .encoder = &params->encoder.encoder,
+        .period_s = period_s,
+        .epsilon_s = settings->high_gain_epsilon_s,
+        .speed_limit_rad_s = settings->speed_limit_rad_s,
+    };
+
+    params->kind = ESTIMATOR_HIGH_GAIN_OBSERVER;
+    return high_gain_observer_design(&params->high_gain, &drive->params.model, &task, error);
+}
 
 static bool design_estimator(struct drive *drive, const struct drive_settings *settings,
                              double period_s, char error[DRIVE_ERROR_TEXT])
@@ -9,7 +25,27 @@ static bool design_estimator(struct drive *drive, const struct drive_settings *s
     struct estimator_params *params = &drive->params.estimator;
     const struct motor_params *motor = &settings->motor;
 
-    if (settings->estimator == DRIVE_ESTIMATOR_STEADY_STATE_EKF) {
+    if (settings->feedback == DRIVE_FEEDBACK_ENCODER) {
+        const struct encoder_observer_task task = {
+            .base = &drive->base,
+            .rotor_teeth = motor->rotor_teeth,
+            .counts_per_turn = drive->board->facts->encoder_counts_per_turn,
+            .period_s = period_s,
+            .bandwidth_rad_s = settings->observer_bandwidth_rad_s,
+            .resistance_adaptation_s =
+                settings->resistance_adaptation ? settings->hold_on_enable_s / 8.0 : 0.0,
+            .hold_current_A = settings->hold_current_A,
+        };
+
+        params->kind = ESTIMATOR_ENCODER_OBSERVER;
+        if (!encoder_observer_design(&params->encoder, &drive->params.model, &task, error)) {
+            return false;
+        }
+        if (settings->observer == DRIVE_OBSERVER_HIGH_GAIN &&
+            !design_high_gain_observer(drive, settings, period_s, error)) {
+            return false;
+        }
+    } else if (settings->estimator == DRIVE_ESTIMATOR_STEADY_STATE_EKF) {
         struct steady_state_ekf_gains gains;
 
         if (!steady_state_ekf_design(motor, period_s, &gains, error)) {
@@ -37,8 +73,38 @@ static bool design_estimator(struct drive *drive, const struct drive_settings *s
         params->invariant =
             invariant_ekf_scale(&drive->params.model, &drive->base, &moving, &holding, &following);
     }
-    estimator_reset(&drive->estimator, params, drive->params.initial_position,
-                    drive->params.model.nominal_resistance);
+    const struct estimator_start start = {.position = drive->params.initial_position,
+                                          .encoder_position = drive->params.initial_position,
+                                          .resistance = drive->params.model.nominal_resistance};
+
+    estimator_reset(&drive->estimator, params, &start);
+    return true;
+}
+
+/* Gains given by name are the user's own: only their range is checked. */
+static bool check_law_gains(const struct drive_settings *settings, char error[DRIVE_ERROR_TEXT])
+{
+    const struct law_gain_list list = position_law_gains(settings->law);
+
+    for (size_t i = 0; i < DRIVE_LAW_GAINS; i++) {
+        const double value = settings->law_gains[i];
+        const bool given = value == value;
+
+        if (given && i >= list.count) {
+            return design_refuse(error, "law_gains: more are given than the law takes");
+        }
+        if (given && !(value >= list.gain[i].min && value <= list.gain[i].max)) {
+            const bool low = value < list.gain[i].min;
+
+            return design_refuse_limit(
+                error, (struct refusal){.quantity = list.gain[i].name,
+                                        .value = value,
+                                        .relation = low ? "at least" : "at most",
+                                        .limit = low ? list.gain[i].min : list.gain[i].max,
+                                        .unit = "",
+                                        .reason = "the range of this gain"});
+        }
+    }
     return true;
 }
 
@@ -49,14 +115,32 @@ static bool design_law(struct drive *drive, const struct drive_settings *setting
         .motor = &settings->motor,
         .base = &drive->base,
         .period_s = period_s,
+        .delay_periods = drive->board->facts->actuation_delay_periods,
         .bandwidth_rad_s = settings->law_bandwidth_rad_s,
         .current_bandwidth_rad_s = settings->current_bandwidth_rad_s,
         .speed_limit_rad_s = settings->speed_limit_rad_s,
         .current_limit_A = settings->current_limit_A,
+        .gains = settings->law_gains,
     };
 
+    const struct detent_compensation_task detent = {
+        .motor = &settings->motor,
+        .base = &drive->base,
+        .period_s = period_s,
+        .observer_bandwidth_rad_s = settings->observer_bandwidth_rad_s,
+    };
+
+    struct learned_parameters learned;
+
+    drive->params.detent_learning = settings->detent_learning;
+    drive->params.detent = detent_compensation_design(&detent);
+    detent_compensation_set(&drive->detent, &drive->params.detent, &drive->base,
+                            parameter_store_read(drive->board, &learned)
+                                ? learned.detent_torque_Nm
+                                : settings->detent_torque_Nm);
     drive->params.position_law = settings->law;
-    return position_law_design(settings->law, &drive->params.law, &task, error);
+    return check_law_gains(settings, error) &&
+           position_law_design(settings->law, &drive->params.law, &task, error);
 }
 
 static bool design_hold(struct drive *drive, const struct drive_settings *settings, double period_s,
@@ -64,7 +148,7 @@ static bool design_hold(struct drive *drive, const struct drive_settings *settin
 {
     struct state_feedback_gains gains;
 
-    if (!state_feedback_design(&settings->motor, period_s, settings->law_bandwidth_rad_s,
+    if (!state_feedback_design(&settings->motor, period_s, settings->hold_bandwidth_rad_s,
                                settings->current_bandwidth_rad_s, &gains, error)) {
         return false;
     }
@@ -77,6 +161,9 @@ static bool design_hold(struct drive *drive, const struct drive_settings *settin
         .period_s = period_s,
     };
     drive->params.hold = standstill_hold_design(&drive->base, &task);
+    if (!settings->hold_at_rest) {
+        drive->params.hold.delay_periods = UINT32_MAX;
+    }
     return true;
 }
 
@@ -118,12 +205,25 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
     params->protection = protection_design(&drive->base, facts, &drive->settings);
     params->calibrate_offsets = settings->calibrate_offsets;
     params->feed_forward = settings->feed_forward;
+    params->immediate = facts->actuation_delay_periods == 0u;
+    params->hold_at_rest = settings->hold_at_rest;
+    params->bridge_loss_compensation = settings->bridge_loss_compensation;
+    params->encoder_zero_known =
+        settings->feedback == DRIVE_FEEDBACK_ENCODER && settings->encoder_zero_known;
+    params->encoder_zero =
+        position_from_rad(settings->encoder_zero_rad, settings->motor.rotor_teeth);
+    params->encoder_zero_told =
+        position_from_rad(settings->encoder_zero_rad + settings->initial_angle_error_rad,
+                          settings->motor.rotor_teeth);
+    params->initial_load_torque =
+        num_from_double(settings->initial_load_torque_Nm / drive->base.torque_Nm);
     params->hold_on_enable_periods =
         settings->hold_on_enable ? (uint32_t)(settings->hold_on_enable_s / period_s + 0.5) : 0u;
     modulator_reset(&drive->modulator);
     reference_reset(&drive->reference, params->initial_position);
     drive->planned_end = params->initial_position;
-    return design_estimator(drive, settings, period_s, error) &&
+    planner_init(drive);
+    return design_estimator(drive, &drive->settings, period_s, error) &&
            design_law(drive, settings, period_s, error) &&
            design_hold(drive, settings, period_s, error);
 }

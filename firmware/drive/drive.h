@@ -6,12 +6,14 @@
 #define STEADYSTEP_DRIVE_H
 
 #include "firmware/control/current_control.h"
+#include "firmware/control/detent_compensation.h"
 #include "firmware/control/modulator.h"
-#include "firmware/control/position_law.h"
+#include "firmware/control/position_law_dispatch.h"
 #include "firmware/control/standstill_hold.h"
 #include "firmware/drive/command_queue.h"
 #include "firmware/drive/drive_interface.h"
 #include "firmware/drive/measurement.h"
+#include "firmware/drive/planner.h"
 #include "firmware/drive/protection.h"
 #include "firmware/estimator/estimator.h"
 #include "firmware/motion/reference.h"
@@ -24,7 +26,8 @@ struct drive_params {
     struct motor_model_params model;
     struct estimator_params estimator;
     struct reference_params reference;
-    struct position_law_params law;
+    union position_law_params law;
+    struct detent_compensation_params detent;
     struct standstill_hold_params hold;
     struct current_control_params current_control;
     struct modulator_params modulator;
@@ -34,6 +37,14 @@ struct drive_params {
     uint32_t hold_on_enable_periods;
     bool calibrate_offsets;
     bool feed_forward;
+    bool immediate; /* no period of delay: the answer acts from S(k) on */
+    bool hold_at_rest;
+    bool bridge_loss_compensation;
+    bool detent_learning;
+    bool encoder_zero_known;
+    struct position encoder_zero;      /* rotor where count 0 begins */
+    struct position encoder_zero_told; /* with initial_angle_error_rad */
+    num_t initial_load_torque;
 };
 
 struct drive {
@@ -44,7 +55,8 @@ struct drive {
     struct estimator estimator;
     struct reference reference;
     struct standstill_hold hold;
-    struct position_law_state law;
+    union position_law_state law;
+    struct detent_compensation detent;
     struct current_control current_control;
     struct modulator modulator;
     struct actuation actuation;
@@ -52,9 +64,13 @@ struct drive {
     /* supervision */
     enum drive_state state;
     enum drive_fault fault;
-    uint32_t period;      /* index of the present or last control interrupt; 0 is the first */
-    uint32_t state_since; /* period in which the state was entered */
-    struct command_queue commands;
+    uint32_t period;       /* index of the present or last control interrupt; 0 is the first */
+    uint32_t state_since;  /* period in which the state was entered */
+    int32_t encoder_count; /* of this S(k) */
+
+    struct phases demanded_voltage;  /* of the last S(k) */
+    struct phases predicted_current; /* for this S(k), had what was demanded acted */
+    struct sincos predicted_frame;   /* of the middle of the period before this S(k) */
 
     /* this period's inner signals, shown by drive_signals_read */
     struct dq current;
@@ -62,12 +78,15 @@ struct drive {
     struct dq voltage_command;
     num_t bus;
 
+    struct command_queue commands; /* supervision too; large, so behind what is used more */
+
     /* background */
     const struct hal *board;
     struct drive_settings settings;
     struct per_unit base;
     struct position planned_end; /* where the reference rests when all posted moves are done */
-    bool stop_posted;            /* planned_end is not known before the reference rests */
+    enum planned_end end_known;  /* whether it is */
+    struct planner planner;
 };
 
 /*
@@ -85,6 +104,14 @@ __attribute__((noinline)) struct hal_outputs drive_control_cycle(struct drive *d
 /* Background: plans and posts a command. false: refused, reason in error. */
 bool drive_command(struct drive *drive, const struct drive_command *command,
                    char error[DRIVE_ERROR_TEXT]);
+
+/*
+ * Background: plans sines, set-points, speed changes, new targets and the stops of these, and keeps
+ * those that go on supplied. To be called all the time, from the context that calls drive_command,
+ * at least once in 3 ms (set-points: in half an interval); some ten instructions when nothing is to
+ * be planned, up to 1 ms on a Cortex-M4F for a retarget.
+ */
+void drive_background(struct drive *drive);
 
 /* Background: what the drive shows of the last period. */
 void drive_signals_read(const struct drive *drive, struct drive_signals *signals);

@@ -36,36 +36,79 @@ enum drive_fault {
     DRIVE_FAULTS
 };
 
+/* Where the rotor's position comes from. */
+enum drive_feedback {
+    DRIVE_FEEDBACK_SENSORLESS, /* the estimator, from currents and voltages */
+    DRIVE_FEEDBACK_ENCODER,    /* an observer on the encoder's counts */
+    DRIVE_FEEDBACKS
+};
+
+/* Of sensorless feedback. */
 enum drive_estimator {
     DRIVE_ESTIMATOR_INVARIANT_EKF,    /* constant-gain invariant EKF, exact current prediction */
     DRIVE_ESTIMATOR_STEADY_STATE_EKF, /* Bendjedia 2012: constant gain, Euler predictor */
     DRIVE_ESTIMATORS
 };
 
+/* Of encoder feedback. */
+enum drive_observer {
+    DRIVE_OBSERVER_MODEL,     /* of the motor's mechanics, from counts and currents */
+    DRIVE_OBSERVER_HIGH_GAIN, /* Seshagiri and Khalil: from counts alone; for simulation */
+    DRIVE_OBSERVERS
+};
+
+/* Room for the gains that a law can be given by name. */
+enum { DRIVE_LAW_GAINS = 12 };
+
+enum { DRIVE_DETENT_COEFFICIENTS = 6 };
+
 /* Everything a drive is told before it is enabled. Fill with drive_settings_default first. */
 struct drive_settings {
     struct motor_params motor;
 
     enum position_law law;
+    enum drive_feedback feedback; /* sensorless */
     enum drive_estimator estimator;
-    double law_bandwidth_rad_s;     /* w0 of the position law, double pole; 200 */
-    bool feed_forward;              /* reference speed and acceleration into the law; true */
-    double current_bandwidth_rad_s; /* of the d-q current control; 1500 */
-    double current_limit_A;         /* limit of the current reference; rated current */
-    double overcurrent_trip_A;      /* software trip on a sampled phase current; 1.8 x rated */
+    double law_bandwidth_rad_s;        /* w0 of the position law, pole pair; 200, of the default law
+                                          with an encoder 900 */
+    double law_gains[DRIVE_LAW_GAINS]; /* given to the law instead of what the bandwidths make of
+                                          them and not checked against their limits, in the order
+                                          of drive_law_gains; NaN: not given */
+    bool feed_forward;                 /* reference speed and acceleration into the law; true */
+    double current_bandwidth_rad_s;    /* of the loop inside it; 1500, with that law 2000 */
+    double current_limit_A;            /* limit of the current reference; rated current */
+    double overcurrent_trip_A;         /* software trip on a sampled phase current; 1.8 x rated */
     double speed_limit_rad_s; /* estimates beyond it open the bridge; 1.3 supply/Km, cut to 0.24
                                  electrical turn per period */
 
-    bool resistance_adaptation; /* track the series resistance while holding; true */
-    double hold_current_A;      /* d-axis current at rest; half the rated current */
-    double hold_ramp_s;         /* time for the hold current to ramp in or out; 0.010 */
-    double hold_delay_s;        /* from the end of a profile to the hold; 0.015 */
+    enum drive_observer observer;    /* on the encoder; model */
+    double observer_bandwidth_rad_s; /* triple pole of the model observer; 1000 */
+    double high_gain_epsilon_s;      /* of the high-gain observer; 1e-3 */
+    bool encoder_zero_known; /* absolute encoder or indexed: the rotor's angle follows from the
+                                count; else it is initial_angle_rad at the end of the hold; false */
+    double encoder_zero_rad; /* rotor angle where count 0 begins; 0 */
+    double initial_load_torque_Nm; /* load that the encoder observer begins with; 0 */
+    bool bridge_loss_compensation; /* dead time and diodes, from measured voltages; true */
+
+    /* Detent torque a_1, b_1, a_2, b_2, a_4, b_4 at harmonics of the electrical angle, known before
+       or learned and kept (control/detent_compensation.h). */
+    bool detent_learning; /* with an encoder only; true for its default law, else false */
+    double detent_torque_Nm[DRIVE_DETENT_COEFFICIENTS]; /* where learning begins if nothing
+                                                           is kept from before; 0 */
+
+    bool resistance_adaptation;  /* track the series resistance while holding; true */
+    double hold_current_A;       /* d-axis current at rest; half the rated current */
+    double hold_ramp_s;          /* time for the hold current to ramp in or out; 0.010 */
+    double hold_delay_s;         /* from the end of a profile to the hold; 0.015 */
+    bool hold_at_rest;           /* d-axis current at rest; true, with an encoder false */
+    double hold_bandwidth_rad_s; /* w0 of the state feedback whose damping the hold takes; 200 */
 
     bool calibrate_offsets;         /* step of enabling; true */
     bool hold_on_enable;            /* step of enabling: 150 ms hold before ready; true */
     double hold_on_enable_s;        /* 0.150 */
     double initial_angle_rad;       /* mechanical rotor angle the drive is told; 0 */
-    double initial_angle_error_rad; /* added to it, to tell the drive something wrong; 0 */
+    double initial_angle_error_rad; /* added to it, to tell the drive something wrong; an encoder
+                                       whose zero is known still measures right; 0 */
 };
 
 enum drive_command_kind {
@@ -76,6 +119,16 @@ enum drive_command_kind {
     DRIVE_COMMAND_MOVE_SMOOTH,    /* jerk-limited: ramp_s of which jerk_s each at its two ends */
     DRIVE_COMMAND_STEP,           /* position at once */
     DRIVE_COMMAND_STOP,           /* decelerates the reference to rest with the ramp in force */
+    DRIVE_COMMAND_SINE,           /* amplitude_rad, frequency_Hz, cycles, ramp_s, about where the
+                                     reference rests */
+    DRIVE_COMMAND_SET_POINT,      /* position_rad; the first one begins a stream, with interval_s,
+                                     acceleration_rad_s2 and jerk_rad_s3 */
+    DRIVE_COMMAND_VELOCITY,       /* speed_rad_s until the next command, acceleration_rad_s2 and
+                                     jerk_rad_s3 to get there from whatever motion */
+    DRIVE_COMMAND_RETARGET,       /* to position_rad from whatever motion, with speed_rad_s,
+                                     acceleration_rad_s2 and jerk_rad_s3 at most */
+    DRIVE_COMMAND_SAVE,           /* at once, in the background: keeps what has been learned across
+                                     power cycles */
     DRIVE_COMMANDS
 };
 
@@ -83,6 +136,20 @@ enum drive_command_kind {
  * A command, addressed to a period: it acts in the control interrupt whose index is at_period
  * (0 is the first), or in the next one if that has passed. Moves are absolute and start from the
  * end of the last posted move.
+ *
+ * Sine, set-points, velocity and retarget are planned by drive_background, DRIVE_LEAD_s ahead: they
+ * act in the period they are addressed to if they are posted that much earlier, else that much
+ * after their posting. Sine and set-points begin at rest and wait for it, as moves do. Velocity and
+ * retarget take over at once whatever is in motion when the commands before them have begun,
+ * with continuous position, speed and acceleration; so does a stop of these four, with the limits
+ * they were given (the sine with its own largest acceleration and jerk), DRIVE_LEAD_s after its
+ * period. Until the reference rests behind a sine, set-points, velocity or a stop, moves are
+ * refused, because where they would start is not known; a retarget ends where it is told, and moves
+ * may follow.
+ *
+ * A set-point is reached two intervals, DRIVE_LEAD_s and a period after its posting. The stream
+ * ends when the last position comes three times; if it runs dry before, the reference comes to rest
+ * with the limits given, and drive_signals counts an underrun.
  */
 struct drive_command {
     enum drive_command_kind kind;
@@ -91,7 +158,19 @@ struct drive_command {
     double duration_s;   /* whole move, > 2 ramp_s or equal */
     double ramp_s;       /* one ramp of speed */
     double jerk_s; /* of MOVE_SMOOTH: constant-jerk part at each end of a ramp, <= ramp_s / 2 */
+    double amplitude_rad; /* of SINE, mechanical */
+    double frequency_Hz;  /* at most a twentieth of the control frequency */
+    double cycles;        /* whole or half ones; 0: until a stop. SINE fades in and out over ramp_s
+                             each; 0: it begins and ends at full speed */
+    double interval_s;    /* between set-points, at least 3 periods; rounded to whole ones */
+    double speed_rad_s;   /* signed; of RETARGET the largest */
+    double acceleration_rad_s2; /* largest, above 0 */
+    double jerk_rad_s3;         /* largest, above 0 */
 };
+
+/* How far ahead of its begin a motion is planned; at least 3 periods. Doubled when the background
+   has been too late. */
+#define DRIVE_LEAD_s 1e-3
 
 /* What a drive shows each period, valid after the control interrupt k: values at S(k). */
 struct drive_signals {
@@ -110,6 +189,7 @@ struct drive_signals {
     double u_d_V, u_q_V; /* commanded voltages, after the limit */
     double resistance_est_ohm;
     double bus_V;
+    uint32_t reference_underruns; /* sines and set-points whose continuation came too late */
 };
 
 enum { DRIVE_ERROR_TEXT = 160 };
@@ -123,6 +203,12 @@ extern "C" {
  */
 void drive_settings_default(struct drive_settings *settings, const struct motor_params *motor);
 
+/* Chooses the feedback, and the law and the hold that are its defaults. */
+void drive_settings_select_feedback(struct drive_settings *settings, enum drive_feedback feedback);
+
+/* Chooses the law, and bandwidths and detent learning that are its defaults with the feedback. */
+void drive_settings_select_law(struct drive_settings *settings, enum position_law law);
+
 /*
  * Checks every setting against its physical range. Returns true, or false with the name of the
  * field, its value and the allowed range in `error`.
@@ -134,6 +220,8 @@ const char *drive_state_name(enum drive_state state);
 const char *drive_fault_name(enum drive_fault fault);
 const char *drive_law_name(enum position_law law);
 const char *drive_estimator_name(enum drive_estimator estimator);
+const char *drive_feedback_name(enum drive_feedback feedback);
+const char *drive_observer_name(enum drive_observer observer);
 
 #ifdef __cplusplus
 }

@@ -36,6 +36,7 @@ struct sample_set measurement_step(const struct measurement *measurement,
     now.voltage.b =
         num_from_code(samples->phase_voltage_b, params->phase_voltage) - offset->voltage.b;
     now.bus = num_from_code(samples->bus_voltage, params->bus_voltage);
+    now.encoder_count = samples->encoder_count;
     return now;
 }
 

@@ -35,6 +35,7 @@ struct sample_set {
     struct phases current;
     struct phases voltage; /* mean over the past period */
     num_t bus;
+    int32_t encoder_count;
 };
 
 struct measurement_params measurement_design(const struct hal_facts *facts,

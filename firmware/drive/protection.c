@@ -7,6 +7,15 @@ static const double bus_max = 1.29;
 /* No load that the motor could hold twice over is taken for real. */
 static const double load_torque_limit = 2.0;
 
+/* An initial error makes the high-gain observer's estimates peak beyond any physical range. */
+static double estimate_limit(const struct drive_settings *settings, double limit)
+{
+    const bool peaks = settings->feedback == DRIVE_FEEDBACK_ENCODER &&
+                       settings->observer == DRIVE_OBSERVER_HIGH_GAIN;
+
+    return peaks ? NUM_MAX : limit;
+}
+
 /* A bound in converter codes; what no code can reach is never reached. */
 static int32_t codes(double value, double per_code)
 {
@@ -20,21 +29,23 @@ struct protection_params protection_design(const struct per_unit *base,
                                            const struct drive_settings *settings)
 {
     const double supply_V = settings->motor.supply_V;
+    const int32_t trip = codes(settings->overcurrent_trip_A, facts->current_A_per_code);
+    const int32_t bus_code_min = codes(bus_min * supply_V, facts->bus_V_per_code);
     const struct protection_params params = {
-        .current_zero_code = facts->current_zero_code,
-        .overcurrent_codes = codes(settings->overcurrent_trip_A, facts->current_A_per_code),
-        .bus_code_min = codes(bus_min * supply_V, facts->bus_V_per_code),
-        .bus_code_max = codes(bus_max * supply_V, facts->bus_V_per_code),
-        .speed_limit = num_from_double(settings->speed_limit_rad_s / base->speed_rad_s),
-        .load_torque_limit = num_from_double(load_torque_limit),
+        .current_codes = {facts->current_zero_code - trip, 2 * trip},
+        .bus_codes = {bus_code_min,
+                      codes(bus_max * supply_V, facts->bus_V_per_code) - bus_code_min},
+        .speed_limit = num_from_double(
+            estimate_limit(settings, settings->speed_limit_rad_s / base->speed_rad_s)),
+        .load_torque_limit = num_from_double(estimate_limit(settings, load_torque_limit)),
     };
     return params;
 }
 
-/* One comparison: a code below -limit wraps to a large number. */
-static bool beyond(int32_t codes, int32_t limit)
+/* One comparison: a code below the range wraps to a large number. */
+static bool beyond(struct code_range range, int32_t code)
 {
-    return (uint32_t)(codes + limit) > 2u * (uint32_t)limit;
+    return (uint32_t)(code - range.low) > (uint32_t)range.width;
 }
 
 enum drive_fault protection_check_samples(const struct protection_params *params,
@@ -44,12 +55,11 @@ enum drive_fault protection_check_samples(const struct protection_params *params
         return (samples->flags & HAL_FLAG_OVERCURRENT_TRIP) != 0u ? DRIVE_FAULT_HARDWARE_OVERCURRENT
                                                                   : DRIVE_FAULT_DEADLINE_MISSED;
     }
-    if (beyond(samples->current_a - params->current_zero_code, params->overcurrent_codes) ||
-        beyond(samples->current_b - params->current_zero_code, params->overcurrent_codes)) {
+    if (beyond(params->current_codes, samples->current_a) ||
+        beyond(params->current_codes, samples->current_b)) {
         return DRIVE_FAULT_OVERCURRENT;
     }
-    if (samples->bus_voltage < params->bus_code_min ||
-        samples->bus_voltage > params->bus_code_max) {
+    if (beyond(params->bus_codes, samples->bus_voltage)) {
         return DRIVE_FAULT_BUS_VOLTAGE;
     }
     return DRIVE_FAULT_NONE;

@@ -6,11 +6,15 @@
 #include "firmware/estimator/estimate.h"
 #include "hal/hal.h"
 
+/* Converter codes from low to low + width, both allowed. */
+struct code_range {
+    int32_t low;
+    int32_t width;
+};
+
 struct protection_params {
-    int32_t current_zero_code;
-    int32_t overcurrent_codes;
-    int32_t bus_code_min;
-    int32_t bus_code_max;
+    struct code_range current_codes;
+    struct code_range bus_codes;
     num_t speed_limit;
     num_t load_torque_limit;
 };

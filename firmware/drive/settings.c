@@ -1,6 +1,8 @@
 #include "firmware/design/refusal.h"
 #include "firmware/drive/drive_interface.h"
 
+static const double not_given = __builtin_nan("");
+
 void drive_settings_default(struct drive_settings *settings, const struct motor_params *motor)
 {
     const struct drive_settings defaults = {
@@ -10,6 +12,9 @@ void drive_settings_default(struct drive_settings *settings, const struct motor_
         .law_bandwidth_rad_s = 200.0,
         .feed_forward = true,
         .current_bandwidth_rad_s = 1500.0,
+        .observer_bandwidth_rad_s = 1000.0,
+        .high_gain_epsilon_s = 1e-3,
+        .bridge_loss_compensation = true,
         .current_limit_A = motor->rated_current_A,
         .overcurrent_trip_A = 1.8 * motor->rated_current_A,
         .speed_limit_rad_s = 1.3 * motor->supply_V / motor->torque_constant_Nm_A,
@@ -17,11 +22,37 @@ void drive_settings_default(struct drive_settings *settings, const struct motor_
         .hold_current_A = 0.5 * motor->rated_current_A,
         .hold_ramp_s = 0.010,
         .hold_delay_s = 0.015,
+        .hold_at_rest = true,
+        .hold_bandwidth_rad_s = 200.0,
         .calibrate_offsets = true,
         .hold_on_enable = true,
         .hold_on_enable_s = 0.150,
     };
     *settings = defaults;
+    for (int i = 0; i < DRIVE_LAW_GAINS; i++) {
+        settings->law_gains[i] = not_given;
+    }
+}
+
+void drive_settings_select_feedback(struct drive_settings *settings, enum drive_feedback feedback)
+{
+    settings->feedback = feedback;
+    settings->hold_at_rest = feedback == DRIVE_FEEDBACK_SENSORLESS;
+    drive_settings_select_law(settings, feedback == DRIVE_FEEDBACK_ENCODER
+                                            ? POSITION_LAW_FEEDBACK_LINEARISATION
+                                            : POSITION_LAW_STATE_FEEDBACK);
+}
+
+void drive_settings_select_law(struct drive_settings *settings, enum position_law law)
+{
+    const bool linearised = law == POSITION_LAW_FEEDBACK_LINEARISATION;
+    const bool fast = linearised && settings->feedback == DRIVE_FEEDBACK_ENCODER;
+
+    settings->law = law;
+    settings->law_bandwidth_rad_s = fast ? 900.0 : linearised ? 300.0 : 200.0;
+    settings->current_bandwidth_rad_s = fast ? 2000.0 : 1500.0;
+    settings->observer_bandwidth_rad_s = fast ? 1400.0 : 1000.0;
+    settings->detent_learning = fast;
 }
 
 /* Name, value and allowed range of one setting. */
@@ -68,7 +99,12 @@ bool drive_settings_check(const struct drive_settings *settings, char error[DRIV
         {"supply_V", motor->supply_V, 5.0, 400.0, "V"},
         {"rotor_teeth", (double)motor->rotor_teeth, 1.0, 1000.0, ""},
         {"law_bandwidth_rad_s", settings->law_bandwidth_rad_s, 1.0, 1e4, "rad/s"},
-        {"current_bandwidth_rad_s", settings->current_bandwidth_rad_s, 10.0, 1e5, "rad/s"},
+        {"current_bandwidth_rad_s", settings->current_bandwidth_rad_s, 10.0, 1e6, "rad/s"},
+        {"observer_bandwidth_rad_s", settings->observer_bandwidth_rad_s, 1.0, 1e6, "rad/s"},
+        {"high_gain_epsilon_s", settings->high_gain_epsilon_s, 1e-7, 1.0, "s"},
+        {"hold_bandwidth_rad_s", settings->hold_bandwidth_rad_s, 1.0, 1e4, "rad/s"},
+        {"encoder_zero_rad", settings->encoder_zero_rad, -1e4, 1e4, "rad"},
+        {"initial_load_torque_Nm", settings->initial_load_torque_Nm, -100.0, 100.0, "N m"},
         {"current_limit_A", settings->current_limit_A, 0.01 * rated, 2.0 * rated, "A"},
         {"overcurrent_trip_A", settings->overcurrent_trip_A, 0.1 * rated, 4.0 * rated, "A"},
         {"speed_limit_rad_s", settings->speed_limit_rad_s, 0.1, 1e4, "rad/s"},
@@ -84,6 +120,17 @@ bool drive_settings_check(const struct drive_settings *settings, char error[DRIV
         if (!check(&bounds[i], error)) {
             return false;
         }
+    }
+    for (int i = 0; i < DRIVE_DETENT_COEFFICIENTS; i++) {
+        const struct bounded coefficient = {"detent_torque_Nm", settings->detent_torque_Nm[i],
+                                            -100.0, 100.0, "N m"};
+
+        if (!check(&coefficient, error)) {
+            return false;
+        }
+    }
+    if (settings->detent_learning && settings->feedback != DRIVE_FEEDBACK_ENCODER) {
+        return design_refuse(error, "detent_learning: needs feedback = \"encoder\"");
     }
     return true;
 }
@@ -120,6 +167,24 @@ const char *drive_law_name(enum position_law law)
     static const char *const names[] = {POSITION_LAWS(LAW_TEXT)};
 #undef LAW_TEXT
     return names[law];
+}
+
+const char *drive_feedback_name(enum drive_feedback feedback)
+{
+    static const char *const names[DRIVE_FEEDBACKS] = {
+        [DRIVE_FEEDBACK_SENSORLESS] = "sensorless",
+        [DRIVE_FEEDBACK_ENCODER] = "encoder",
+    };
+    return names[feedback];
+}
+
+const char *drive_observer_name(enum drive_observer observer)
+{
+    static const char *const names[DRIVE_OBSERVERS] = {
+        [DRIVE_OBSERVER_MODEL] = "model",
+        [DRIVE_OBSERVER_HIGH_GAIN] = "high-gain",
+    };
+    return names[observer];
 }
 
 const char *drive_estimator_name(enum drive_estimator estimator)

@@ -6,26 +6,45 @@ static void enter(struct drive *drive, enum drive_state state)
     drive->state_since = drive->period;
 }
 
-/* All blocks at rest at the position the drive is told; a calibrated resistance is kept. */
+/* The position the drive is told, or the one its encoder shows. */
+static struct position initial_position(const struct drive *drive, struct position encoder_zero)
+{
+    const struct drive_params *params = &drive->params;
+
+    return params->encoder_zero_known ? encoder_position(&params->estimator.encoder.encoder,
+                                                         encoder_zero, drive->encoder_count)
+                                      : params->initial_position;
+}
+
+/* All blocks at rest at the initial position; a calibrated resistance is kept. */
 static void reset_blocks(struct drive *drive)
 {
     const struct drive_params *params = &drive->params;
-    const num_t resistance =
-        estimator_estimate(&drive->estimator, &params->estimator)->winding.resistance;
+    const struct estimator_start start = {
+        .position = initial_position(drive, params->encoder_zero_told),
+        .encoder_position = initial_position(drive, params->encoder_zero),
+        .load_torque = params->initial_load_torque,
+        .resistance = estimator_estimate(&drive->estimator, &params->estimator)->winding.resistance,
+        .encoder_count = drive->encoder_count,
+    };
 
-    estimator_reset(&drive->estimator, &params->estimator, params->initial_position, resistance);
-    reference_reset(&drive->reference, params->initial_position);
+    estimator_reset(&drive->estimator, &params->estimator, &start);
+    reference_reset(&drive->reference, start.position);
     standstill_hold_reset(&drive->hold);
-    drive->law.integral = NUM(0.0);
+    position_law_reset(params->position_law, &drive->law);
+    detent_compensation_reset(&drive->detent);
     current_control_reset(&drive->current_control);
     actuation_reset(&drive->actuation);
+    drive->predicted_current = (struct phases){NUM(0.0), NUM(0.0)};
+    drive->demanded_voltage = drive->predicted_current;
+    drive->predicted_frame = (struct sincos){UNIT(1.0), UNIT(0.0)};
 }
 
 static void power_up(struct drive *drive)
 {
     reset_blocks(drive);
     if (drive->params.hold_on_enable_periods > 0u) {
-        standstill_hold_enter(&drive->hold, drive->params.initial_position.fraction);
+        standstill_hold_enter(&drive->hold, drive->reference.next.position.fraction);
         enter(drive, DRIVE_ALIGNING);
     } else {
         enter(drive, DRIVE_OPERATION_ENABLED);
@@ -40,6 +59,18 @@ static void start_enabling(struct drive *drive)
     } else {
         power_up(drive);
     }
+}
+
+/* The rotor has been drawn into the d axis: where it is now is where it was told to be. */
+static void end_aligning(struct drive *drive)
+{
+    const struct drive_params *params = &drive->params;
+
+    if (!params->encoder_zero_known) {
+        estimator_place(&drive->estimator, &params->estimator, drive->reference.next.position);
+    }
+    drive->hold.active = params->hold_at_rest;
+    enter(drive, DRIVE_OPERATION_ENABLED);
 }
 
 static void disable(struct drive *drive)
@@ -66,15 +97,28 @@ static bool obey(struct drive *drive, struct queued_command *command)
     if (reference_busy(&drive->reference)) {
         return false; /* and so the profile in use stays in the queue's memory */
     }
-    if (command->kind == DRIVE_COMMAND_ENABLE) {
+    if (queued_command_is_move(command)) {
+        (void)reference_load(&drive->reference, &command->profile);
         return true;
+    }
+    if (queued_command_is_planned(command)) {
+        return false; /* it goes when its plan takes over */
     }
     if (command->kind == DRIVE_COMMAND_HOLD) {
         drive->reference.rest_periods = UINT32_MAX;
-    } else {
-        (void)reference_load(&drive->reference, &command->profile);
     }
     return true;
+}
+
+static void take_over(struct drive *drive)
+{
+    struct command_queue *queue = &drive->commands;
+    const struct motion_plan *plan = command_queue_take_over(queue, drive->period);
+
+    if (plan != NULL && drive->state == DRIVE_OPERATION_ENABLED &&
+        reference_take_over(&drive->reference, plan)) {
+        command_queue_accept_take_over(queue);
+    }
 }
 
 /* One command a period, and the check for more only in a period without: short worst case. */
@@ -95,10 +139,12 @@ static void take_commands(struct drive *drive)
     }
     /* A move is loaded a period ahead: it begins with the period it is addressed to. */
     command = command_queue_due(queue, drive->period + 1u);
-    if (command == NULL) {
-        command_queue_rest(queue);
-    } else if (obey(drive, command)) {
+    if (command != NULL && obey(drive, command)) {
         command_queue_drop(queue);
+    } else if (queue->take_over.posted) {
+        take_over(drive);
+    } else if (command == NULL) {
+        command_queue_rest(queue);
     }
 }
 
@@ -135,7 +181,7 @@ bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
         calibrate_offsets(drive, samples);
     } else if (drive->state == DRIVE_ALIGNING &&
                drive->period - drive->state_since > drive->params.hold_on_enable_periods) {
-        enter(drive, DRIVE_OPERATION_ENABLED);
+        end_aligning(drive);
     }
     if (!state_machine_powered(drive)) {
         return false;

@@ -19,9 +19,17 @@ static inline void estimate_look_ahead(struct estimate *x, const struct motor_mo
 {
     const int32_t rotation = half_period_rotation(model, x->rotor.speed);
 
-    x->half_turn = sincos_of_small(rotation);
+    x->half_turn = sincos_of((angle_t)rotation);
     x->mid_period = sincos_of(x->rotor.position.fraction + (angle_t)rotation);
     x->free_current = free_current(model, &x->winding, x->current, x->rotor.speed, x->mid_period);
+}
+
+/* The rotor at S(k) is half a rotation short of the middle of the period. */
+static inline struct sincos estimate_begin_of_period(const struct estimate *x)
+{
+    const struct sincos back = {x->half_turn.cos, -x->half_turn.sin};
+
+    return sincos_add(x->mid_period, back);
 }
 
 /* The rotor at S(k+1) is half a rotation past the middle of the period. */

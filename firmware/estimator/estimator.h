@@ -2,53 +2,111 @@
 #ifndef STEADYSTEP_ESTIMATOR_H
 #define STEADYSTEP_ESTIMATOR_H
 
+#include "firmware/estimator/encoder_observer.h"
+#include "firmware/estimator/high_gain_observer.h"
 #include "firmware/estimator/invariant_ekf.h"
 #include "firmware/estimator/steady_state_ekf.h"
 
-enum estimator_kind { ESTIMATOR_INVARIANT_EKF, ESTIMATOR_STEADY_STATE_EKF };
+enum estimator_kind {
+    ESTIMATOR_INVARIANT_EKF,
+    ESTIMATOR_STEADY_STATE_EKF,
+    ESTIMATOR_ENCODER_OBSERVER,
+    ESTIMATOR_HIGH_GAIN_OBSERVER
+};
 
 /* Only the one in use is designed and stepped. */
 struct estimator_params {
     enum estimator_kind kind;
     struct invariant_ekf_params invariant;
     struct steady_state_ekf_params steady_state;
+    struct encoder_observer_params encoder; /* designed for the high-gain observer, too */
+    struct high_gain_observer_params high_gain;
 };
 
 struct estimator {
     struct invariant_ekf invariant;
     struct steady_state_ekf steady_state;
+    struct encoder_observer encoder;
+    struct high_gain_observer high_gain;
+};
+
+/* One period's measurements. */
+struct estimator_input {
+    struct phases current;
+    struct phases voltage; /* mean over the past period */
+    int32_t encoder_count;
+    bool holding;
 };
 
 static inline const struct estimate *estimator_estimate(const struct estimator *estimator,
                                                         const struct estimator_params *params)
 {
-    return params->kind == ESTIMATOR_INVARIANT_EKF ? &estimator->invariant.estimate
-                                                   : &estimator->steady_state.estimate;
+    if (params->kind == ESTIMATOR_INVARIANT_EKF) {
+        return &estimator->invariant.estimate;
+    }
+    if (params->kind == ESTIMATOR_STEADY_STATE_EKF) {
+        return &estimator->steady_state.estimate;
+    }
+    return params->kind == ESTIMATOR_ENCODER_OBSERVER ? &estimator->encoder.estimate
+                                                      : &estimator->high_gain.estimate;
 }
 
-/* At rest at a known position, without current and load. */
+/* What is known when the bridge is switched on: at rest, without current. */
+struct estimator_start {
+    struct position position;         /* as the drive is told it */
+    struct position encoder_position; /* that the count stands for */
+    num_t load_torque;
+    num_t resistance;
+    int32_t encoder_count;
+};
+
 static inline void estimator_reset(struct estimator *estimator,
-                                   const struct estimator_params *params, struct position position,
-                                   num_t resistance)
+                                   const struct estimator_params *params,
+                                   const struct estimator_start *start)
 {
     if (params->kind == ESTIMATOR_INVARIANT_EKF) {
-        invariant_ekf_reset(&estimator->invariant, &params->invariant, position, resistance);
+        invariant_ekf_reset(&estimator->invariant, &params->invariant, start->position,
+                            start->resistance);
+    } else if (params->kind == ESTIMATOR_STEADY_STATE_EKF) {
+        steady_state_ekf_reset(&estimator->steady_state, &params->steady_state, start->position,
+                               start->resistance);
+    } else if (params->kind == ESTIMATOR_ENCODER_OBSERVER) {
+        encoder_observer_reset(&estimator->encoder, &params->encoder, start->encoder_position,
+                               start->load_torque, start->resistance, start->encoder_count);
     } else {
-        steady_state_ekf_reset(&estimator->steady_state, &params->steady_state, position,
-                               resistance);
+        high_gain_observer_reset(&estimator->high_gain, &params->high_gain, start->position,
+                                 start->encoder_position, start->resistance, start->encoder_count);
+    }
+}
+
+/* With an encoder: the rotor is where the encoder now is, at `position`. */
+static inline void estimator_place(struct estimator *estimator,
+                                   const struct estimator_params *params, struct position position)
+{
+    if (params->kind == ESTIMATOR_ENCODER_OBSERVER) {
+        encoder_observer_place(&estimator->encoder, position);
+    } else if (params->kind == ESTIMATOR_HIGH_GAIN_OBSERVER) {
+        high_gain_observer_place(&estimator->high_gain, position);
     }
 }
 
 /* From S(k-1) to S(k); the steady-state EKF has no tuning of its own for the hold. */
 static inline const struct estimate *estimator_step(struct estimator *estimator,
                                                     const struct estimator_params *params,
-                                                    struct phases current, struct phases voltage,
-                                                    bool holding)
+                                                    const struct estimator_input *input)
 {
     if (params->kind == ESTIMATOR_INVARIANT_EKF) {
-        invariant_ekf_step(&estimator->invariant, &params->invariant, current, voltage, holding);
+        invariant_ekf_step(&estimator->invariant, &params->invariant, input->current,
+                           input->voltage, input->holding);
+    } else if (params->kind == ESTIMATOR_STEADY_STATE_EKF) {
+        steady_state_ekf_step(&estimator->steady_state, &params->steady_state, input->current,
+                              input->voltage);
+    } else if (params->kind == ESTIMATOR_ENCODER_OBSERVER) {
+        encoder_observer_step(&estimator->encoder, &params->encoder, input->current, input->voltage,
+                              input->encoder_count, input->holding);
     } else {
-        steady_state_ekf_step(&estimator->steady_state, &params->steady_state, current, voltage);
+        high_gain_observer_step(&estimator->high_gain, &params->high_gain, input->current,
+                                input->encoder_count);
     }
     return estimator_estimate(estimator, params);
 }

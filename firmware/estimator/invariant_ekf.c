@@ -65,9 +65,9 @@ static void predict(struct invariant_ekf *ekf, const struct invariant_ekf_params
 {
     struct estimate *x = &ekf->estimate;
     const struct phases next = forced_current(&x->winding, x->free_current, voltage);
-    const struct phases mean = {num_half(x->current.a + next.a), num_half(x->current.b + next.b)};
+    const struct phases sum = {x->current.a + next.a, x->current.b + next.b};
 
-    predict_rotor(&params->model, &x->rotor, park(mean, x->mid_period).q);
+    predict_rotor(&params->model, &x->rotor, num_half(park(sum, x->mid_period).q));
     x->current = next;
 }
 

@@ -1,8 +1,12 @@
 #include "firmware/motion/reference.h"
 
+#include <stdatomic.h>
+#include <stddef.h>
+
 /* Acceleration is shown through 32 bits of 2^-38 turn; profile_plan keeps it below 2^31 of them. */
 #define ACCELERATION_SHIFT 26
 #define ACCELERATION_SCALE 64.0 /* turns_from_angle takes them for 2^-32 turn */
+#define JERK_SCALE         1024.0
 
 struct reference_params reference_design(const struct per_unit *base, double period_s)
 {
@@ -14,17 +18,18 @@ struct reference_params reference_design(const struct per_unit *base, double per
     params.speed = coef_from_double(speed);
     params.speed_remainder = coef_from_double(speed - coef_to_double(params.speed));
     params.acceleration = coef_from_double(acceleration / ACCELERATION_SCALE);
+    params.jerk = coef_from_double(acceleration / JERK_SCALE);
     return params;
 }
 
 static struct reference_sample sample_of(const struct reference *r,
                                          const struct reference_params *params)
 {
-    num_t speed = turns_from_angle((int32_t)(r->speed >> 32));
-    num_t acceleration = turns_from_angle((int32_t)(r->acceleration >> ACCELERATION_SHIFT));
+    num_t speed = turns_from_angle((int32_t)(r->at.speed >> 32));
+    num_t acceleration = turns_from_angle((int32_t)(r->at.acceleration >> ACCELERATION_SHIFT));
 
     return (struct reference_sample){
-        .position = {.turns = r->turns, .fraction = (angle_t)(r->fraction >> 32)},
+        .position = {.turns = r->at.turns, .fraction = (angle_t)(r->at.fraction >> 32)},
         .speed = num_mul_coef_fine(speed, params->speed, params->speed_remainder),
         .acceleration = num_mul_coef(acceleration, params->acceleration),
         .moving = r->phase > REFERENCE_LOADED && r->phase < REFERENCE_REST,
@@ -33,8 +38,8 @@ static struct reference_sample sample_of(const struct reference *r,
 
 static void place(struct reference *r, struct position position)
 {
-    r->turns = position.turns;
-    r->fraction = (uint64_t)position.fraction << 32;
+    r->at.turns = position.turns;
+    r->at.fraction = (uint64_t)position.fraction << 32;
 }
 
 void reference_reset(struct reference *r, struct position position)
@@ -45,8 +50,11 @@ void reference_reset(struct reference *r, struct position position)
     r->phase = REFERENCE_REST;
     r->periods_left = 0;
     r->stop_requested = false;
-    r->speed = 0;
-    r->acceleration = 0;
+    r->at.speed = 0;
+    r->at.acceleration = 0;
+    r->jerk = 0;
+    r->jerk_sixth = 0;
+    r->epoch++;
     place(r, position);
 }
 
@@ -58,7 +66,7 @@ bool reference_load(struct reference *r, struct profile *profile)
     }
     r->profile = profile;
     r->phase = REFERENCE_QUEUED;
-    r->speed = profile->rounding_speed;
+    r->at.speed = profile->rounding_speed;
     r->stopped = false;
     return true;
 }
@@ -67,20 +75,20 @@ void reference_stop(struct reference *r)
 {
     if (r->phase == REFERENCE_QUEUED || r->phase == REFERENCE_LOADED) {
         r->phase = REFERENCE_REST;
-        r->speed = 0;
+        r->at.speed = 0;
     }
     r->stop_requested = r->phase != REFERENCE_REST;
 }
 
 static void advance(struct reference *r)
 {
-    const int64_t travel = r->speed + (r->acceleration >> 1) + r->jerk_sixth;
-    const uint64_t fraction = r->fraction + (uint64_t)travel;
+    const int64_t travel = r->at.speed + (r->at.acceleration >> 1) + r->jerk_sixth;
+    const uint64_t fraction = r->at.fraction + (uint64_t)travel;
 
-    r->turns += (int32_t)(travel >> 63) + (fraction < r->fraction ? 1 : 0);
-    r->fraction = fraction;
-    r->speed += r->acceleration + (r->jerk >> 1);
-    r->acceleration += r->jerk;
+    r->at.turns += (int32_t)(travel >> 63) + (fraction < r->at.fraction ? 1 : 0);
+    r->at.fraction = fraction;
+    r->at.speed += r->at.acceleration + (r->jerk >> 1);
+    r->at.acceleration += r->jerk;
     r->periods_left--;
     r->rest_periods = 0;
 }
@@ -110,6 +118,9 @@ static void cut_short(struct reference *r)
     case REFERENCE_CRUISE:
         r->periods_left = 1;
         break;
+    case REFERENCE_PLANNED:
+        r->epoch++;
+        return;
     default: /* decelerates to rest already */
         return;
     }
@@ -122,7 +133,7 @@ static void begin(struct reference *r, enum reference_phase phase, uint32_t peri
 {
     r->phase = phase;
     r->periods_left = periods;
-    r->acceleration = acceleration;
+    r->at.acceleration = acceleration;
     r->jerk = 0;
     r->jerk_sixth = 0;
 }
@@ -141,14 +152,55 @@ static void come_to_rest(struct reference *r)
 {
     begin(r, REFERENCE_REST, 0, 0);
     r->stop_requested = false;
-    r->speed = 0;
+    r->at.speed = 0;
     r->rest_periods = 0;
-    place(r, r->stopped ? (struct position){r->turns, (angle_t)(r->fraction >> 32)}
+    place(r, r->stopped ? (struct position){r->at.turns, (angle_t)(r->at.fraction >> 32)}
                         : r->profile->target);
 }
 
-/* Begins the first phase behind the one that has ended which has a length. */
-static void begin_next_phase(struct reference *r)
+static void rest_behind_plan(struct reference *r)
+{
+    const struct position here = r->plan->lands ? r->plan->target : motion_position(&r->at);
+
+    begin(r, REFERENCE_REST, 0, 0);
+    r->stop_requested = false;
+    r->at.speed = 0;
+    r->rest_periods = 0;
+    place(r, here);
+}
+
+__attribute__((noinline)) static void begin_next_segment(struct reference *r)
+{
+    const struct motion_plan *continuation = r->continuation;
+    const struct motion_segment *segment;
+
+    if (r->stop_requested) { /* here too: segments of one period leave no other place */
+        r->stop_requested = false;
+        r->epoch++;
+    }
+    if (r->segment == r->plan->handover && continuation != NULL) {
+        r->continuation = NULL;
+        r->plan = continuation;
+        r->segment = 0;
+    }
+    if (r->segment == 0u) {
+        r->at.speed += r->plan->speed_jump;
+    }
+    if (r->segment == r->plan->segments) {
+        if (!r->plan->endless) {
+            rest_behind_plan(r);
+            return;
+        }
+        r->segment--;
+    }
+    segment = &r->plan->segment[r->segment++];
+    begin(r, REFERENCE_PLANNED, segment->periods, segment->acceleration);
+    r->jerk_sixth = segment->jerk_sixth;
+    r->jerk = 2 * segment->jerk_sixth + 4 * segment->jerk_sixth; /* no library call on a M0+ */
+}
+
+/* Begins the first phase of the profile behind the one that has ended which has a length. */
+static inline __attribute__((always_inline)) void begin_next_phase_of_profile(struct reference *r)
 {
     const struct profile *profile = r->profile;
     const enum reference_phase ended = r->phase;
@@ -156,7 +208,7 @@ static void begin_next_phase(struct reference *r)
     const bool smooth = profile->jerk_periods > 0u;
 
     if (ended < REFERENCE_JERK_TO_ACCELERATE && smooth) {
-        r->acceleration = 0;
+        r->at.acceleration = 0;
         begin_jerk(r, REFERENCE_JERK_TO_ACCELERATE, profile->jerk, profile->jerk_sixth);
     } else if (ended < REFERENCE_ACCELERATE && ramped) {
         begin(r, REFERENCE_ACCELERATE, profile->acceleration_periods, profile->acceleration);
@@ -172,6 +224,59 @@ static void begin_next_phase(struct reference *r)
         begin_jerk(r, REFERENCE_JERK_TO_REST, profile->jerk, profile->jerk_sixth);
     } else {
         come_to_rest(r);
+    }
+}
+
+/* In place: the interrupt has no cycles to spare for a call where a phase of a profile begins. */
+static inline __attribute__((always_inline)) void begin_next_phase(struct reference *r)
+{
+    if (r->phase == REFERENCE_PLANNED) {
+        begin_next_segment(r);
+    } else {
+        begin_next_phase_of_profile(r);
+    }
+}
+
+bool reference_take_over(struct reference *r, const struct motion_plan *plan)
+{
+    const struct motion_state *from = &plan->from;
+
+    if (plan->epoch != r->epoch || r->stop_requested || from->turns != r->at.turns ||
+        from->fraction != r->at.fraction || from->speed != r->at.speed ||
+        from->acceleration != r->at.acceleration) {
+        return false;
+    }
+    r->plan = plan;
+    r->segment = 0;
+    r->continuation = NULL;
+    r->phase = REFERENCE_PLANNED;
+    r->periods_left = r->periods_left > 0u ? 1u : 0u;
+    return true;
+}
+
+void reference_continue(struct reference *r, const struct motion_plan *continuation)
+{
+    atomic_signal_fence(memory_order_release);
+    r->continuation = continuation;
+}
+
+void reference_skip(struct reference *r, uint32_t periods)
+{
+    while (periods > 0u && r->phase != REFERENCE_REST) {
+        const uint32_t run = r->periods_left < periods ? r->periods_left : periods;
+
+        if (run > 0u) {
+            motion_run(&r->at, r->jerk_sixth, run);
+            r->periods_left -= run;
+            periods -= run;
+        } else {
+            periods--;
+        }
+        if (r->phase == REFERENCE_QUEUED) {
+            r->phase = REFERENCE_LOADED;
+        } else if (r->periods_left == 0u) {
+            begin_next_phase(r);
+        }
     }
 }
 

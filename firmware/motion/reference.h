@@ -1,10 +1,11 @@
 /*
- * Reference generator: samples a planned profile once per control period.
+ * Reference generator: samples a planned motion once per control period.
  *
  *   x += v + a/2 + j/6,   v += a + j/2,   a += j        exact for piecewise constant jerk
  *
  * in 64-bit integers of 2^-64 electrical turn per period^n (profile.h makes the halves and sixths
- * exact). Additions only; the same bits in every number format.
+ * exact). Additions only; the same bits in every number format. It executes profiles, which it can
+ * cut short by itself, and plans (motion_plan.h), which the background makes, continues and stops.
  *
  * The drive computes at S(k) what acts from S(k+1) on, so each step gives the reference of S(k+1).
  * A profile loaded at S(k) begins at S(k+2): loading it and beginning its first phase are spread
@@ -15,21 +16,25 @@
 #ifndef STEADYSTEP_REFERENCE_H
 #define STEADYSTEP_REFERENCE_H
 
+#include "firmware/motion/motion_plan.h"
 #include "firmware/motion/profile.h"
 #include "firmware/motor/per_unit.h"
+
+#define REFERENCE_JERK_SHIFT 22
 
 /* Per-unit scales of what a sample shows. */
 struct reference_params {
     coef_t speed;           /* per turn/period */
     coef_t speed_remainder; /* what a coef_t of 16 bits leaves of it */
     coef_t acceleration;    /* per 2^-6 turn/period^2 */
+    coef_t jerk;            /* per 2^-10 turn/period^3 */
 };
 
 struct reference_sample {
     struct position position; /* electrical */
     num_t speed;              /* per-unit */
     num_t acceleration;       /* per-unit, torque base over inertia */
-    bool moving;              /* within a profile */
+    bool moving;              /* within a profile or plan */
 };
 
 /* Phases of a profile, in order; those of no length are passed over. */
@@ -43,6 +48,7 @@ enum reference_phase {
     REFERENCE_JERK_TO_DECELERATE,
     REFERENCE_DECELERATE,
     REFERENCE_JERK_TO_REST,
+    REFERENCE_PLANNED, /* within a plan */
     REFERENCE_REST
 };
 
@@ -55,16 +61,35 @@ struct reference {
     enum reference_phase phase;
     uint32_t periods_left; /* of the phase */
     bool stop_requested;
-    bool stopped; /* comes to rest where it may, not at the target */
-    int32_t turns;
-    uint64_t fraction;
-    int64_t speed;
-    int64_t acceleration;
+    bool stopped;           /* comes to rest where it may, not at the target */
+    struct motion_state at; /* S(k+1) */
     int64_t jerk;
     int64_t jerk_sixth;
+
+    const struct motion_plan *plan; /* the one taken over last */
+    uint32_t segment;               /* of the plan: how many have begun */
+    uint32_t epoch;                 /* counts resets and stops of plans: older plans are void */
+    const struct motion_plan *volatile continuation; /* NULL: has not come */
 };
 
 struct reference_params reference_design(const struct per_unit *base, double period_s);
+
+/*
+ * Change of the per-unit acceleration in a control period, from S(k+1) on. The range is 2^-11 turn
+ * per period^3 (61e6 rad/s^3 at 10 kHz and 50 teeth); it saturates beyond. Zero where the
+ * acceleration jumps. Not part of the sample: only the laws that use it pay for it.
+ */
+static inline num_t reference_jerk(const struct reference *reference,
+                                   const struct reference_params *params)
+{
+    /* 2^-42 turn in 32 bits */
+    const int64_t jerk = reference->jerk >> REFERENCE_JERK_SHIFT;
+    const int32_t limited = jerk > INT32_MAX    ? INT32_MAX
+                            : jerk < -INT32_MAX ? -INT32_MAX
+                                                : (int32_t)jerk;
+
+    return num_mul_coef(turns_from_angle(limited), params->jerk);
+}
 
 /* At rest at a position. */
 void reference_reset(struct reference *reference, struct position position);
@@ -83,9 +108,28 @@ static inline bool reference_busy(const struct reference *reference)
 bool reference_load(struct reference *reference, struct profile *profile);
 
 /*
+ * Takes a plan over whatever it does: the first segment begins at S(k+1). The plan must live until
+ * another one is taken over. Refused (false) if a reset or a stop came in between or the reference
+ * is not where the plan takes over: nothing has happened then, and the background plans again.
+ */
+bool reference_take_over(struct reference *reference, const struct motion_plan *plan);
+
+/*
+ * Background: offers the continuation of the plan in force, or withdraws it (NULL). The interrupt
+ * takes it where that plan hands over, and never again after that: it can pre-empt this at any
+ * instant and sees either none or all of the continuation, because a barrier keeps the compiler
+ * from writing the pointer before what it points to, and on one core nothing else could.
+ */
+void reference_continue(struct reference *reference, const struct motion_plan *continuation);
+
+/* Background, on a copy: what the reference will be `periods` later if nobody intervenes. */
+void reference_skip(struct reference *copy, uint32_t periods);
+
+/*
  * Comes to rest as soon as the ramps of the profile allow: with its own acceleration and jerk,
  * without a step of position or speed. Nothing happens at rest or while it decelerates already; a
- * profile that has not begun is dropped.
+ * profile that has not begun is dropped. A plan goes on, in a new epoch: its stop is planned by the
+ * background.
  */
 void reference_stop(struct reference *reference);
 

@@ -8,15 +8,17 @@ struct motor_model_params motor_model_design(const struct motor_params *motor,
     const double nominal = (motor->resistance_ohm + bridge_resistance_ohm) / base->resistance_ohm;
     const double radians = base->turns_per_period * 6.283185307179586476925;
     const double x = rate * nominal; /* T R/L */
+    const double y = period_s * motor->viscous_friction_Nms_rad / motor->inertia_kgm2;
     struct motor_model_params params;
 
     params.rate = coef_from_double(rate);
     params.emf_droop = coef_from_double(radians * radians / 24.0);
-    params.speed_per_torque =
-        coef_from_double(period_s * base->acceleration_rad_s2 / base->speed_rad_s);
+    params.speed_per_torque = coef_from_double(period_s * (1.0 - y * (1.0 / 2.0 - y / 6.0)) *
+                                               base->acceleration_rad_s2 / base->speed_rad_s);
     params.friction =
         coef_from_double(motor->viscous_friction_Nms_rad * base->speed_rad_s / base->torque_Nm);
     params.turns_per_speed = coef_from_double(base->turns_per_period);
+    params.half_turns_per_speed = coef_from_double(0.5 * base->turns_per_period);
     params.nominal_resistance = num_from_double(nominal);
     params.nominal_admittance =
         num_from_double(rate * (1.0 - x * (1.0 / 2.0 - x * (1.0 / 6.0 - x / 24.0))));

@@ -5,12 +5,12 @@
  * a = exp(-T R / L):
  *
  *   i+ = a i + (1 - a)/R (u - j Km w (1 - h^2/24) e^(j phi))
- *   w+ = w + T/J (Km i_q - Kv w - T_L),   i_q of the mean of i and i+ in the frame phi
+ *   w+ = w + c T/J (Km i_q - Kv w - T_L),   i_q of the mean of i and i+ in the frame phi
  *   theta+ = theta + T (w + w+)/2
  *
- * The first line is written as i+ = i + b (u - R i - e) with b = (1 - a)/R, so that a calibrated
- * resistance enters in one place; b, of which a change of R by half moves 1 %, is linear about the
- * nominal resistance (off by 7e-5 then).
+ * with c = (1 - exp(-y))/y, y = T Kv/J. The first line is written as i+ = i + b (u - R i - e) with
+ * b = (1 - a)/R, so that a calibrated resistance enters in one place; b, of which a change of R by
+ * half moves 1 %, is linear about the nominal resistance (off by 7e-5 then).
  */
 #ifndef STEADYSTEP_MOTOR_MODEL_H
 #define STEADYSTEP_MOTOR_MODEL_H
@@ -22,9 +22,10 @@
 struct motor_model_params {
     coef_t rate;             /* T/L: current per period and unit of voltage; T R/L per resistance */
     coef_t emf_droop;        /* (N T)^2/24: loss of mean EMF by rotation within the period */
-    coef_t speed_per_torque; /* T/J */
+    coef_t speed_per_torque; /* c T/J */
     coef_t friction;         /* Kv: torque per speed */
     coef_t turns_per_speed;  /* N T/(2 pi): electrical turns per period and unit of speed */
+    coef_t half_turns_per_speed;      /* the same in half a period */
     coef_t admittance_per_resistance; /* -db/dR at the nominal resistance */
     num_t nominal_admittance;
     num_t nominal_resistance;
@@ -56,7 +57,7 @@ void winding_set_resistance(struct winding *winding, const struct motor_model_pa
 /* Electrical angle by which a rotor at this speed turns in half a period, below an eighth turn. */
 static inline int32_t half_period_rotation(const struct motor_model_params *params, num_t speed)
 {
-    return angle_from_turns(num_half(num_mul_coef(speed, params->turns_per_speed)));
+    return angle_from_turns(num_mul_coef(speed, params->half_turns_per_speed));
 }
 
 /* Phase currents one period on if no voltage acted: decay and back-EMF. */
@@ -90,7 +91,7 @@ static inline void predict_rotor(const struct motor_model_params *params, struct
 {
     num_t torque = i_q - num_mul_coef(rotor->speed, params->friction) - rotor->load_torque;
     num_t speed = rotor->speed + num_mul_coef(torque, params->speed_per_torque);
-    num_t turns = num_mul_coef(num_half(rotor->speed + speed), params->turns_per_speed);
+    num_t turns = num_mul_coef(rotor->speed + speed, params->half_turns_per_speed);
 
     rotor->position = position_add(rotor->position, angle_from_turns(turns));
     rotor->speed = speed;

@@ -22,30 +22,31 @@ struct position {
 /* Largest difference of positions that position_difference tells apart, electrical turns. */
 #define POSITION_DIFFERENCE_MAX 15.0
 
+/* Both parts as one number, in 2^-32 turn; wraps as the turns do. */
+static inline uint64_t angle_of_position(struct position p)
+{
+    return ((uint64_t)(uint32_t)p.turns << 32) | p.fraction;
+}
+
 /* Adds a signed angle of less than half a turn, in 2^-32 turn. */
 static inline struct position position_add(struct position p, int32_t angle)
 {
-    angle_t fraction = p.fraction + (uint32_t)angle;
-    int32_t carry =
-        (angle < 0) ? -(int32_t)(fraction > p.fraction) : (int32_t)(fraction < p.fraction);
+    const uint64_t sum = angle_of_position(p) + (uint64_t)(int64_t)angle;
+    const struct position moved = {(int32_t)(uint32_t)(sum >> 32), (angle_t)sum};
 
-    p.turns = (int32_t)((uint32_t)p.turns + (uint32_t)carry);
-    p.fraction = fraction;
-    return p;
+    return moved;
 }
 
 /* a - b in electrical turns, saturated at +-POSITION_DIFFERENCE_MAX. */
 static inline num_t position_difference(struct position a, struct position b)
 {
     const int32_t limit = (int32_t)POSITION_DIFFERENCE_MAX;
-    const int64_t turns = (int32_t)((uint32_t)a.turns - (uint32_t)b.turns);
-    int64_t difference = turns * ((int64_t)1 << 32) + a.fraction - b.fraction;
+    int64_t difference = (int64_t)(angle_of_position(a) - angle_of_position(b));
     const int32_t whole = (int32_t)(difference >> 32);
 
-    if (whole >= limit) {
-        difference = (int64_t)limit << 32;
-    } else if (whole < -limit) {
-        difference = -((int64_t)limit << 32);
+    /* One comparison: what is below -limit wraps to a large number. */
+    if ((uint32_t)whole + (uint32_t)limit >= 2u * (uint32_t)limit) {
+        difference = (whole < 0 ? -(int64_t)limit : (int64_t)limit) * ((int64_t)1 << 32);
     }
 #if STEADYSTEP_NUM == NUM_FIXED
     return (num_t)(difference >> (32 - NUM_FRACTION_BITS));
@@ -63,7 +64,7 @@ static inline num_t turns_from_angle(int32_t angle)
 #if STEADYSTEP_NUM == NUM_FIXED
     return angle >> (32 - NUM_FRACTION_BITS);
 #else
-    return (num_t)angle * NUM(1.0 / 4294967296.0);
+    return num_from_2_32(angle);
 #endif
 }
 
@@ -73,7 +74,7 @@ static inline int32_t angle_from_turns(num_t turns)
 #if STEADYSTEP_NUM == NUM_FIXED
     return num_shift_left(turns, 32 - NUM_FRACTION_BITS);
 #else
-    return num_to_int32(turns * NUM(4294967296.0));
+    return num_to_2_32(turns);
 #endif
 }
 

@@ -125,10 +125,10 @@ static inline num_t num_from_code(int32_t code, coef_t k)
 /* The gain of num_from_code is stated per code; this is the factor hidden in the format. */
 #define NUM_CODE_SCALE 65536.0
 
-/* middle + a k as a whole number of timer counts, rounded to nearest where it is positive. */
-static inline int32_t counts_from_num(num_t a, coef_t k, int32_t middle)
+/* a k as a whole number of timer counts, rounded to nearest. */
+static inline int32_t counts_from_num(num_t a, coef_t k)
 {
-    return middle + ((num_mul_coef(a, k) + (1 << 9)) >> 10);
+    return (num_mul_coef(a, k) + (1 << 9)) >> 10;
 }
 
 /* The gain of counts_from_num is stated in counts; this is the factor hidden in the format. */
@@ -224,9 +224,60 @@ static inline int32_t num_to_int32(num_t a)
 #endif
 }
 
-static inline int32_t counts_from_num(num_t a, coef_t k, int32_t middle)
+/*
+ * Fractions in 2^-32 of one, the same rounding and saturation. The Cortex-M4 scales by a power of
+ * two as it converts; gcc finds that instruction only where the factor is not shared.
+ */
+static inline int32_t num_to_2_32(num_t a)
 {
-    return num_to_int32(a * k + ((num_t)middle + NUM(0.5)));
+#if defined(__ARM_FP) && STEADYSTEP_NUM == NUM_FLOAT
+    union {
+        num_t number;
+        int32_t whole;
+    } x = {.number = a};
+
+    __asm__("vcvt.s32.f32 %0, %0, #32" : "+t"(x.number));
+    return x.whole;
+#else
+    return num_to_int32(a * NUM(4294967296.0));
+#endif
+}
+
+static inline num_t num_from_2_32(int32_t a)
+{
+#if defined(__ARM_FP) && STEADYSTEP_NUM == NUM_FLOAT
+    num_t x;
+
+    __asm__("vcvt.f32.s32 %0, %0, #32" : "=t"(x) : "0"(a));
+    return x;
+#else
+    return (num_t)a * NUM(1.0 / 4294967296.0);
+#endif
+}
+
+/* To nearest, a half to the even number; saturated, a NaN to zero. */
+static inline int32_t num_to_nearest(num_t a)
+{
+#if defined(__ARM_FP) && STEADYSTEP_NUM == NUM_FLOAT
+    int32_t whole;
+
+    __asm__("vcvtr.s32.f32 %0, %1" : "=t"(whole) : "t"(a));
+    return whole;
+#else
+    const int32_t whole = num_to_int32(a);
+    const num_t rest = NUM_ABS(a - (num_t)whole);
+
+    /* A number of 2^23 and more has no fraction in float. */
+    if (!(NUM_ABS(a) < NUM(8388608.0)) || rest < NUM(0.5) || (rest == NUM(0.5) && whole % 2 == 0)) {
+        return whole;
+    }
+    return a < NUM(0.0) ? whole - 1 : whole + 1;
+#endif
+}
+
+static inline int32_t counts_from_num(num_t a, coef_t k)
+{
+    return num_to_nearest(a * k);
 }
 
 #define NUM_COUNT_SCALE 1.0
@@ -241,11 +292,16 @@ static inline num_t num_abs(num_t a)
 
 #endif
 
+/* A NaN becomes the lower bound. */
+static inline num_t num_at_least(num_t a, num_t low)
+{
+    return a > low ? a : low;
+}
+
 /* Both comparisons are false for a NaN, which becomes the upper bound: nothing undefined later. */
 static inline num_t num_clamp(num_t a, num_t low, num_t high)
 {
-    a = a < high ? a : high;
-    return a > low ? a : low;
+    return num_at_least(a < high ? a : high, low);
 }
 
 /* -limit...limit, for a limit above zero; a NaN becomes the lower bound. */

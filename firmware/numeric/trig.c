@@ -1,66 +1,98 @@
 #include "firmware/numeric/trig.h"
 
 /*
- * The angle is split into the nearest quarter turn and a rest x in -1...1 eighths of a turn:
- *   sin(x pi/4) = x (s1 + s3 x^2 + s5 x^4 + s7 x^6),  cos(x pi/4) = 1 + c2 x^2 + c4 x^4 + c6 x^6
+ * The angle is split into the nearest 128th of a turn, whose cosine C and sine S the table holds,
+ * and a rest of x turns, |x| <= 1/256:
+ *   s = sin(2 pi x) = x (s1 + s3 x^2),   c = cos(2 pi x) - 1 = c2 x^2
+ *   cos = C + (C c - S s),   sin = S + (S c + C s)
+ * s1 and s3 are the series', c2 has the least largest error, 2.6e-9.
  */
-#define S1 0.7853981525434107
-#define S3 (-0.08074536727538684)
-#define S5 0.0024898719758618126
-#define S7 (-3.587726271097463e-05)
-#define C2 (-0.30842448849618576)
-#define C4 0.015850397631179562
-#define C6 (-0.00031916016887587745)
+#define STEP_BITS 25 /* 2^-32 turn in 1/128 turn */
+#define S1        6.283185307179586
+#define S3        (-41.341702240399755)
+#define C2        (-19.738387943505494)
+
+/* The first quarter turn; the others are this one turned, so that the symmetries are exact. */
+#define QUARTER_TURN(P)                                                                            \
+    P(1.0, 0.0)                                                                                    \
+    P(0.9987954562051724, 0.049067674327418015)                                                    \
+    P(0.9951847266721969, 0.0980171403295606)                                                      \
+    P(0.989176509964781, 0.14673047445536175)                                                      \
+    P(0.9807852804032304, 0.19509032201612825)                                                     \
+    P(0.970031253194544, 0.24298017990326387)                                                      \
+    P(0.9569403357322088, 0.29028467725446233)                                                     \
+    P(0.9415440651830208, 0.33688985339222005)                                                     \
+    P(0.9238795325112867, 0.3826834323650898)                                                      \
+    P(0.9039892931234433, 0.4275550934302821)                                                      \
+    P(0.881921264348355, 0.47139673682599764)                                                      \
+    P(0.8577286100002721, 0.5141027441932217)                                                      \
+    P(0.8314696123025452, 0.5555702330196022)                                                      \
+    P(0.8032075314806449, 0.5956993044924334)                                                      \
+    P(0.773010453362737, 0.6343932841636455)                                                       \
+    P(0.7409511253549591, 0.6715589548470183)                                                      \
+    P(0.7071067811865476, 0.7071067811865475)                                                      \
+    P(0.6715589548470183, 0.7409511253549591)                                                      \
+    P(0.6343932841636455, 0.773010453362737)                                                       \
+    P(0.5956993044924335, 0.8032075314806448)                                                      \
+    P(0.5555702330196023, 0.8314696123025452)                                                      \
+    P(0.5141027441932217, 0.8577286100002721)                                                      \
+    P(0.4713967368259978, 0.8819212643483549)                                                      \
+    P(0.4275550934302822, 0.9039892931234433)                                                      \
+    P(0.38268343236508984, 0.9238795325112867)                                                     \
+    P(0.33688985339222005, 0.9415440651830208)                                                     \
+    P(0.29028467725446233, 0.9569403357322089)                                                     \
+    P(0.24298017990326398, 0.970031253194544)                                                      \
+    P(0.19509032201612833, 0.9807852804032304)                                                     \
+    P(0.14673047445536175, 0.989176509964781)                                                      \
+    P(0.09801714032956077, 0.9951847266721968)                                                     \
+    P(0.049067674327418126, 0.9987954562051724)
+
+#define FIRST(c, s)  {UNIT(c), UNIT(s)},
+#define SECOND(c, s) {UNIT(-(s)), UNIT(c)},
+#define THIRD(c, s)  {UNIT(-(c)), UNIT(-(s))},
+#define FOURTH(c, s) {UNIT(s), UNIT(-(c))},
+
+static const struct sincos table[] = {QUARTER_TURN(FIRST) QUARTER_TURN(SECOND) QUARTER_TURN(THIRD)
+                                          QUARTER_TURN(FOURTH)};
 
 #if STEADYSTEP_NUM == NUM_FIXED
 
-/* A coefficient with as many fraction bits as its 16-bit product with x^2 leaves room for. */
+/* A coefficient for x in 2^-23 turn, which is 16 bits; the cube is below half a bit. */
 #define Q(x, bits) ((int32_t)((x) * (double)(1 << (bits)) + ((x) < 0 ? -0.5 : 0.5)))
 
-struct sincos sincos_of_small(int32_t angle)
+static struct sincos turn_on(struct sincos from, int32_t rest)
 {
-    int32_t x = (angle + (1 << 13)) >> 14;
-    int32_t x2 = (x * x) >> 15;
-    int32_t sine = Q(S5, 22) + ((Q(S7, 27) * x2) >> 20);
-    int32_t cosine = Q(C4, 20) + (((Q(C6, 24) * x2) >> 15) >> 4);
-    struct sincos r;
+    const int32_t x = rest >> 9;
+    const int32_t s = (x * Q(S1 / 256.0, 20)) >> 15;
+    const int32_t c = (((x * x) >> 15) * Q(C2 / 65536.0, 20)) >> 15;
+    const int32_t half = 1 << 19;
+    const struct sincos to = {from.cos + ((from.cos * c - from.sin * s + half) >> 20),
+                              from.sin + ((from.sin * c + from.cos * s + half) >> 20)};
 
-    sine = Q(S3, 18) + (((sine * x2) >> 15) >> 4);
-    sine = Q(S1, 16) + (((sine * x2) >> 15) >> 2);
-    cosine = Q(C2, 17) + (((cosine * x2) >> 15) >> 3);
-    r.sin = (x * sine + (1 << 15)) >> 16;
-    r.cos = UNIT(1.0) + ((x2 * cosine + (1 << 16)) >> 17);
-    return r;
+    return to;
 }
 
 #else
 
-struct sincos sincos_of_small(int32_t angle)
+static struct sincos turn_on(struct sincos from, int32_t rest)
 {
-    num_t x = (num_t)angle * NUM(1.0 / 536870912.0);
-    num_t x2 = x * x;
-    struct sincos r;
+    const num_t x = num_from_2_32(rest);
+    const num_t x2 = x * x;
+    const num_t s = x * (NUM(S1) + x2 * NUM(S3));
+    const num_t c = x2 * NUM(C2);
+    const struct sincos to = {from.cos + (from.cos * c - from.sin * s),
+                              from.sin + (from.sin * c + from.cos * s)};
 
-    r.sin = x * (NUM(S1) + x2 * (NUM(S3) + x2 * (NUM(S5) + x2 * NUM(S7))));
-    r.cos = NUM(1.0) + x2 * (NUM(C2) + x2 * (NUM(C4) + x2 * NUM(C6)));
-    return r;
+    return to;
 }
 
 #endif
 
 struct sincos sincos_of(angle_t angle)
 {
-    uint32_t quarter = (angle + (1u << 29)) >> 30;
-    struct sincos r = sincos_of_small((int32_t)(angle - (quarter << 30)));
+    const uint32_t step = (angle + (1u << (STEP_BITS - 1))) >> STEP_BITS;
 
-    if ((quarter & 1u) != 0u) {
-        unit_t cosine = r.cos;
-        r.cos = -r.sin;
-        r.sin = cosine;
-    }
-    if ((quarter & 2u) != 0u) {
-        r.cos = -r.cos;
-        r.sin = -r.sin;
-    }
-    return r;
+    const int32_t rest = (int32_t)(angle << (32 - STEP_BITS)) >> (32 - STEP_BITS);
+
+    return turn_on(table[step], rest);
 }

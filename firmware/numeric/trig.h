@@ -1,4 +1,4 @@
-/* Sine and cosine of an electrical angle; the same polynomials in every number format. */
+/* Sine and cosine of an electrical angle; the same table and series in every number format. */
 #ifndef STEADYSTEP_TRIG_H
 #define STEADYSTEP_TRIG_H
 
@@ -11,14 +11,10 @@ struct sincos {
 
 /*
  * Error below 1.3e-7 in floating point, 1e-4 in fixed point; exact at multiples of a quarter turn.
- * Least-maximum polynomials over an eighth of a turn, fitted by reweighted least squares.
  */
 struct sincos sincos_of(angle_t angle);
 
-/* The same for an angle within an eighth of a turn of zero: the polynomials alone. */
-struct sincos sincos_of_small(int32_t angle);
-
-/* The sum of two angles: four products instead of another pair of polynomials. */
+/* The sum of two angles: four products instead of another look-up. */
 static inline struct sincos sincos_add(struct sincos x, struct sincos y)
 {
     const struct sincos sum = {unit_mul(x.cos, y.cos) - unit_mul(x.sin, y.sin),

@@ -25,6 +25,24 @@ static uint64_t hash_coefs(uint64_t hash, const coef_t *coefs, size_t bytes)
     hash_coefs(hash, &(object).first,                                                              \
                (size_t)((const char *)(&(object).last + 1) - (const char *)&(object).first))
 
+/* A law's constants are coef_t and num_t, without a gap. */
+static uint64_t hash_law(uint64_t hash, const struct drive_params *p)
+{
+    const uint8_t *byte = (const uint8_t *)&p->law;
+    size_t bytes = 0;
+
+#define LAW_BYTES(constant, function, text)                                                        \
+    if (p->position_law == POSITION_LAW_##constant) {                                              \
+        bytes = sizeof p->law.function;                                                            \
+    }
+    POSITION_LAWS(LAW_BYTES)
+#undef LAW_BYTES
+    for (size_t i = 0; i < bytes; i++) {
+        hash = fnv1a(hash, byte[i]);
+    }
+    return hash;
+}
+
 /* Every gain of the design, once. */
 static uint64_t hash_gains(uint64_t hash, const struct drive_params *p)
 {
@@ -34,8 +52,10 @@ static uint64_t hash_gains(uint64_t hash, const struct drive_params *p)
     hash = HASH_RANGE(hash, p->estimator.invariant.holding, current, resistance);
     hash = HASH_RANGE(hash, p->estimator.invariant.following, current, resistance);
     hash = HASH_RANGE(hash, p->estimator.steady_state, rotation, gain_load);
-    hash = HASH_RANGE(hash, p->reference, speed, acceleration);
-    hash = HASH_RANGE(hash, p->law, position, reference_friction);
+    hash = HASH_RANGE(hash, p->reference, speed, jerk);
+    hash = HASH_RANGE(hash, p->estimator.encoder, gain_angle, gain_resistance);
+    hash = HASH_RANGE(hash, p->estimator.high_gain, transition[0][0], acceleration_per_turn);
+    hash = hash_law(hash, p);
     hash = HASH_RANGE(hash, p->current_control, proportional, reactance);
     hash = fnv1a(hash, coef_bits(p->hold.damping));
     return fnv1a(hash, coef_bits(p->modulator.counts));
@@ -81,12 +101,26 @@ static struct hal_outputs image_control_cycle(void *drive, const struct hal_samp
     return outputs;
 }
 
+static const char *image_law_gain(enum position_law law, size_t gain)
+{
+    const struct law_gain_list list = position_law_gains(law);
+
+    return gain < list.count ? list.gain[gain].name : NULL;
+}
+
 static bool image_command(void *drive, const struct drive_command *command,
                           char error[DRIVE_ERROR_TEXT])
 {
     struct instance *self = drive;
 
     return drive_command(&self->drive, command, error);
+}
+
+static void image_background(void *drive)
+{
+    struct instance *self = drive;
+
+    drive_background(&self->drive);
 }
 
 static void image_signals(const void *drive, struct drive_signals *signals)
@@ -115,7 +149,9 @@ EXPORTED const struct firmware_image IMAGE_OF(NUM_FORMAT) = {
     .drive_bytes = sizeof(struct instance),
     .init = image_init,
     .control_cycle = image_control_cycle,
+    .law_gain = image_law_gain,
     .command = image_command,
+    .background = image_background,
     .signals = image_signals,
     .hash = image_hash,
 };

@@ -22,8 +22,13 @@ struct firmware_image {
                  char error[DRIVE_ERROR_TEXT]);
     /* The control interrupt. */
     struct hal_outputs (*control_cycle)(void *drive, const struct hal_samples *samples);
+    /* The gains that a law can be given by name, in the order of drive_settings.law_gains: the name
+       of number `gain`, or NULL behind the last. */
+    const char *(*law_gain)(enum position_law law, size_t gain);
     /* Posts a command (background). false: refused, reason in error. */
     bool (*command)(void *drive, const struct drive_command *command, char error[DRIVE_ERROR_TEXT]);
+    /* What the application's loop does (background); once after each control interrupt. */
+    void (*background)(void *drive);
     void (*signals)(const void *drive, struct drive_signals *signals);
     /* drive_hash so far: gains once, then duties and signals of every period (FNV-1a, 64 bit). */
     uint64_t (*hash)(const void *drive);

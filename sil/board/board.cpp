@@ -19,27 +19,35 @@ hal_facts facts_of(const plant::Config &config)
     facts.board_name = "steadystep SIL board";
     facts.control_period_s = config.bridge.period_s;
     facts.pwm_half_period_counts = static_cast<std::uint32_t>(config.bridge.half_period_counts);
-    facts.dead_time_s = config.bridge.dead_time_s;
+    facts.dead_time_s =
+        config.bridge.model == plant::BridgeModel::switched ? config.bridge.dead_time_s : 0.0;
     facts.current_A_per_code = plant::current_A_per_code(config.sensors);
-    facts.current_zero_code = plant::current_zero_code;
+    facts.current_zero_code =
+        static_cast<std::uint16_t>(plant::current_zero_code(config.sensors));
     facts.bus_V_per_code = plant::bus_V_per_code(config.sensors);
     facts.phase_voltage_V_per_code = plant::phase_voltage_V_per_code(config.sensors);
     facts.has_phase_voltages = true;
+    facts.actuation_delay_periods = static_cast<std::uint32_t>(config.bridge.delay_periods);
+    facts.encoder_counts_per_turn =
+        static_cast<std::uint32_t>(config.sensors.encoder_counts_per_turn);
     return facts;
 }
 
 } // namespace
 
 struct Board::Impl {
-    Impl(const plant::Config &config, const firmware_image &firmware, double trip_A)
-        : plant(config), image(firmware), hardware_trip_A(trip_A),
+    Impl(const plant::Config &config, const firmware_image &firmware,
+         const drive_settings &drive_settings, double trip_A)
+        : plant(config), image(firmware), settings(drive_settings), hardware_trip_A(trip_A),
           drive_memory(1 + firmware.drive_bytes / sizeof(std::max_align_t))
     {
     }
 
     plant::Plant plant;
     const firmware_image &image;
+    const drive_settings settings;
     const double hardware_trip_A;
+    std::uint64_t hash_before = 0; /* of the drive before the last power cycle */
     std::vector<std::max_align_t> drive_memory;
     void *drive = drive_memory.data();
     hal_sil hal;
@@ -50,7 +58,7 @@ struct Board::Impl {
 
 Board::Board(const plant::Config &plant, const firmware_image &image,
              const drive_settings &settings, double hardware_trip_A)
-    : impl_(std::make_unique<Impl>(plant, image, hardware_trip_A))
+    : impl_(std::make_unique<Impl>(plant, image, settings, hardware_trip_A))
 {
     if (!(hardware_trip_A >= 0.0)) {
         throw std::invalid_argument("hardware_trip_A: expected 0 (not fitted) or a current");
@@ -65,6 +73,19 @@ Board::Board(const plant::Config &plant, const firmware_image &image,
 }
 
 Board::~Board() = default;
+
+void Board::power_cycle()
+{
+    Impl &board = *impl_;
+    board.hash_before += drive_hash();
+    board.hal.board.bridge_disable(board.hal.board.context);
+    char error[DRIVE_ERROR_TEXT] = "";
+    if (!board.image.init(board.drive, &board.hal.board, &board.settings, error)) {
+        throw std::invalid_argument(error);
+    }
+    board.outputs = {};
+    sample();
+}
 
 void Board::command(const drive_command &command)
 {
@@ -84,6 +105,7 @@ void Board::sample()
     board.samples.bus_voltage = codes.bus_voltage;
     board.samples.phase_voltage_a = codes.phase_voltage_a;
     board.samples.phase_voltage_b = codes.phase_voltage_b;
+    board.samples.encoder_count = codes.encoder_count;
     if (board.hardware_trip_A > 0.0) {
         const plant::State &state = board.plant.state();
         const double limit = board.hardware_trip_A;
@@ -100,6 +122,7 @@ void Board::control()
 {
     Impl &board = *impl_;
     board.outputs = board.image.control_cycle(board.drive, &board.samples);
+    board.image.background(board.drive);
     board.image.signals(board.drive, &board.signals);
 }
 
@@ -123,7 +146,7 @@ const drive_signals &Board::signals() const
 
 std::uint64_t Board::drive_hash() const
 {
-    return impl_->image.hash(impl_->drive);
+    return impl_->hash_before + impl_->image.hash(impl_->drive);
 }
 
 plant::Plant &Board::plant()

@@ -30,6 +30,10 @@ class Board
     /* Posts a command to the drive; throws std::invalid_argument with the drive's text. */
     void command(const drive_command &command);
 
+    /* The supply fails and returns: the drive starts again, bridge off, with the parameter store as
+       it was, while rotor and encoder go on. */
+    void power_cycle();
+
     /* One PWM period: the control interrupt with the samples of the present S(k); signals() and
        plant().state() then both belong to S(k) until advance() takes the plant to S(k+1). */
     void control();

@@ -5,20 +5,26 @@
 namespace plant
 {
 
-Bridge::Bridge(const BridgeConfig &config) : config_(config)
+void require_bridge(const BridgeConfig &config)
 {
     require(config.bus_V > 0.0 && config.bus_V <= 1000.0, "bus_V", config.bus_V, "0...1000 V");
     require(config.period_s >= 1e-7 && config.period_s <= 1e-2, "period_s", config.period_s,
             "1e-7...0.01 s");
     require(config.half_period_counts >= 1 && config.half_period_counts <= 65535,
             "half_period_counts", config.half_period_counts, "1...65535");
-    require(config.dead_time_s >= 0.0 && config.dead_time_s < 0.5 * config.period_s, "dead_time_s",
-            config.dead_time_s, "0 to half a period");
+    const bool dead_time_fits = config.model == BridgeModel::averaged || /* has none */
+                                config.dead_time_s < 0.5 * config.period_s;
+    require(config.dead_time_s >= 0.0 && dead_time_fits, "dead_time_s", config.dead_time_s,
+            "0 to half a period");
     require(config.diode_drop_V >= 0.0 && config.diode_drop_V <= 10.0, "diode_drop_V",
             config.diode_drop_V, "0...10 V");
     require(config.delay_periods == 0 || config.delay_periods == 1, "delay_periods",
             config.delay_periods, "0 or 1");
+}
 
+Bridge::Bridge(const BridgeConfig &config) : config_(config)
+{
+    require_bridge(config);
     count_s_ = config.period_s / (2.0 * config.half_period_counts);
     dead_counts_ = config.dead_time_s / count_s_;
     /* A dead time of whole counts lets coinciding edges coincide in spite of rounding. */

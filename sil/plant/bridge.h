@@ -39,6 +39,8 @@ struct Timetable {
     }
 };
 
+void require_bridge(const BridgeConfig &config); /* throws std::invalid_argument */
+
 class Bridge
 {
   public:

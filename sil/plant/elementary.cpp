@@ -40,6 +40,32 @@ double nearest_whole(double x)
     return static_cast<double>(static_cast<std::int64_t>(clamped + (clamped < 0.0 ? -0.5 : 0.5)));
 }
 
+double falling_exponential(double x)
+{
+    /* x = n ln 2 + r, |r| < 0.35; ln 2 in two parts, the first with 33 bits. */
+    constexpr double ln_2_high = 6.93147180369123816490e-01;
+    constexpr double ln_2_low = 1.90821492927058770002e-10;
+    const double least = -700.0;
+    const double bounded = x > least ? x : least;
+    const double n = nearest_whole(bounded * 1.44269504088896340736);
+    const double r = (bounded - n * ln_2_high) - n * ln_2_low;
+
+    /* Taylor series of the even and the odd part in z = r^2, side by side. */
+    const double z = r * r;
+    Phases sum = {1.0 / 479001600.0, 1.0 / 6227020800.0};
+    sum = sum * z + Phases{1.0 / 3628800.0, 1.0 / 39916800.0};
+    sum = sum * z + Phases{1.0 / 40320.0, 1.0 / 362880.0};
+    sum = sum * z + Phases{1.0 / 720.0, 1.0 / 5040.0};
+    sum = sum * z + Phases{1.0 / 24.0, 1.0 / 120.0};
+    sum = sum * z + Phases{1.0 / 2.0, 1.0 / 6.0};
+    const double exponential = 1.0 + (r + z * (sum[0] + r * sum[1]));
+    const std::uint64_t bits = static_cast<std::uint64_t>(1023 + static_cast<std::int64_t>(n))
+                               << 52;
+    double power = 0.0;
+    std::memcpy(&power, &bits, sizeof power);
+    return exponential * power;
+}
+
 double natural_logarithm(double x)
 {
     /* x = 2^exponent m with m in [sqrt(1/2), sqrt(2)): the exponent field is read from the bits. */

@@ -16,18 +16,7 @@ constexpr double fastest_rate = 1e9; /* 1/s: a runaway motor ends, if not accura
 
 }
 
-Motor::Motor(const MotorConfig &config, double theta_rad, double omega_rad_s, bool track_energy)
-    : track_energy_(track_energy)
-{
-    require(magnitude(theta_rad) <= 1e9, "initial_theta_rad", theta_rad, "-1e9...1e9 rad");
-    require(magnitude(omega_rad_s) <= 1e4, "initial_omega_rad_s", omega_rad_s, "-1e4...1e4 rad/s");
-    set_parameters(config);
-    state_.omega_rad_s = omega_rad_s;
-    state_.electrical_rad = coefficients_.teeth * theta_rad;
-    begin_period();
-}
-
-void Motor::set_parameters(const MotorConfig &config)
+void require_motor(const MotorConfig &config)
 {
     require(config.resistance_ohm >= 0.0 && config.resistance_ohm <= 1e4, "resistance_ohm",
             config.resistance_ohm, "0...1e4 ohm");
@@ -41,6 +30,36 @@ void Motor::set_parameters(const MotorConfig &config)
             config.inertia_kgm2, "1e-9...1e9 kg m^2");
     require(config.rotor_teeth >= 1 && config.rotor_teeth <= 1000, "rotor_teeth",
             config.rotor_teeth, "1...1000");
+}
+
+void require_motion(double theta_rad, double omega_rad_s)
+{
+    require(magnitude(theta_rad) <= 1e9, "initial_theta_rad", theta_rad, "-1e9...1e9 rad");
+    require(magnitude(omega_rad_s) <= 1e4, "initial_omega_rad_s", omega_rad_s, "-1e4...1e4 rad/s");
+}
+
+void wrap(double &electrical_turns, double &electrical_rad)
+{
+    if (magnitude(electrical_rad) > pi) {
+        const double turns = nearest_whole(electrical_rad * (0.5 / pi));
+        electrical_rad -= turns * (2.0 * pi);
+        electrical_turns += turns;
+    }
+}
+
+Motor::Motor(const MotorConfig &config, double theta_rad, double omega_rad_s, bool track_energy)
+    : track_energy_(track_energy)
+{
+    require_motion(theta_rad, omega_rad_s);
+    set_parameters(config);
+    state_.omega_rad_s = omega_rad_s;
+    state_.electrical_rad = coefficients_.teeth * theta_rad;
+    begin_period();
+}
+
+void Motor::set_parameters(const MotorConfig &config)
+{
+    require_motor(config);
     coefficients_.resistance = config.resistance_ohm;
     coefficients_.torque_constant = config.torque_constant_Nm_A;
     coefficients_.friction = config.viscous_friction_Nms_rad;
@@ -68,11 +87,7 @@ void Motor::set_load_torque(double load_torque_Nm)
 void Motor::begin_period()
 {
     const MotorCoefficients &motor = coefficients_;
-    if (magnitude(state_.electrical_rad) > pi) {
-        const double turns = nearest_whole(state_.electrical_rad * (0.5 / pi));
-        state_.electrical_rad -= turns * (2.0 * pi);
-        state_.electrical_turns += turns;
-    }
+    wrap(state_.electrical_turns, state_.electrical_rad);
     state_.q_axis = quarter_turn(unit_vector(state_.electrical_rad));
     integrals_.voltage_Vs = Phases{0.0, 0.0};
 

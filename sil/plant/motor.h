@@ -21,6 +21,13 @@
 namespace plant
 {
 
+/* Throw std::invalid_argument. */
+void require_motor(const MotorConfig &config);
+void require_motion(double theta_rad, double omega_rad_s);
+
+/* Whole turns out of an electrical angle, which stays in -pi...pi. */
+void wrap(double &electrical_turns, double &electrical_rad);
+
 struct MotorState {
     Phases current_A = {0.0, 0.0};
     Phases q_axis = {0.0, 1.0};
@@ -47,6 +54,7 @@ struct MotorCoefficients {
 struct MotorIntegrals {
     Phases voltage_Vs = {0.0, 0.0}; /* since begin_period */
     double supplied_J = 0.0, diode_J = 0.0, copper_J = 0.0, friction_J = 0.0, load_J = 0.0;
+    double coulomb_J = 0.0, source_J = 0.0, brake_J = 0.0; /* of a real motor and its supply */
 };
 
 class Motor
@@ -69,6 +77,14 @@ class Motor
     const MotorIntegrals &integrals() const
     {
         return integrals_;
+    }
+    Phases current_A() const
+    {
+        return state_.current_A;
+    }
+    double omega_rad_s() const
+    {
+        return state_.omega_rad_s;
     }
     double theta_rad() const;
     double torque_Nm() const;

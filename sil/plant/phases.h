@@ -22,6 +22,12 @@ inline Phases quarter_turn(Phases x)
     return __builtin_shufflevector(-x, x, 1, 2);
 }
 
+/* (b, a) */
+inline Phases exchanged(Phases x)
+{
+    return __builtin_shufflevector(x, x, 1, 0);
+}
+
 inline double magnitude(double x)
 {
     return x < 0.0 ? -x : x;

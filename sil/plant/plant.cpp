@@ -1,33 +1,102 @@
 #include "sil/plant/plant.h"
 
+#include <variant>
+
 #include "sil/plant/bridge.h"
 #include "sil/plant/motor.h"
+#include "sil/plant/real_motor.h"
 #include "sil/plant/require.h"
 #include "sil/plant/sensors.h"
 
 namespace plant
 {
 
+namespace
+{
+
+bool any(const ImperfectionConfig &x)
+{
+    return x.saturation_depth != 0.0 || x.flux_harmonic_3 != 0.0 || x.detent_4 != 0.0 ||
+           x.detent_2 != 0.0 || x.detent_1 != 0.0 || x.coulomb_friction != 0.0 ||
+           x.bridge_resistance_ohm != 0.0;
+}
+
+bool is_real(const Config &config)
+{
+    return any(config.imperfections) || config.supply.bus_source_ohm != 0.0;
+}
+
+std::variant<Motor, RealMotor> motor_of(const Config &config)
+{
+    if (is_real(config)) {
+        return RealMotor(config);
+    }
+    return Motor(config.motor, config.initial_theta_rad, config.initial_omega_rad_s,
+                 config.track_energy);
+}
+
+/* A real motor multiplies by the bus voltage and the diodes' drop itself. */
+BridgeConfig bridge_of(const Config &config)
+{
+    require_bridge(config.bridge);
+    BridgeConfig bridge = config.bridge;
+    if (is_real(config)) {
+        bridge.bus_V = 1.0;
+        bridge.diode_drop_V = 1.0;
+    }
+    return bridge;
+}
+
+double bus_of(const Motor &, double source_V)
+{
+    return source_V;
+}
+
+double bus_of(const RealMotor &motor, double)
+{
+    return motor.bus_V();
+}
+
+double capacitor_of(const Motor &)
+{
+    return 0.0;
+}
+
+double capacitor_of(const RealMotor &motor)
+{
+    return motor.capacitor_J();
+}
+
+} // namespace
+
 struct Plant::Parts {
     explicit Parts(const Config &config)
-        : bridge(config.bridge), sensors(config.sensors, config.seed),
-          motor(config.motor, config.initial_theta_rad, config.initial_omega_rad_s,
-                config.track_energy),
-          period_s(config.bridge.period_s), bus_V(config.bridge.bus_V),
-          delayed(config.bridge.delay_periods == 1), track_energy(config.track_energy),
-          magnetic_reference_J(motor.magnetic_J()), kinetic_reference_J(motor.kinetic_J())
+        : bridge(bridge_of(config)), sensors(config.sensors, config.seed), motor(motor_of(config)),
+          period_s(config.bridge.period_s), source_V(config.bridge.bus_V),
+          delayed(config.bridge.delay_periods == 1), track_energy(config.track_energy)
     {
+        std::visit([this](const auto &machine) { take_reference(machine); }, motor);
+    }
+
+    /* The stored energies count from here. */
+    template <typename AnyMotor> void take_reference(const AnyMotor &machine)
+    {
+        magnetic_reference_J = machine.magnetic_J();
+        kinetic_reference_J = machine.kinetic_J();
+        capacitor_reference_J = capacitor_of(machine);
     }
 
     Bridge bridge;
     Sensors sensors;
-    Motor motor;
+    std::variant<Motor, RealMotor> motor;
     const double period_s;
-    const double bus_V;
+    const double source_V;
     const bool delayed;
     const bool track_energy;
-    double magnetic_reference_J; /* where the stored energies count from */
-    double kinetic_reference_J;
+    double magnetic_reference_J = 0.0;
+    double kinetic_reference_J = 0.0;
+    double capacitor_reference_J = 0.0;
+    bool bridge_on = false;   /* in the period that ends at the present S(k) */
     Duties pending;           /* computed from S(k-1), in force from S(k) on */
     std::uint64_t period = 0; /* k of the present S(k) */
 };
@@ -45,9 +114,15 @@ void Plant::step(const Duties &duties)
     Duties in_force = plant.delayed ? plant.pending : duties;
     in_force.bridge_on = in_force.bridge_on && duties.bridge_on; /* off acts at once */
     plant.pending = duties;
+    plant.bridge_on = in_force.bridge_on;
 
-    plant.motor.begin_period();
-    plant.motor.advance(plant.bridge.period(in_force));
+    const Timetable &timetable = plant.bridge.period(in_force);
+    std::visit(
+        [&timetable](auto &motor) {
+            motor.begin_period();
+            motor.advance(timetable);
+        },
+        plant.motor);
     plant.period++;
     observe();
 }
@@ -56,19 +131,26 @@ void Plant::step(const Duties &duties)
 void Plant::observe()
 {
     const Parts &plant = *parts_;
-    const Motor &motor = plant.motor;
+    std::visit([this](const auto &motor) { observe(motor); }, plant.motor);
+    samples_ = plant.sensors.sample(plant.period, {Phases{state_.i_a_A, state_.i_b_A},
+                                                   Phases{state_.u_a_V, state_.u_b_V}, state_.bus_V,
+                                                   state_.theta_rad, plant.bridge_on});
+}
+
+template <typename AnyMotor> void Plant::observe(const AnyMotor &motor)
+{
+    const Parts &plant = *parts_;
     const MotorIntegrals &integrals = motor.integrals();
     const Phases mean_V = integrals.voltage_Vs * (1.0 / plant.period_s);
-    const Phases current_A = motor.state().current_A;
+    const Phases current_A = motor.current_A();
     state_.theta_rad = motor.theta_rad();
-    state_.omega_rad_s = motor.state().omega_rad_s;
+    state_.omega_rad_s = motor.omega_rad_s();
     state_.i_a_A = current_A[0];
     state_.i_b_A = current_A[1];
     state_.u_a_V = mean_V[0];
     state_.u_b_V = mean_V[1];
     state_.torque_Nm = motor.torque_Nm();
-    state_.bus_V = plant.bus_V;
-    samples_ = plant.sensors.sample(plant.period, current_A, mean_V, plant.bus_V);
+    state_.bus_V = bus_of(motor, plant.source_V);
     if (plant.track_energy) {
         energy_.supplied = integrals.supplied_J;
         energy_.copper = integrals.copper_J;
@@ -77,27 +159,36 @@ void Plant::observe()
         energy_.friction = integrals.friction_J;
         energy_.load = integrals.load_J;
         energy_.diode = integrals.diode_J;
+        energy_.coulomb = integrals.coulomb_J;
+        energy_.source = integrals.source_J;
+        energy_.brake = integrals.brake_J;
+        energy_.capacitor = capacitor_of(motor) - plant.capacitor_reference_J;
     }
 }
 
 void Plant::set_load_torque(double load_torque_Nm)
 {
     require(magnitude(load_torque_Nm) <= 1e3, "load_torque_Nm", load_torque_Nm, "-1000...1000 N m");
-    parts_->motor.set_load_torque(load_torque_Nm);
+    std::visit([load_torque_Nm](auto &motor) { motor.set_load_torque(load_torque_Nm); },
+               parts_->motor);
     state_.load_torque_Nm = load_torque_Nm;
 }
 
 /* Energy that a change of L or J adds to what is stored came from nowhere: it is not counted. */
-void Plant::set_motor(const MotorConfig &motor)
+void Plant::set_motor(const MotorConfig &config)
 {
     Parts &plant = *parts_;
-    plant.magnetic_reference_J -= plant.motor.magnetic_J();
-    plant.kinetic_reference_J -= plant.motor.kinetic_J();
-    plant.motor.set_parameters(motor);
-    plant.magnetic_reference_J += plant.motor.magnetic_J();
-    plant.kinetic_reference_J += plant.motor.kinetic_J();
-    state_.theta_rad = plant.motor.theta_rad();
-    state_.torque_Nm = plant.motor.torque_Nm();
+    std::visit(
+        [&](auto &motor) {
+            plant.magnetic_reference_J -= motor.magnetic_J();
+            plant.kinetic_reference_J -= motor.kinetic_J();
+            motor.set_parameters(config);
+            plant.magnetic_reference_J += motor.magnetic_J();
+            plant.kinetic_reference_J += motor.kinetic_J();
+            state_.theta_rad = motor.theta_rad();
+            state_.torque_Nm = motor.torque_Nm();
+        },
+        plant.motor);
 }
 
 } // namespace plant

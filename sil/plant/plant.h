@@ -27,6 +27,27 @@ struct MotorConfig {
     int rotor_teeth = 0;
 };
 
+/* What a real motor has beyond its six parameters; all 0: the plain equations. Shares are of the
+   holding torque, sqrt 2 x torque constant x rated current. Equations: magnetics.h, real_motor.h.
+ */
+struct ImperfectionConfig {
+    double rated_current_A = 0;  /* needed by every share */
+    double saturation_depth = 0; /* fall of the incremental inductance of a phase from the
+                                    unsaturated one, with magnet and rated current aligned */
+    double flux_harmonic_3 = 0;  /* third harmonic of the back-EMF / its fundamental */
+    double detent_4 = 0, detent_2 = 0, detent_1 = 0; /* shares; of period 4, 2, 1 per tooth */
+    double coulomb_friction = 0;                     /* share; sticks at rest */
+    double bridge_resistance_ohm = 0; /* both conducting switches, in series with each phase */
+};
+
+/* The bus: a source that cannot take current back, a capacitor, a brake resistor. */
+struct SupplyConfig {
+    double bus_source_ohm = 0;         /* 0: a stiff source, nothing of the rest */
+    double bus_capacitance_F = 470e-6; /* bus_source_ohm x bus_capacitance_F: 1e-6...1 s */
+    double brake_ohm = 0;              /* 0: not fitted */
+    double brake_V = 30.0;             /* connects it; below 98 % of this it is off again */
+};
+
 struct BridgeConfig {
     BridgeModel model = BridgeModel::switched;
     double bus_V = 24.0;
@@ -38,20 +59,31 @@ struct BridgeConfig {
 };
 
 struct SensorConfig {
-    bool exact = false;           /* true: no noise and no offset; codes stay 12 bit */
-    double current_range_A = 6.0; /* +- full scale, 12 bit */
+    bool exact = false;           /* true: no noise, no offset, and codes of 16 bits, not 12 */
+    double current_range_A = 6.0; /* +- full scale */
     double current_noise_rms_A = 3e-3;
     double current_offset_a_A = 0.0;
     double current_offset_b_A = 0.0;
-    double phase_voltage_range_V = 31.2; /* +- full scale, 12 bit; 1.3 x nominal bus */
+    double current_offset_on_a_A = 0.0; /* only while the bridge is on: calibration misses it */
+    double current_offset_on_b_A = 0.0;
+    double current_gain_a = 1.0;
+    double current_gain_b = 1.0;
+    double phase_voltage_range_V = 31.2; /* +- full scale; 1.3 x nominal bus */
     double phase_voltage_noise_rms_V = 20e-3;
     double phase_voltage_offset_a_V = 0.0;
     double phase_voltage_offset_b_V = 0.0;
-    double bus_range_V = 31.2; /* full scale, 12 bit */
+    double phase_voltage_offset_on_a_V = 0.0; /* only while the bridge is on */
+    double phase_voltage_offset_on_b_V = 0.0;
+    double bus_range_V = 31.2;             /* full scale */
+    int encoder_counts_per_turn = 0;       /* quadrature counts; 0: no encoder */
+    double encoder_eccentricity_rad = 0.0; /* amplitude of an error that repeats every turn, */
+    double encoder_phase_rad = 0.0;        /* sin(theta + phase) less its value at angle 0 */
 };
 
 struct Config {
     MotorConfig motor;
+    ImperfectionConfig imperfections;
+    SupplyConfig supply;
     BridgeConfig bridge;
     SensorConfig sensors;
     std::uint64_t seed = 1;
@@ -70,6 +102,7 @@ struct Duties {
 struct Samples {
     std::uint16_t current_a = 0, current_b = 0, bus_voltage = 0;
     std::int16_t phase_voltage_a = 0, phase_voltage_b = 0;
+    std::int32_t encoder_count = 0; /* 0 at angle 0, wraps at 2^31 */
 };
 
 /* True values at S(k). Voltages: means over S(k-1)...S(k). */
@@ -80,11 +113,16 @@ struct State {
     double torque_Nm = 0, load_torque_Nm = 0, bus_V = 0;
 };
 
-/* Energy bookkeeping since the start, J: supplied (by the bus) = copper + magnetic + kinetic +
-   friction + load + diode, to 1e-6 of the energy supplied. All 0 without Config::track_energy. */
+/* Energy bookkeeping since the start, J: supplied = the sum of the others, to 1e-6 of it. All 0
+   without Config::track_energy. */
 struct Energy {
-    double supplied = 0, copper = 0, magnetic = 0, kinetic = 0, friction = 0, load = 0;
+    double supplied = 0; /* by the source (before its resistance) */
+    double copper = 0;   /* and in the bridge's resistance */
+    double magnetic = 0; /* of currents, saturation and detent; what changed since the start */
+    double kinetic = 0, friction = 0, load = 0;
     double diode = 0; /* lost in the bridge's diodes during dead time and with the bridge off */
+    double coulomb = 0;
+    double source = 0, brake = 0, capacitor = 0; /* the bus: two losses, and what is stored */
 };
 
 class Plant
@@ -120,6 +158,7 @@ class Plant
     struct Parts; /* motor, bridge, sensors */
 
     void observe();
+    template <typename AnyMotor> void observe(const AnyMotor &motor);
 
     std::unique_ptr<Parts> parts_;
     State state_;

@@ -1,5 +1,6 @@
 #include "sil/plant/sensors.h"
 
+#include "sil/plant/elementary.h"
 #include "sil/plant/gaussian.h"
 #include "sil/plant/require.h"
 
@@ -12,10 +13,9 @@ namespace
 /* Channels of the noise; each serves both phases. */
 enum Channel : std::uint64_t { current_channel = 1, phase_voltage_channel = 2 };
 
-/* A code 0...4095; the clamp first, so that no conversion is out of range. */
-int converted(double codes)
+/* A code 0...highest; the clamp first, so that no conversion is out of range. */
+int converted(double codes, double highest)
 {
-    constexpr double highest = converter_codes - 1;
     const double clamped = codes > 0.0 ? (codes < highest ? codes : highest) : 0.0;
     return static_cast<int>(clamped + 0.5);
 }
@@ -30,6 +30,11 @@ void require_offset(double offset, const char *field)
     require(magnitude(offset) <= 1e3, field, offset, "-1000...1000");
 }
 
+void require_gain(double gain, const char *field)
+{
+    require(gain >= 0.1 && gain <= 10.0, field, gain, "0.1...10");
+}
+
 void require_range(double range, const char *field)
 {
     require(range > 0.0 && range <= 1e4, field, range, "0...10000, not 0");
@@ -37,19 +42,29 @@ void require_range(double range, const char *field)
 
 } // namespace
 
+int converter_codes(const SensorConfig &config)
+{
+    return config.exact ? 65536 : 4096;
+}
+
+int current_zero_code(const SensorConfig &config)
+{
+    return converter_codes(config) / 2;
+}
+
 double current_A_per_code(const SensorConfig &config)
 {
-    return 2.0 * config.current_range_A / converter_codes;
+    return 2.0 * config.current_range_A / converter_codes(config);
 }
 
 double phase_voltage_V_per_code(const SensorConfig &config)
 {
-    return 2.0 * config.phase_voltage_range_V / converter_codes;
+    return 2.0 * config.phase_voltage_range_V / converter_codes(config);
 }
 
 double bus_V_per_code(const SensorConfig &config)
 {
-    return config.bus_range_V / converter_codes;
+    return config.bus_range_V / converter_codes(config);
 }
 
 Sensors::Sensors(const SensorConfig &config, std::uint64_t seed) : config_(config), seed_(seed)
@@ -63,34 +78,82 @@ Sensors::Sensors(const SensorConfig &config, std::uint64_t seed) : config_(confi
     require_offset(config.current_offset_b_A, "current_offset_b_A");
     require_offset(config.phase_voltage_offset_a_V, "phase_voltage_offset_a_V");
     require_offset(config.phase_voltage_offset_b_V, "phase_voltage_offset_b_V");
-    current_offset_A_ = Phases{config.current_offset_a_A, config.current_offset_b_A};
-    phase_voltage_offset_V_ =
+    require_offset(config.current_offset_on_a_A, "current_offset_on_a_A");
+    require_offset(config.current_offset_on_b_A, "current_offset_on_b_A");
+    require_offset(config.phase_voltage_offset_on_a_V, "phase_voltage_offset_on_a_V");
+    require_offset(config.phase_voltage_offset_on_b_V, "phase_voltage_offset_on_b_V");
+    require_gain(config.current_gain_a, "current_gain_a");
+    require_gain(config.current_gain_b, "current_gain_b");
+    current_offset_A_[0] = Phases{config.current_offset_a_A, config.current_offset_b_A};
+    current_offset_A_[1] =
+        current_offset_A_[0] + Phases{config.current_offset_on_a_A, config.current_offset_on_b_A};
+    phase_voltage_offset_V_[0] =
         Phases{config.phase_voltage_offset_a_V, config.phase_voltage_offset_b_V};
+    phase_voltage_offset_V_[1] =
+        phase_voltage_offset_V_[0] +
+        Phases{config.phase_voltage_offset_on_a_V, config.phase_voltage_offset_on_b_V};
+    current_gain_ = Phases{config.current_gain_a, config.current_gain_b};
     codes_per_A_ = 1.0 / current_A_per_code(config);
     codes_per_phase_V_ = 1.0 / phase_voltage_V_per_code(config);
     codes_per_bus_V_ = 1.0 / bus_V_per_code(config);
+    middle_code_ = 0.5 * converter_codes(config);
+    highest_code_ = converter_codes(config) - 1;
+
+    constexpr int most_counts = 1 << 30; /* a turn is far from wrapping the count */
+    require(config.encoder_counts_per_turn >= 0 && config.encoder_counts_per_turn <= most_counts,
+            "encoder_counts_per_turn", config.encoder_counts_per_turn, "0...2^30");
+    require(magnitude(config.encoder_eccentricity_rad) <= 0.1, "encoder_eccentricity_rad",
+            config.encoder_eccentricity_rad, "-0.1...0.1 rad");
+    require(magnitude(config.encoder_phase_rad) <= 2.0 * pi, "encoder_phase_rad",
+            config.encoder_phase_rad, "-2 pi...2 pi");
+    encoder_error_at_zero_rad_ =
+        config.encoder_eccentricity_rad * unit_vector(config.encoder_phase_rad)[1];
 }
 
-Samples Sensors::sample(std::uint64_t period, Phases current_A, Phases phase_voltage_V,
-                        double bus_V) const
+std::int32_t Sensors::encoder_count(double theta_rad) const
 {
+    double seen_rad = theta_rad;
+    if (config_.encoder_eccentricity_rad != 0.0) {
+        const double angle = theta_rad + config_.encoder_phase_rad;
+        const double within_turn = angle - 2.0 * pi * nearest_whole(angle * (0.5 / pi));
+        seen_rad += config_.encoder_eccentricity_rad * unit_vector(within_turn)[1] -
+                    encoder_error_at_zero_rad_;
+    }
+    constexpr double limit = 9e18; /* of what 64 bits hold */
+    const double counts = seen_rad * (0.5 / pi) * config_.encoder_counts_per_turn;
+    const double clamped = counts > -limit ? (counts < limit ? counts : limit) : -limit;
+    const std::int64_t towards_zero = static_cast<std::int64_t>(clamped);
+    const std::int64_t whole = towards_zero - (static_cast<double>(towards_zero) > clamped ? 1 : 0);
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(whole));
+}
+
+Samples Sensors::sample(std::uint64_t period, const True &now) const
+{
+    Phases current_A = now.current_A;
+    Phases phase_voltage_V = now.phase_voltage_V;
     if (!config_.exact) {
-        current_A += current_offset_A_ +
-                     config_.current_noise_rms_A * gaussian_pair(seed_, current_channel, period);
+        const int on = now.bridge_on ? 1 : 0;
+        current_A = current_gain_ * current_A + current_offset_A_[on] +
+                    config_.current_noise_rms_A * gaussian_pair(seed_, current_channel, period);
         phase_voltage_V +=
-            phase_voltage_offset_V_ +
+            phase_voltage_offset_V_[on] +
             config_.phase_voltage_noise_rms_V * gaussian_pair(seed_, phase_voltage_channel, period);
     }
-    const Phases current = current_A * codes_per_A_ + current_zero_code;
-    const Phases voltage = phase_voltage_V * codes_per_phase_V_ + converter_codes / 2;
+    const Phases current = current_A * codes_per_A_ + middle_code_;
+    const Phases voltage = phase_voltage_V * codes_per_phase_V_ + middle_code_;
+    const int zero_V_code = static_cast<int>(middle_code_);
     Samples samples;
-    samples.current_a = static_cast<std::uint16_t>(converted(current[0]));
-    samples.current_b = static_cast<std::uint16_t>(converted(current[1]));
-    samples.bus_voltage = static_cast<std::uint16_t>(converted(bus_V * codes_per_bus_V_));
+    samples.current_a = static_cast<std::uint16_t>(converted(current[0], highest_code_));
+    samples.current_b = static_cast<std::uint16_t>(converted(current[1], highest_code_));
+    samples.bus_voltage =
+        static_cast<std::uint16_t>(converted(now.bus_V * codes_per_bus_V_, highest_code_));
     samples.phase_voltage_a =
-        static_cast<std::int16_t>(converted(voltage[0]) - converter_codes / 2);
+        static_cast<std::int16_t>(converted(voltage[0], highest_code_) - zero_V_code);
     samples.phase_voltage_b =
-        static_cast<std::int16_t>(converted(voltage[1]) - converter_codes / 2);
+        static_cast<std::int16_t>(converted(voltage[1], highest_code_) - zero_V_code);
+    if (config_.encoder_counts_per_turn > 0) {
+        samples.encoder_count = encoder_count(now.theta_rad);
+    }
     return samples;
 }
 

@@ -1,6 +1,7 @@
 /*
  * From true values to the codes of the converters: offset, Gaussian noise, 12 bits, saturation.
- * Rounding is to the nearest code, ties upwards; codes clamp at the ends of their range.
+ * Rounding is to the nearest code, ties upwards; codes clamp at the ends of their range. An encoder
+ * counts whole steps: the floor of the angle.
  */
 #ifndef STEADYSTEP_PLANT_SENSORS_H
 #define STEADYSTEP_PLANT_SENSORS_H
@@ -11,28 +12,42 @@
 namespace plant
 {
 
-constexpr int converter_codes = 4096; /* 12 bits */
-constexpr int current_zero_code = converter_codes / 2;
+/* 12 bits; 16 where sensing is exact: as fine as the HAL's codes allow. */
+int converter_codes(const SensorConfig &config);
+int current_zero_code(const SensorConfig &config);
 
 /* Size of a code, SI units. */
 double current_A_per_code(const SensorConfig &config);
 double phase_voltage_V_per_code(const SensorConfig &config);
 double bus_V_per_code(const SensorConfig &config);
 
+/* The quantities that are sensed, as they are. */
+struct True {
+    Phases current_A, phase_voltage_V;
+    double bus_V, theta_rad;
+    bool bridge_on;
+};
+
 class Sensors
 {
   public:
     Sensors(const SensorConfig &config, std::uint64_t seed); /* throws std::invalid_argument */
 
-    /* current_A at S(period); phase_voltage_V: mean over the period that ends there. */
-    Samples sample(std::uint64_t period, Phases current_A, Phases phase_voltage_V,
-                   double bus_V) const;
+    /* At S(period); phase_voltage_V: mean over the period that ends there, in which the bridge
+       was on or off. */
+    Samples sample(std::uint64_t period, const True &now) const;
 
   private:
+    std::int32_t encoder_count(double theta_rad) const;
+
     SensorConfig config_;
     std::uint64_t seed_;
-    Phases current_offset_A_, phase_voltage_offset_V_;
+    /* With the bridge off and on. */
+    Phases current_offset_A_[2], phase_voltage_offset_V_[2];
+    Phases current_gain_;
     double codes_per_A_, codes_per_phase_V_, codes_per_bus_V_;
+    double middle_code_, highest_code_;
+    double encoder_error_at_zero_rad_ = 0.0;
 };
 
 } // namespace plant

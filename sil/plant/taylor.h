@@ -20,6 +20,18 @@ template <int k, typename X, typename Y> inline auto cauchy_product(const X *x, 
     }
 }
 
+/* The same of a series with itself. */
+template <int k, typename X> inline auto cauchy_square(const X *x)
+{
+    if constexpr (k == 0) {
+        return x[0] * x[0];
+    } else if constexpr (k == 1) {
+        return 2.0 * x[0] * x[1];
+    } else {
+        return cauchy_square<k - 2>(x + 1) + 2.0 * x[0] * x[k];
+    }
+}
+
 /* The series at t = h. Ascending: each term is added as soon as it is known. */
 template <int order, typename X> inline X value(const X *x, double h)
 {

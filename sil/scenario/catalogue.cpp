@@ -36,6 +36,21 @@ std::vector<fs::path> toml_files(const fs::path &folder)
     return files;
 }
 
+/* "motor/law" of a parameter set. */
+std::string set_name(const fs::path &file)
+{
+    return (file.parent_path().filename() / file.stem()).string();
+}
+
+[[noreturn]] void refuse_name(const char *what, const std::string &name,
+                              const std::string &asked_by, const std::vector<std::string> &known)
+{
+    const std::string guess = nearest(name, known);
+    throw InputError(asked_by + ": unknown " + what + " \"" + name + "\", expected a path or " +
+                     (guess.empty() ? "a name that `steadystep-sil list` shows"
+                                    : "a known name (did you mean " + guess + "?)"));
+}
+
 /* The file of `name` in the first folder that has it. */
 fs::path look_up(const char *what, const std::string &name, const std::string &asked_by,
                  const std::vector<fs::path> &folders)
@@ -49,10 +64,7 @@ fs::path look_up(const char *what, const std::string &name, const std::string &a
             known.push_back(file.stem().string());
         }
     }
-    const std::string guess = nearest(name, known);
-    throw InputError(asked_by + ": unknown " + what + " \"" + name + "\", expected a path or " +
-                     (guess.empty() ? "a name that `steadystep-sil list` shows"
-                                    : "a known name (did you mean " + guess + "?)"));
+    refuse_name(what, name, asked_by, known);
 }
 
 } // namespace
@@ -70,10 +82,14 @@ Catalogue::Catalogue(const fs::path &scenarios, const fs::path &program)
     if (!fs::is_directory(scenarios_, error)) {
         throw InputError(scenarios_.string() + ": no such folder of scenarios");
     }
-    motors_ = {scenarios_ / ".." / "motors", installed ? beside / "motors" : source / "motors"};
-    if (fs::equivalent(motors_[0], motors_[1], error)) {
-        motors_ = {installed ? beside / "motors" : source / "motors"};
-    }
+    const auto folders = [&](const char *name) -> std::vector<fs::path> {
+        const fs::path own = (installed ? beside : source) / name;
+        const fs::path theirs = scenarios_ / ".." / name;
+        return fs::equivalent(theirs, own, error) ? std::vector<fs::path>{own}
+                                                  : std::vector<fs::path>{theirs, own};
+    };
+    motors_ = folders("motors");
+    parameters_ = folders("parameters");
 }
 
 fs::path Catalogue::scenario(const std::string &name, const std::string &asked_by,
@@ -94,6 +110,22 @@ fs::path Catalogue::motor(const std::string &name, const std::string &asked_by,
     return is_path(name) ? folder / name : look_up("motor", name, asked_by, motors_);
 }
 
+fs::path Catalogue::parameters(const std::string &name, const std::string &asked_by,
+                               const fs::path &folder) const
+{
+    if (fs::path(name).extension() == ".toml") {
+        return folder / name;
+    }
+    std::vector<std::string> known;
+    for (const fs::path &file : parameters()) {
+        known.push_back(set_name(file));
+        if (known.back() == name) {
+            return file;
+        }
+    }
+    refuse_name("parameter set", name, asked_by, known);
+}
+
 std::vector<fs::path> Catalogue::scenarios() const
 {
     return toml_files(scenarios_);
@@ -110,6 +142,24 @@ std::vector<fs::path> Catalogue::motors() const
     for (const fs::path &folder : motors_) {
         const std::vector<fs::path> more = toml_files(folder);
         files.insert(files.end(), more.begin(), more.end());
+    }
+    return files;
+}
+
+std::vector<fs::path> Catalogue::parameters() const
+{
+    std::vector<fs::path> files;
+    for (const fs::path &folder : parameters_) {
+        std::vector<fs::path> motors;
+        std::error_code error;
+        for (const fs::directory_entry &entry : fs::directory_iterator(folder, error)) {
+            motors.push_back(entry.path());
+        }
+        std::sort(motors.begin(), motors.end());
+        for (const fs::path &motor : motors) {
+            const std::vector<fs::path> sets = toml_files(motor);
+            files.insert(files.end(), sets.begin(), sets.end());
+        }
     }
     return files;
 }

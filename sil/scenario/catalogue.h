@@ -1,4 +1,4 @@
-/* Where scenarios, sweeps and motors are found by name. */
+/* Where scenarios, sweeps, motors and parameter sets are found by name. */
 #ifndef STEADYSTEP_SCENARIO_CATALOGUE_H
 #define STEADYSTEP_SCENARIO_CATALOGUE_H
 
@@ -14,8 +14,8 @@ class Catalogue
   public:
     /*
      * The folder of scenarios is, in this order: `scenarios` if not empty, "scenarios" beside the
-     * program, the source tree. Motors lie in "../motors" from there, or else where the program's
-     * own motors are.
+     * program, the source tree. Motors lie in "../motors" from there, parameter sets in
+     * "../parameters", or else where the program's own are.
      */
     Catalogue(const std::filesystem::path &scenarios, const std::filesystem::path &program);
 
@@ -26,14 +26,18 @@ class Catalogue
     std::filesystem::path sweep(const std::string &name, const std::string &asked_by) const;
     std::filesystem::path motor(const std::string &name, const std::string &asked_by,
                                 const std::filesystem::path &folder) const;
+    /* A set's name is "motor/law"; only what ends in .toml is a path. */
+    std::filesystem::path parameters(const std::string &name, const std::string &asked_by,
+                                     const std::filesystem::path &folder) const;
 
     std::vector<std::filesystem::path> scenarios() const; /* sorted by name */
     std::vector<std::filesystem::path> motors() const;
     std::vector<std::filesystem::path> sweeps() const;
+    std::vector<std::filesystem::path> parameters() const; /* by motor, then by law */
 
   private:
     std::filesystem::path scenarios_;
-    std::vector<std::filesystem::path> motors_; /* first match wins */
+    std::vector<std::filesystem::path> motors_, parameters_; /* first match wins */
 };
 
 } // namespace scenario

@@ -28,11 +28,12 @@ namespace
 enum ExitCode { held = 0, not_held = 1, bad_input = 2 };
 
 struct Options {
-    std::vector<std::string> scenarios, settings;
+    std::vector<std::string> scenarios;
+    CommandLine given;
     std::string sweep = "bendjedia-robustness";
-    std::string numeric = "float", seeds, out, folder;
+    std::string numeric, seeds, out, folder;
     std::int64_t seed = 0;
-    bool one_seed = false;
+    bool one_seed = false, json = false;
     unsigned jobs = default_workers();
     fs::path program;
 
@@ -84,9 +85,10 @@ void write_run(const Options &options, const Result &result, const Record &recor
     write_file(folder / "summary.json", summary_json(result));
 }
 
-const firmware_image &image(const Options &options)
+/* The format asked for, or else the first that the scenario names. */
+const firmware_image &image(const Options &options, const Scenario &scenario)
 {
-    return *image_of(options.numeric);
+    return *image_of(options.numeric.empty() ? scenario.numerics.front() : options.numeric);
 }
 
 std::vector<Scenario> read_scenarios(const Options &options)
@@ -95,11 +97,11 @@ std::vector<Scenario> read_scenarios(const Options &options)
     std::vector<Scenario> scenarios;
     std::set<std::string> names;
     for (const std::string &name : options.scenarios) {
-        scenarios.push_back(read_scenario(catalogue, name, options.settings, "run"));
+        scenarios.push_back(read_scenario(catalogue, name, options.given, "run"));
         if (!names.insert(scenarios.back().name).second) {
             throw InputError("run: " + name + ": given twice");
         }
-        check(scenarios.back(), image(options));
+        check(scenarios.back(), image(options, scenarios.back()));
     }
     return scenarios;
 }
@@ -129,8 +131,8 @@ void run_all(const Options &options, const Scenarios &scenarios, bool write, Del
         items.size(), options.jobs,
         [&](std::size_t i) {
             Record record(1);
-            results[i] =
-                execute(*scenarios[items[i].scenario], image(options), items[i].seed, record);
+            const Scenario &scenario = *scenarios[items[i].scenario];
+            results[i] = execute(scenario, image(options, scenario), items[i].seed, record);
             if (write) {
                 write_run(options, results[i], record);
             }
@@ -152,24 +154,36 @@ int run_command(const Options &options)
         pointers.push_back(&scenario);
     }
     std::size_t failed = 0;
+    std::vector<Result> all;
     run_all(options, pointers, !options.out.empty(),
             [&](std::size_t, const std::vector<Result> &results) {
                 const Report one = report(results);
                 failed += one.passed ? 0 : 1;
-                std::printf("%s\n", one.text.c_str());
-                std::fflush(stdout);
+                if (options.json) {
+                    all.insert(all.end(), results.begin(), results.end());
+                } else {
+                    std::printf("%s\n", one.text.c_str());
+                    std::fflush(stdout);
+                }
             });
-    std::printf("%zu of %zu scenarios hold\n", scenarios.size() - failed, scenarios.size());
+    if (options.json) {
+        std::fputs(summaries_json(all).c_str(), stdout);
+    } else {
+        std::printf("%zu of %zu scenarios hold\n", scenarios.size() - failed, scenarios.size());
+    }
     return failed == 0 ? held : not_held;
 }
 
-int sweep_command(const Options &options)
+int sweep_command(Options options)
 {
+    if (options.numeric.empty()) {
+        options.numeric = "float";
+    }
     const Catalogue catalogue = options.catalogue();
     const Sweep sweep = read_sweep(catalogue, catalogue.sweep(options.sweep, "sweep"));
     std::vector<const Scenario *> pointers;
     for (const SweepCase &one : sweep.cases) {
-        check(one.scenario, image(options));
+        check(one.scenario, image(options, one.scenario));
         pointers.push_back(&one.scenario);
     }
     const std::uint64_t seeds = seeds_of(options, 1).count;
@@ -178,7 +192,7 @@ int sweep_command(const Options &options)
     }
     std::printf("%s\n%s, %llu seed%s; 95th percentiles\n\n%s", sweep.description.c_str(),
                 options.numeric.c_str(), static_cast<unsigned long long>(seeds),
-                seeds == 1 ? "" : "s", sweep_heading().c_str());
+                seeds == 1 ? "" : "s", sweep_heading(sweep).c_str());
     std::vector<SweepFigures> figures;
     std::size_t failed = 0;
     run_all(options, pointers, false, [&](std::size_t i, const std::vector<Result> &results) {
@@ -199,6 +213,24 @@ int sweep_command(const Options &options)
     return failed == 0 ? held : not_held;
 }
 
+/* As it is asked for by name. */
+std::string name_of(const fs::path &file)
+{
+    const fs::path folder = file.parent_path();
+    const bool set = folder.parent_path().filename() == "parameters";
+    return set ? (folder.filename() / file.stem()).string() : file.stem().string();
+}
+
+std::string gains_of(position_law law)
+{
+    std::string names;
+    const char *name = nullptr;
+    for (std::size_t i = 0; (name = firmware_image_float.law_gain(law, i)) != nullptr; ++i) {
+        names += (i == 0 ? "" : " ") + std::string(name);
+    }
+    return names;
+}
+
 int list_command(const Options &options)
 {
     const Catalogue catalogue = options.catalogue();
@@ -208,7 +240,8 @@ int list_command(const Options &options)
         std::printf("%s\n", heading);
         for (const fs::path &file : files) {
             try {
-                std::printf("  %-32s %s\n", file.stem().c_str(), describe(file).c_str());
+                const std::string description = describe(file);
+                std::printf("  %-32s %s\n", name_of(file).c_str(), description.c_str());
             } catch (const InputError &error) {
                 complaints += std::string("steadystep-sil: ") + error.what() + "\n";
             }
@@ -221,6 +254,13 @@ int list_command(const Options &options)
          [&](const fs::path &file) { return read_sweep(catalogue, file).description; });
     list("motors", catalogue.motors(),
          [](const fs::path &file) { return read_motor(file).description; });
+    list("parameters", catalogue.parameters(),
+         [](const fs::path &file) { return read_parameters(file).description; });
+    std::printf("laws, and the gains that can be given to them\n");
+    for (int law = 0; law < POSITION_LAW_COUNT; ++law) {
+        std::printf("  %-32s %s\n", drive_law_name(static_cast<position_law>(law)),
+                    gains_of(static_cast<position_law>(law)).c_str());
+    }
     std::fputs(complaints.c_str(), stderr);
     return complaints.empty() ? held : bad_input;
 }
@@ -228,9 +268,10 @@ int list_command(const Options &options)
 /* Options that `run` and `sweep` share. */
 void add_run_options(CLI::App &command, Options &options)
 {
-    command.add_option("--numeric", options.numeric, "number format of the drive")
-        ->check(CLI::IsMember({"float", "fixed", "double"}))
-        ->capture_default_str();
+    command
+        .add_option("--numeric", options.numeric,
+                    "number format of the drive; else the scenario's first, float as a rule")
+        ->check(CLI::IsMember({"float", "fixed", "double"}));
     CLI::Option *seed = command.add_option("--seed", options.seed, "seed of all noise")
                             ->check(CLI::NonNegativeNumber);
     CLI::Option *seeds = command.add_option("--seeds", options.seeds,
@@ -262,13 +303,17 @@ int run_program(int argc, char **argv)
 
     CLI::App *run = app.add_subcommand("run", "run scenarios and judge them");
     run->add_option("SCENARIO", options.scenarios, "names or paths")->required();
-    run->add_option("--set", options.settings, "table.key=value, on top of every file")
+    run->add_option("--set", options.given.settings, "table.key=value, on top of every file")
         ->allow_extra_args(false);
+    run->add_option("--parameters", options.given.parameters,
+                    "parameter set, on top of every file and below --set");
+    run->add_flag("--json", options.json, "one array of summaries on standard output, no report");
     add_run_options(*run, options);
     CLI::App *sweep = app.add_subcommand("sweep", "run a table of plant parameters");
     sweep->add_option("SWEEP", options.sweep, "name or path")->capture_default_str();
     add_run_options(*sweep, options);
-    CLI::App *list = app.add_subcommand("list", "scenarios, sweeps and motors, in one line each");
+    CLI::App *list = app.add_subcommand(
+        "list", "scenarios, sweeps, motors, parameter sets and laws, in one line each");
 
     try {
         app.parse(argc, argv);

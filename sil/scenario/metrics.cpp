@@ -13,6 +13,7 @@ namespace
 
 constexpr double rest_speed_rad_s = 0.1;
 constexpr double rest_time_s = 0.010;
+constexpr double ripple_time_s = 0.002;             /* slower than this is no ripple */
 constexpr double quarter_turn = 1.5707963267948966; /* a full step, electrical */
 
 /* Magnitudes: a NaN, once in, stays. */
@@ -177,6 +178,41 @@ double load_torque_t90(const Record &record, RowRange rows)
     return longest;
 }
 
+double current_ripple(const Record &record, RowRange rows)
+{
+    std::vector<double> sum = {0}; /* of the first n rows of the window */
+    for (std::size_t row = rows.first; row < rows.last; ++row) {
+        sum.push_back(sum.back() + record.at(row, I_Q));
+    }
+    const std::size_t half = periods(record, ripple_time_s / 2);
+    Magnitude ripple;
+    for (std::size_t i = half; i + half + 1 < sum.size(); ++i) {
+        const double mean = (sum[i + half + 1] - sum[i - half]) / static_cast<double>(2 * half + 1);
+        ripple.add(sum[i + 1] - sum[i] - mean);
+    }
+    return half > 0 && ripple.count > 0 ? ripple.rms() : Metrics::none;
+}
+
+/* Two passes: the ripple is small against the mean. */
+void ripple(const Record &record, RowRange rows, Metrics &metrics)
+{
+    double sum = 0, squares = 0;
+    double least = record.at(rows.first, U_Q), most = least;
+    for (std::size_t row = rows.first; row < rows.last; ++row) {
+        const double value = record.at(row, U_Q);
+        sum += value;
+        least = std::min(least, value);
+        most = std::max(most, value);
+    }
+    const double count = static_cast<double>(rows.last - rows.first), mean = sum / count;
+    for (std::size_t row = rows.first; row < rows.last; ++row) {
+        const double difference = record.at(row, U_Q) - mean;
+        squares += difference * difference;
+    }
+    metrics.voltage_q_peak_to_peak_V = most - least;
+    metrics.voltage_q_ripple_V = std::sqrt(squares / count);
+}
+
 } // namespace
 
 std::string Window::name() const
@@ -232,8 +268,11 @@ const std::vector<MetricField> &metric_fields()
         {"settling_time_s", &Metrics::settling_time_s},
         {"current_peak_A", &Metrics::current_peak_A},
         {"current_rms_A", &Metrics::current_rms_A},
+        {"current_ripple_rms_A", &Metrics::current_ripple_rms_A},
         {"voltage_peak_V", &Metrics::voltage_peak_V},
         {"voltage_rms_V", &Metrics::voltage_rms_V},
+        {"voltage_q_peak_to_peak_V", &Metrics::voltage_q_peak_to_peak_V},
+        {"voltage_q_ripple_V", &Metrics::voltage_q_ripple_V},
         {"slip_full_steps", &Metrics::slip_full_steps},
         {"resistance_estimate_error_ratio", &Metrics::resistance_estimate_error_ratio},
         {"enabling_time_s", &Metrics::enabling_time_s},
@@ -287,9 +326,11 @@ Metrics evaluate(const Record &record, RowRange rows, const MetricSettings &sett
     metrics.current_peak_A = std::max(i_a.max, i_b.max);
     metrics.current_rms_A =
         std::sqrt((i_a.sum_of_squares + i_b.sum_of_squares) / (2 * static_cast<double>(i_a.count)));
+    metrics.current_ripple_rms_A = current_ripple(record, rows);
     metrics.voltage_peak_V = std::max(u_a.max, u_b.max);
     metrics.voltage_rms_V =
         std::sqrt((u_a.sum_of_squares + u_b.sum_of_squares) / (2 * static_cast<double>(u_a.count)));
+    ripple(record, rows, metrics);
     metrics.slip_full_steps = std::floor(slip.max + 0.5);
     metrics.resistance_estimate_error_ratio =
         std::fabs(last[RESISTANCE_EST] - last[RESISTANCE]) / last[RESISTANCE];

@@ -74,8 +74,14 @@ struct Metrics {
     double settling_time_s = none;   /* end of reference motion until the error stays in the band */
     double current_peak_A = none;    /* of either phase */
     double current_rms_A = none;     /* of one phase: root of the mean of (i_a^2 + i_b^2) / 2 */
-    double voltage_peak_V = none;    /* likewise, of the period means */
+    /* Of the measured q current about its mean over the 2 ms around each row, where these lie in
+       the window: what the control loop
+       makes of noise, as heat and sound, without what a move or a load needs. */
+    double current_ripple_rms_A = none;
+    double voltage_peak_V = none; /* likewise, of the period means */
     double voltage_rms_V = none;
+    double voltage_q_peak_to_peak_V = none; /* as commanded, rotor frame */
+    double voltage_q_ripple_V = none;       /* rms about its mean */
     double slip_full_steps = none; /* largest change of the estimate error since the window began,
                                       in full steps (90 degrees electrical), rounded */
     double resistance_estimate_error_ratio = none; /* |R^ - R| / R in the last row */

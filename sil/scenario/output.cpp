@@ -101,7 +101,10 @@ void write_file(const fs::path &file, const std::string &content)
     }
 }
 
-std::string summary_json(const Result &result)
+namespace
+{
+
+Json summary(const Result &result)
 {
     const Scenario &scenario = *result.scenario;
     Json json;
@@ -110,7 +113,9 @@ std::string summary_json(const Result &result)
     json["motor"] = scenario.motor.id;
     json["numeric"] = result.numeric;
     json["seed"] = result.seed;
-    json["set"] = scenario.settings;
+    json["parameters"] = scenario.parameters.empty() ? Json() : Json(scenario.parameters);
+    json["law"] = drive_law_name(scenario.drive.law);
+    json["set"] = scenario.given.settings;
     json["version"] = STEADYSTEP_VERSION;
     json["reproduce"] = reproduce_command(scenario, result.numeric, result.seed);
     json["passed"] = result.passed();
@@ -127,7 +132,31 @@ std::string summary_json(const Result &result)
         json["expectations"].push_back(
             expectation_json(scenario.expectations[i], result.observations[i]));
     }
-    return json.dump(2) + "\n";
+    json["reports"] = Json::array();
+    for (std::size_t i = 0; i < scenario.reports.size(); ++i) {
+        Json report;
+        report["metric"] = scenario.reports[i].metric;
+        report["window"] = scenario.reports[i].window.name();
+        report["value"] = result.reported[i].value;
+        json["reports"].push_back(report);
+    }
+    return json;
+}
+
+} // namespace
+
+std::string summary_json(const Result &result)
+{
+    return summary(result).dump(2) + "\n";
+}
+
+std::string summaries_json(const std::vector<Result> &results)
+{
+    Json json = Json::array();
+    for (const Result &result : results) {
+        json.push_back(summary(result));
+    }
+    return json.dump() + "\n";
 }
 
 std::string trace_csv(const Record &record)
@@ -159,7 +188,10 @@ std::string reproduce_command(const Scenario &scenario, const std::string &numer
 {
     std::string command = "steadystep-sil run " + quoted(scenario.asked) + " --numeric " + numeric +
                           " --seed " + std::to_string(seed);
-    for (const std::string &setting : scenario.settings) {
+    if (!scenario.given.parameters.empty()) {
+        command += " --parameters " + quoted(scenario.given.parameters);
+    }
+    for (const std::string &setting : scenario.given.settings) {
         command += " --set " + quoted(setting);
     }
     return command;

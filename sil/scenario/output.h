@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "sil/scenario/record.h"
 #include "sil/scenario/result.h"
@@ -20,6 +21,9 @@ void write_file(const std::filesystem::path &file, const std::string &content);
 /* summary.json: what ran, all metrics per window, expectations, hashes. A metric without a value
    is null. */
 std::string summary_json(const Result &result);
+
+/* The same of several runs, an array on one line. */
+std::string summaries_json(const std::vector<Result> &results);
 
 /* trace.csv: time_s and every column of the record, shortest digits that read back the same. */
 std::string trace_csv(const Record &record);

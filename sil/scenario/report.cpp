@@ -83,7 +83,7 @@ Report report(const std::vector<Result> &results)
             seed_to_reproduce = result.seed;
         }
     }
-    if (!scenario.expectations.empty()) {
+    if (!scenario.expectations.empty() || !scenario.reports.empty()) {
         report.text += line("expectation", "window", many ? "95 % of runs" : "value",
                             many ? "worst" : "", "bound", "");
     }
@@ -98,6 +98,12 @@ Report report(const std::vector<Result> &results)
             report.passed = false;
             seed_to_reproduce = judgement.worst_seed;
         }
+    }
+    for (std::size_t i = 0; i < scenario.reports.size(); ++i) {
+        const Expectation &figure = scenario.reports[i];
+        const Judgement judgement = judge(figure, i, results, &Result::reported);
+        report.text += line(figure.metric, figure.window.name(), shown(figure, judgement.typical),
+                            many ? shown(figure, judgement.worst) : "", "", "reported");
     }
     if (many) {
         report.text +=

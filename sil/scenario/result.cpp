@@ -31,6 +31,9 @@ double value_of(const Metrics &metrics, const std::string &name)
 /* Every comparison is false for a NaN. */
 bool holds(const Expectation &expectation, double value)
 {
+    if (!expectation.bounded()) {
+        return true;
+    }
     return value == value && (!expectation.min || value >= *expectation.min) &&
            (!expectation.max || value <= *expectation.max) &&
            (!expectation.equals || value == *expectation.equals);
@@ -107,19 +110,23 @@ Result execute(const Scenario &scenario, const firmware_image &image, std::uint6
         result.observations.push_back(
             result.failure.empty() ? observe(expectation, record, settings) : Observation{});
     }
+    for (const Expectation &report : scenario.reports) {
+        result.reported.push_back(result.failure.empty() ? observe(report, record, settings)
+                                                         : Observation{});
+    }
     return result;
 }
 
 Judgement judge(const Expectation &expectation, std::size_t index,
-                const std::vector<Result> &results)
+                const std::vector<Result> &results, Observations where)
 {
     /* Best run first. */
     std::vector<std::size_t> order(results.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     const bool largest_is_best = expectation.min && !expectation.max;
     const auto better = [&](std::size_t a, std::size_t b) {
-        const Observation &first = results[a].observations[index];
-        const Observation &second = results[b].observations[index];
+        const Observation &first = (results[a].*where)[index];
+        const Observation &second = (results[b].*where)[index];
         if (first.held != second.held) {
             return first.held;
         }
@@ -132,8 +139,8 @@ Judgement judge(const Expectation &expectation, std::size_t index,
 
     Judgement judgement;
     const std::size_t typical = order[rank_95(order.size())];
-    judgement.typical = results[typical].observations[index];
-    judgement.worst = results[order.back()].observations[index];
+    judgement.typical = (results[typical].*where)[index];
+    judgement.worst = (results[order.back()].*where)[index];
     judgement.worst_seed = results[order.back()].seed;
     judgement.held = judgement.typical.held;
     return judgement;

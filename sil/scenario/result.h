@@ -32,6 +32,7 @@ struct Result {
     std::string failure; /* why the run ended early; "" if it did not */
     WindowResult move, rest, all;
     std::vector<Observation> observations; /* one per expectation */
+    std::vector<Observation> reported;     /* one per report */
     std::uint64_t trace_hash = 0, drive_hash = 0;
     double simulated_s = 0, cpu_s = 0;
 
@@ -41,6 +42,9 @@ struct Result {
 /* Runs and evaluates; the record stays with the caller, who may write or drop it. */
 Result execute(const Scenario &scenario, const firmware_image &image, std::uint64_t seed,
                Record &record);
+
+/* Which of a result's observations. */
+using Observations = std::vector<Observation> Result::*;
 
 /*
  * An expectation over several seeds: the bound must hold for the 95th percentile, which is the
@@ -54,7 +58,7 @@ struct Judgement {
 };
 
 Judgement judge(const Expectation &expectation, std::size_t index,
-                const std::vector<Result> &results);
+                const std::vector<Result> &results, Observations where = &Result::observations);
 
 /* Values, ascending, NaN last: the one that 95 % do not exceed. */
 double percentile_95(std::vector<double> values);

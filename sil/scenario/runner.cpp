@@ -27,15 +27,15 @@ class Runner
     Runner(const Scenario &scenario, const plant::Config &config, const firmware_image &image)
         : scenario_(scenario), board_(config, image, scenario.drive),
           period_s_(config.bridge.period_s), scales_(scenario.scales),
-          motor_(scaled(scenario.motor.params, scenario.scales)), result_{Record(period_s_), 0, 0,
-                                                                          ""}
+          motor_(scaled(scenario.motor.params, scenario.scales)),
+          result_{Record(period_s_ * scenario.record_every), 0, 0, ""}
     {
     }
 
     Run run()
     {
         const std::uint32_t last = periods(scenario_.duration_s, period_s_);
-        result_.record.reserve(last + 1);
+        result_.record.reserve(last / scenario_.record_every + 1);
         try {
             if (enable()) {
                 follow_timeline(last);
@@ -70,7 +70,7 @@ class Runner
                 return false;
             }
             if (scenario_.record_enabling) {
-                record();
+                record(k);
             }
             board_.advance();
         }
@@ -84,7 +84,7 @@ class Runner
             if (n > 0) {
                 board_.control();
             }
-            record();
+            record(n);
             if (n == last) {
                 return;
             }
@@ -104,6 +104,13 @@ class Runner
                 drive_command command = *event.command;
                 command.at_period = time_zero_ + n;
                 board_.command(command);
+                if (!event.set_points_rad.empty()) {
+                    streams_.push_back({command, &event.set_points_rad, 1, n,
+                                        std::max(1u, periods(command.interval_s, period_s_))});
+                }
+            } else if (event.power_cycle) {
+                board_.power_cycle();
+                time_zero_ = 0u - n; /* the drive counts its periods from 0 again */
             } else if (event.load_torque_Nm) {
                 board_.plant().set_load_torque(*event.load_torque_Nm);
             } else {
@@ -111,7 +118,27 @@ class Runner
                                    std::max(1u, periods(event.drift_ramp_s, period_s_))});
             }
         }
+        stream(n);
         drift(n);
+    }
+
+    struct Stream {
+        drive_command command;
+        const std::vector<double> *positions_rad;
+        std::size_t next; /* first position that has not been posted */
+        std::uint32_t start, interval;
+    };
+
+    /* The set-point of this period. */
+    void stream(std::uint32_t n)
+    {
+        for (Stream &stream : streams_) {
+            if (stream.next < stream.positions_rad->size() &&
+                n == stream.start + stream.next * stream.interval) {
+                stream.command.position_rad = (*stream.positions_rad)[stream.next++];
+                board_.command(stream.command);
+            }
+        }
     }
 
     struct Drift {
@@ -138,8 +165,11 @@ class Runner
         board_.plant().set_motor(motor_);
     }
 
-    void record()
+    void record(std::uint32_t period)
     {
+        if (period % scenario_.record_every != 0) {
+            return;
+        }
         const plant::State &state = board_.plant().state();
         const drive_signals &drive = board_.signals();
         Row row;
@@ -161,7 +191,8 @@ class Runner
         row[I_Q_REF] = drive.i_q_ref_A;
         row[U_D] = drive.u_d_V;
         row[U_Q] = drive.u_q_V;
-        row[RESISTANCE] = motor_.resistance_ohm;
+        row[RESISTANCE] =
+            motor_.resistance_ohm + scenario_.plant.imperfections.bridge_resistance_ohm;
         row[RESISTANCE_EST] = drive.resistance_est_ohm;
         row[BUS] = state.bus_V;
         row[DRIVE_STATE] = drive.state;
@@ -180,6 +211,7 @@ class Runner
     std::uint32_t time_zero_ = 0;
     std::size_t next_ = 0; /* first event that has not acted */
     std::vector<Drift> drifts_;
+    std::vector<Stream> streams_;
 };
 
 constexpr int drive_queue_length = 16;
@@ -189,16 +221,24 @@ void post_commands(sil::Board &board, const Scenario &scenario)
 {
     int posted = 0;
     for (const Event &event : scenario.events) {
+        if (event.power_cycle) {
+            return; /* what comes then is for another drive */
+        }
         if (!event.command || posted == drive_queue_length) {
             continue;
         }
-        if (event.command->kind == DRIVE_COMMAND_STOP) {
+        const drive_command_kind kind = event.command->kind;
+        if (kind == DRIVE_COMMAND_STOP) {
             return; /* where the next move starts is known in the run only */
         }
         try {
             board.command(*event.command);
         } catch (const std::invalid_argument &refusal) {
             throw InputError(event.location.text() + ": " + refusal.what());
+        }
+        if (kind == DRIVE_COMMAND_SINE || kind == DRIVE_COMMAND_VELOCITY ||
+            kind == DRIVE_COMMAND_SET_POINT) {
+            return; /* likewise */
         }
         ++posted;
     }

@@ -1,5 +1,6 @@
 #include "sil/scenario/scenario_file.h"
 
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
 
@@ -15,7 +16,8 @@ namespace
 {
 
 constexpr double supply_headroom = 1.3; /* full scale of voltage sensing / nominal supply */
-constexpr double longest_run_s = 600;   /* 25 columns of 10 kHz: 1.2 GB */
+constexpr double longest_run_s = 600;
+constexpr double most_rows = 6e6; /* 25 columns: 1.2 GB */
 constexpr double largest_position_rad = 1e7;
 
 /* The file with its bases under it; `chain` holds the files that wait for this one. */
@@ -44,19 +46,138 @@ Value read_with_bases(const Catalogue &catalogue, const fs::path &file, std::vec
     return merged;
 }
 
+/* The number formats that the scenario is judged in; the first is the default of `run`. */
+void read_numerics(TableReader &reader, std::vector<std::string> &numerics)
+{
+    const char *const key = "numerics";
+    const Value *list = reader.list(key, "an array of number formats");
+    if (list == nullptr) {
+        return;
+    }
+    const std::vector<std::string> formats = {"float", "fixed", "double"};
+    numerics.clear();
+    for (const Value &item : list->items) {
+        const bool known = item.kind == Value::Kind::text &&
+                           std::find(formats.begin(), formats.end(), item.text) != formats.end();
+        if (!known) {
+            reader.fail(key, "expected " + one_of(item.text, formats));
+        }
+        if (std::find(numerics.begin(), numerics.end(), item.text) != numerics.end()) {
+            reader.fail(key, "\"" + item.text + "\" is given twice");
+        }
+        numerics.push_back(item.text);
+    }
+    if (numerics.empty()) {
+        reader.fail(key, "expected at least one of float, fixed, double");
+    }
+}
+
+/* Lays `over` on the [drive] of `document`. */
+void merge_drive(Value &document, const Value &over)
+{
+    Value drive;
+    drive.set("drive", over);
+    merge(document, drive);
+}
+
+/* Folder from which a path at `where` is meant; the present one on the command line. */
+fs::path folder_of(const Location &where)
+{
+    return where.line == 0 ? fs::path() : fs::path(where.file).parent_path();
+}
+
+/* Under the drive settings of `document` those of the set that it names. */
+void lay_parameters_under(Value &document, const Catalogue &catalogue, std::string &name)
+{
+    if (!TableReader(document, "").text("parameters", name)) {
+        return;
+    }
+    const Location where = document.find("parameters")->location;
+    const ParameterSet set = read_parameters(
+        catalogue.parameters(name, where.text() + ": parameters", folder_of(where)));
+    const Value *own = document.find("drive");
+    const Value above = own != nullptr ? *own : Value();
+    document.set("drive", set.drive);
+    merge_drive(document, above);
+}
+
+/* What the command line gives over all files, and the parameter set, wherever it is named. */
+void apply_command_line(Value &document, const Catalogue &catalogue, const CommandLine &given,
+                        std::string &parameters)
+{
+    if (given.parameters.empty()) {
+        apply_settings(document, given.settings);
+        lay_parameters_under(document, catalogue, parameters);
+        return;
+    }
+    const std::string where = "--parameters " + given.parameters;
+    merge_drive(document, read_parameters(catalogue.parameters(given.parameters, where, {})).drive);
+    apply_settings(document, given.settings);
+    parameters = given.parameters;
+}
+
+/* Gains by the law's own names; without a unit in common, so the drive checks their ranges. */
+void read_law_gains(const Value &table, drive_settings &drive)
+{
+    TableReader reader(table, "drive.law_gains");
+    const char *name = nullptr;
+    for (std::size_t gain = 0; (name = firmware_image_float.law_gain(drive.law, gain)) != nullptr;
+         ++gain) {
+        reader.number(name, drive.law_gains[gain], -1e12, 1e12);
+    }
+    reader.finish();
+}
+
+void read_detent_torque(TableReader &reader, drive_settings &drive)
+{
+    const char *const key = "detent_torque_Nm";
+    const Value *list = reader.list(key, "an array of six torques");
+    if (list == nullptr) {
+        return;
+    }
+    if (list->items.size() != DRIVE_DETENT_COEFFICIENTS) {
+        reader.fail(key, "expected six numbers: a_1, b_1, a_2, b_2, a_4, b_4");
+    }
+    for (std::size_t i = 0; i < list->items.size(); ++i) {
+        const Value &item = list->items[i];
+        if (item.kind != Value::Kind::number && item.kind != Value::Kind::integer) {
+            reader.fail(key, "expected numbers");
+        }
+        drive.detent_torque_Nm[i] = item.number;
+    }
+}
+
 void read_drive(const Value &table, drive_settings &drive)
 {
     TableReader reader(table, "drive");
-    std::size_t law = 0, estimator = 0;
+    std::size_t law = 0, estimator = 0, feedback = 0, observer = 0;
+    if (reader.choice("feedback", feedback, names_of(drive_feedback_name, DRIVE_FEEDBACKS))) {
+        drive_settings_select_feedback(&drive, static_cast<drive_feedback>(feedback));
+    }
     if (reader.choice("law", law, names_of(drive_law_name, POSITION_LAW_COUNT))) {
-        drive.law = static_cast<position_law>(law);
+        drive_settings_select_law(&drive, static_cast<position_law>(law));
     }
     if (reader.choice("estimator", estimator, names_of(drive_estimator_name, DRIVE_ESTIMATORS))) {
         drive.estimator = static_cast<drive_estimator>(estimator);
     }
     reader.number("law_bandwidth_rad_s", drive.law_bandwidth_rad_s, 1, 1e5);
+    if (const Value *gains = reader.table("law_gains")) {
+        read_law_gains(*gains, drive);
+    }
+    if (reader.choice("observer", observer, names_of(drive_observer_name, DRIVE_OBSERVERS))) {
+        drive.observer = static_cast<drive_observer>(observer);
+    }
+    reader.number("observer_bandwidth_rad_s", drive.observer_bandwidth_rad_s, 1, 1e6);
+    reader.number("high_gain_epsilon_s", drive.high_gain_epsilon_s, 1e-7, 1);
+    reader.boolean("encoder_zero_known", drive.encoder_zero_known);
+    reader.number("encoder_zero_rad", drive.encoder_zero_rad, -largest_position_rad,
+                  largest_position_rad);
+    reader.number("initial_load_torque_Nm", drive.initial_load_torque_Nm, -100, 100);
+    reader.boolean("bridge_loss_compensation", drive.bridge_loss_compensation);
+    reader.boolean("detent_learning", drive.detent_learning);
+    read_detent_torque(reader, drive);
     reader.boolean("feed_forward", drive.feed_forward);
-    reader.number("current_bandwidth_rad_s", drive.current_bandwidth_rad_s, 1, 1e5);
+    reader.number("current_bandwidth_rad_s", drive.current_bandwidth_rad_s, 1, 1e6);
     reader.number("current_limit_A", drive.current_limit_A, 0, 1000);
     reader.number("overcurrent_trip_A", drive.overcurrent_trip_A, 0, 1000);
     reader.number("speed_limit_rad_s", drive.speed_limit_rad_s, 0, 1e5);
@@ -64,6 +185,8 @@ void read_drive(const Value &table, drive_settings &drive)
     reader.number("hold_current_A", drive.hold_current_A, 0, 1000);
     reader.number("hold_ramp_s", drive.hold_ramp_s, 0, 10);
     reader.number("hold_delay_s", drive.hold_delay_s, 0, 10);
+    reader.boolean("hold_at_rest", drive.hold_at_rest);
+    reader.number("hold_bandwidth_rad_s", drive.hold_bandwidth_rad_s, 1, 1e4);
     reader.boolean("calibrate_offsets", drive.calibrate_offsets);
     reader.boolean("hold_on_enable", drive.hold_on_enable);
     reader.number("hold_on_enable_s", drive.hold_on_enable_s, 0, 10);
@@ -73,11 +196,59 @@ void read_drive(const Value &table, drive_settings &drive)
     reader.finish();
 }
 
+/* What `real` adds to `bench`; sources: sil/plant/README.md. */
+void make_real(plant::Config &plant)
+{
+    constexpr double current_code_A = 12.0 / 4096.0;
+    plant.imperfections.saturation_depth = 0.10;
+    plant.imperfections.flux_harmonic_3 = 0.02;
+    plant.imperfections.detent_4 = 0.05;
+    plant.imperfections.detent_2 = 0.015;
+    plant.imperfections.detent_1 = 0.0075;
+    plant.imperfections.coulomb_friction = 0.015;
+    plant.imperfections.bridge_resistance_ohm = 2 * 0.11;
+    plant.supply.bus_source_ohm = 0.1;
+    plant.supply.bus_capacitance_F = 470e-6;
+    plant.supply.brake_ohm = 10;
+    plant.sensors.current_gain_a = 1.005;
+    plant.sensors.current_gain_b = 0.995;
+    plant.sensors.current_offset_on_a_A = 3 * current_code_A;
+    plant.sensors.current_offset_on_b_A = -2 * current_code_A;
+    plant.sensors.phase_voltage_offset_on_a_V = 5e-3;
+    plant.sensors.phase_voltage_offset_on_b_V = 5e-3;
+}
+
+void read_imperfections(TableReader &reader, plant::ImperfectionConfig &imperfections)
+{
+    reader.number("saturation_depth", imperfections.saturation_depth, 0, 0.5);
+    reader.number("flux_harmonic_3", imperfections.flux_harmonic_3, -0.2, 0.2);
+    reader.number("detent_4", imperfections.detent_4, -1, 1);
+    reader.number("detent_2", imperfections.detent_2, -1, 1);
+    reader.number("detent_1", imperfections.detent_1, -1, 1);
+    reader.number("coulomb_friction", imperfections.coulomb_friction, 0, 10);
+    reader.number("bridge_resistance_ohm", imperfections.bridge_resistance_ohm, 0, 100);
+}
+
+void read_supply(TableReader &reader, plant::Config &plant)
+{
+    constexpr double brake_headroom = 1.25; /* of the bus; the drive trips at 1.29 */
+    plant::SupplyConfig &supply = plant.supply;
+    reader.number("bus_V", plant.bridge.bus_V, 1, 1000);
+    supply.brake_V = brake_headroom * plant.bridge.bus_V;
+    reader.number("bus_source_ohm", supply.bus_source_ohm, 0, 100);
+    reader.number("bus_capacitance_F", supply.bus_capacitance_F, 1e-9, 10);
+    reader.number("brake_ohm", supply.brake_ohm, 0, 1e6);
+    reader.number("brake_V", supply.brake_V, 1, 2000);
+}
+
 void read_plant_model(TableReader &reader, plant::Config &plant)
 {
     std::size_t model = 1, bridge = 0;
-    reader.choice("model", model, {"ideal", "bench"});
+    reader.choice("model", model, {"ideal", "bench", "real"});
     const bool ideal = model == 0;
+    if (model == 2) {
+        make_real(plant);
+    }
     plant.bridge.model = ideal ? plant::BridgeModel::averaged : plant::BridgeModel::switched;
     plant.sensors.exact = ideal;
     if (reader.choice("bridge", bridge, {"averaged", "switched"})) {
@@ -94,22 +265,35 @@ void read_plant(const Value &table, Scenario &scenario)
     plant::BridgeConfig &bridge = plant.bridge;
     plant::SensorConfig &sensors = plant.sensors;
     std::int64_t delay_periods = bridge.delay_periods;
+    std::int64_t half_period_counts = bridge.half_period_counts;
+    std::int64_t encoder_counts_per_turn = sensors.encoder_counts_per_turn;
 
     read_plant_model(reader, plant);
-    reader.number("bus_V", bridge.bus_V, 1, 1000);
+    read_imperfections(reader, plant.imperfections);
+    read_supply(reader, plant);
     reader.number("dead_time_s", bridge.dead_time_s, 0, 1e-5);
     reader.number("diode_drop_V", bridge.diode_drop_V, 0, 5);
-    reader.number("period_s", bridge.period_s, 1e-5, 1e-3);
+    reader.number("period_s", bridge.period_s, 1e-6, 1e-3);
+    reader.integer("half_period_counts", half_period_counts, 1, 65535);
     reader.integer("delay_periods", delay_periods, 0, 1);
     reader.number("current_range_A", sensors.current_range_A, 0.1, 1000);
     reader.number("current_noise_rms_A", sensors.current_noise_rms_A, 0, 10);
     reader.number("current_offset_a_A", sensors.current_offset_a_A, -10, 10);
     reader.number("current_offset_b_A", sensors.current_offset_b_A, -10, 10);
+    reader.number("current_offset_on_a_A", sensors.current_offset_on_a_A, -10, 10);
+    reader.number("current_offset_on_b_A", sensors.current_offset_on_b_A, -10, 10);
+    reader.number("current_gain_a", sensors.current_gain_a, 0.1, 10);
+    reader.number("current_gain_b", sensors.current_gain_b, 0.1, 10);
     reader.number("phase_voltage_range_V", sensors.phase_voltage_range_V, 1, 2000);
     reader.number("phase_voltage_noise_rms_V", sensors.phase_voltage_noise_rms_V, 0, 100);
     reader.number("phase_voltage_offset_a_V", sensors.phase_voltage_offset_a_V, -100, 100);
     reader.number("phase_voltage_offset_b_V", sensors.phase_voltage_offset_b_V, -100, 100);
+    reader.number("phase_voltage_offset_on_a_V", sensors.phase_voltage_offset_on_a_V, -100, 100);
+    reader.number("phase_voltage_offset_on_b_V", sensors.phase_voltage_offset_on_b_V, -100, 100);
     reader.number("bus_range_V", sensors.bus_range_V, 1, 2000);
+    reader.integer("encoder_counts_per_turn", encoder_counts_per_turn, 0, 1 << 30);
+    reader.number("encoder_eccentricity_rad", sensors.encoder_eccentricity_rad, -0.1, 0.1);
+    reader.number("encoder_phase_rad", sensors.encoder_phase_rad, -6.28, 6.28);
     reader.number("initial_theta_rad", plant.initial_theta_rad, -largest_position_rad,
                   largest_position_rad);
     reader.number("initial_omega_rad_s", plant.initial_omega_rad_s, -1e4, 1e4);
@@ -118,6 +302,8 @@ void read_plant(const Value &table, Scenario &scenario)
     }
     reader.finish();
     bridge.delay_periods = static_cast<int>(delay_periods);
+    bridge.half_period_counts = static_cast<int>(half_period_counts);
+    sensors.encoder_counts_per_turn = static_cast<int>(encoder_counts_per_turn);
 }
 
 /* What follows from the motor, before [plant] and [drive] are read. */
@@ -126,11 +312,26 @@ void set_defaults(Scenario &scenario)
     const motor_params &motor = scenario.motor.params;
     drive_settings_default(&scenario.drive, &motor);
     scenario.plant.bridge.bus_V = motor.supply_V;
+    scenario.plant.imperfections.rated_current_A = motor.rated_current_A;
     scenario.plant.sensors.phase_voltage_range_V = supply_headroom * motor.supply_V;
     scenario.plant.sensors.bus_range_V = supply_headroom * motor.supply_V;
 }
 
 } // namespace
+
+ParameterSet read_parameters(const fs::path &file)
+{
+    Value document = read_toml(file);
+    document.location = {file.string(), 0};
+    TableReader reader(document, "");
+    ParameterSet set;
+    reader.require("description");
+    reader.text("description", set.description);
+    reader.require("drive");
+    set.drive = *reader.table("drive");
+    reader.finish();
+    return set;
+}
 
 plant::MotorConfig scaled(const motor_params &motor, const PlantScales &scales)
 {
@@ -165,40 +366,47 @@ std::string Scenario::locate(const std::string &complaint) const
 }
 
 Scenario read_scenario(const Catalogue &catalogue, const std::string &name,
-                       const std::vector<std::string> &settings, const std::string &asked_by)
+                       const CommandLine &given, const std::string &asked_by)
 {
     const fs::path file = catalogue.scenario(name, asked_by);
     Scenario scenario;
     scenario.name = file.stem().string();
     scenario.asked = name;
-    scenario.settings = settings;
+    scenario.given = given;
     scenario.document = read_with_bases(catalogue, file, {});
     scenario.document.location = {file.string(), 0};
-    apply_settings(scenario.document, settings);
+    apply_command_line(scenario.document, catalogue, given, scenario.parameters);
 
     TableReader reader(scenario.document, "");
     std::string motor;
     std::int64_t seed = 1;
+    std::int64_t record_every = 1;
     reader.any("base");
+    reader.any("parameters");
     reader.require("description");
     reader.text("description", scenario.description);
     reader.require("motor");
     if (reader.text("motor", motor)) {
         const Location &where = scenario.document.find("motor")->location;
-        scenario.motor = read_motor(
-            catalogue.motor(motor, where.text() + ": motor",
-                            where.line == 0 ? fs::path() : fs::path(where.file).parent_path()));
+        scenario.motor =
+            read_motor(catalogue.motor(motor, where.text() + ": motor", folder_of(where)));
     }
     reader.require("duration_s");
     reader.number("duration_s", scenario.duration_s, 1e-3, longest_run_s);
     reader.integer("seed", seed, 0, std::int64_t{1} << 53);
     reader.boolean("record_enabling", scenario.record_enabling);
+    reader.integer("record_every", record_every, 1, 1000000);
+    read_numerics(reader, scenario.numerics);
     reader.number("settling_band_rad", scenario.settling_band_rad, 1e-9, 10);
     scenario.seed = static_cast<std::uint64_t>(seed);
 
     set_defaults(scenario);
     if (const Value *plant = reader.table("plant")) {
         read_plant(*plant, scenario);
+    }
+    scenario.record_every = static_cast<std::uint32_t>(record_every);
+    if (scenario.duration_s > most_rows * scenario.plant.bridge.period_s * scenario.record_every) {
+        reader.fail("record_every", "too many periods to record all of them: record every n-th");
     }
     scenario.plant.motor = scaled(scenario.motor.params, scenario.scales);
     scenario.drive.initial_angle_rad = scenario.plant.initial_theta_rad;
@@ -207,6 +415,7 @@ Scenario read_scenario(const Catalogue &catalogue, const std::string &name,
     }
     scenario.events = read_events(reader, scenario.duration_s);
     scenario.expectations = read_expectations(reader, scenario.duration_s);
+    scenario.reports = read_reports(reader, scenario.duration_s);
     reader.finish();
 
     char error[DRIVE_ERROR_TEXT] = "";

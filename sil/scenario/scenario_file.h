@@ -18,21 +18,31 @@
 namespace scenario
 {
 
+/* What the command line lays over a scenario's files. */
+struct CommandLine {
+    std::string parameters;            /* of --parameters; "" */
+    std::vector<std::string> settings; /* of --set: "table.key=value" */
+};
+
 struct Scenario {
     std::string name, description;
     std::string asked; /* name or path by which it was asked for */
     Motor motor;
     double duration_s = 0;
     std::uint64_t seed = 1;
+    std::vector<std::string> numerics{"float", "fixed"}; /* formats it is judged in */
     bool record_enabling = false;
+    std::uint32_t record_every = 1; /* periods from one row of the record to the next */
     double settling_band_rad = 2e-3;
     drive_settings drive{};
     plant::Config plant; /* motor: as the plant starts, scales applied */
     PlantScales scales;
     std::vector<Event> events; /* sorted by time */
     std::vector<Expectation> expectations;
-    std::vector<std::string> settings; /* the --set it was read with */
-    Value document;                    /* where everything was written */
+    std::vector<Expectation> reports; /* figures without a bound */
+    std::string parameters;           /* name of the parameter set in use; "": none */
+    CommandLine given;                /* on top of its files */
+    Value document;                   /* where everything was written */
 
     /* The place to complain about a text of drive or board that begins with a field's name. */
     std::string locate(const std::string &complaint) const;
@@ -40,10 +50,22 @@ struct Scenario {
 
 plant::MotorConfig scaled(const motor_params &motor, const PlantScales &scales);
 
-/* Reads a scenario by name or path, its bases first, `settings` ("table.key=value") last.
-   Throws InputError. */
+/* A tuned law: drive settings to be laid under a scenario's own. */
+struct ParameterSet {
+    std::string description;
+    Value drive; /* its [drive] */
+};
+
+/* Throws InputError. */
+ParameterSet read_parameters(const std::filesystem::path &file);
+
+/*
+ * Reads a scenario by name or path, its bases first. Where a key is given more than once, --set
+ * counts, then --parameters, then the scenario's own, then the parameter set it names.
+ * Throws InputError.
+ */
 Scenario read_scenario(const Catalogue &catalogue, const std::string &name,
-                       const std::vector<std::string> &settings, const std::string &asked_by);
+                       const CommandLine &given, const std::string &asked_by);
 
 } // namespace scenario
 

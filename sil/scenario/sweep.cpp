@@ -63,8 +63,8 @@ void read_row(const Catalogue &catalogue, const Value &table, const std::string 
     for (const double scale : scales) {
         SweepCase one = row;
         one.scale = scale;
-        one.scenario = read_scenario(catalogue, scenario,
-                                     {"plant." + row.parameter + "=" + shortest(scale)}, where);
+        const CommandLine given{"", {"plant." + row.parameter + "=" + shortest(scale)}};
+        one.scenario = read_scenario(catalogue, scenario, given, where);
         if (std::fabs(scale - 1) > bound_within * (1 + 1e-9)) {
             one.max_rad = one.rms_rad = one.rest_rad = Metrics::none;
         }
@@ -78,6 +78,17 @@ double percentile(const std::vector<Result> &results, const WindowResult Result:
     std::vector<double> values;
     for (const Result &result : results) {
         values.push_back(result.failure.empty() ? (result.*window).metrics.*metric : Metrics::none);
+    }
+    return percentile_95(values);
+}
+
+/* Of the report with this index. */
+double reported_percentile(const std::vector<Result> &results, std::size_t index)
+{
+    std::vector<double> values;
+    for (const Result &result : results) {
+        values.push_back(index < result.reported.size() ? result.reported[index].value
+                                                        : Metrics::none);
     }
     return percentile_95(values);
 }
@@ -96,6 +107,21 @@ std::string bounds(const SweepCase &one)
     return text;
 }
 
+/* What the first two figures are of. */
+void read_error(TableReader &reader, Sweep &sweep)
+{
+    const std::vector<std::string> errors{"estimate", "position"};
+    std::size_t error = 0;
+    reader.choice("error", error, errors);
+    sweep.error = errors[error];
+    sweep.window.kind = Window::Kind::move;
+    if (reader.number("begin_s", sweep.window.begin_s, 0, 600)) {
+        reader.require("end_s");
+        reader.number("end_s", sweep.window.end_s, sweep.window.begin_s, 600);
+        sweep.window.kind = Window::Kind::times;
+    }
+}
+
 } // namespace
 
 Sweep read_sweep(const Catalogue &catalogue, const fs::path &file)
@@ -107,20 +133,30 @@ Sweep read_sweep(const Catalogue &catalogue, const fs::path &file)
     sweep.name = file.stem().string();
     reader.require("description");
     reader.text("description", sweep.description);
+    read_error(reader, sweep);
     reader.require("row");
     const Value *rows = reader.array("row");
     for (std::size_t i = 0; i < rows->items.size(); ++i) {
         read_row(catalogue, rows->items[i], "row[" + std::to_string(i + 1) + "]", sweep);
     }
     reader.finish();
+    for (SweepCase &one : sweep.cases) {
+        for (const char *const figure : {"max", "rms"}) {
+            Expectation report;
+            report.metric = sweep.error + "_error_" + figure + "_rad";
+            report.window = sweep.window;
+            one.scenario.reports.push_back(report);
+        }
+    }
     return sweep;
 }
 
 SweepFigures figures_of(const SweepCase &one, const std::vector<Result> &results)
 {
+    const std::size_t max = one.scenario.reports.size() - 2; /* as read_sweep appended them */
     SweepFigures figures{};
-    figures.max_rad = percentile(results, &Result::move, &Metrics::estimate_error_max_rad);
-    figures.rms_rad = percentile(results, &Result::move, &Metrics::estimate_error_rms_rad);
+    figures.max_rad = reported_percentile(results, max);
+    figures.rms_rad = reported_percentile(results, max + 1);
     figures.rest_rad = percentile(results, &Result::rest, &Metrics::position_error_final_rad);
     figures.slip_full_steps = percentile(results, &Result::all, &Metrics::slip_full_steps);
     figures.bounded = is_bound(one.max_rad) || is_bound(one.rms_rad) || is_bound(one.rest_rad);
@@ -132,11 +168,12 @@ SweepFigures figures_of(const SweepCase &one, const std::vector<Result> &results
     return figures;
 }
 
-std::string sweep_heading()
+std::string sweep_heading(const Sweep &sweep)
 {
+    const std::string error = sweep.error.substr(0, 3);
     return format("%-7s %-24s %6s  %-32s %9s %9s %9s  %-22s %s\n", "figure", "plant parameter",
-                  "off by", "the paper says", "est. max", "est. rms", "at rest",
-                  "bounds max/rms/rest", "") +
+                  "off by", "the paper says", (error + ". max").c_str(), (error + ". rms").c_str(),
+                  "at rest", "bounds max/rms/rest", "") +
            format("%-7s %-24s %6s  %-32s %9s %9s %9s  %-22s %s\n", "", "", "", "", "rad", "rad",
                   "rad", "rad", "");
 }
@@ -168,8 +205,8 @@ std::string sweep_json(const Sweep &sweep, const std::vector<SweepFigures> &figu
         row["scale"] = one.scale;
         row["scenario"] = one.scenario.name;
         row["paper"] = one.paper;
-        row["estimate_error_max_rad"] = figures[i].max_rad;
-        row["estimate_error_rms_rad"] = figures[i].rms_rad;
+        row[sweep.error + "_error_max_rad"] = figures[i].max_rad;
+        row[sweep.error + "_error_rms_rad"] = figures[i].rms_rad;
         row["position_error_rest_rad"] = figures[i].rest_rad;
         row["slip_full_steps"] = figures[i].slip_full_steps;
         row["bound_max_rad"] = one.max_rad;

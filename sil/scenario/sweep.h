@@ -18,14 +18,15 @@ namespace scenario
 struct SweepCase {
     std::string figure, parameter, paper;
     double scale = 1;
-    /* Bounds on the estimate error in the move and the position error at rest; NaN: only reported.
-     */
+    /* Bounds on the error in the window and the position error at rest; NaN: only reported. */
     double max_rad = Metrics::none, rms_rad = Metrics::none, rest_rad = Metrics::none;
     Scenario scenario;
 };
 
 struct Sweep {
     std::string name, description;
+    std::string error = "estimate"; /* the error in the window is of the estimate or the position */
+    Window window;                  /* move, unless the file gives times */
     std::vector<SweepCase> cases;
 };
 
@@ -40,7 +41,7 @@ struct SweepFigures {
 
 SweepFigures figures_of(const SweepCase &one, const std::vector<Result> &results);
 
-std::string sweep_heading();
+std::string sweep_heading(const Sweep &sweep);
 std::string sweep_line(const SweepCase &one, const SweepFigures &figures);
 std::string sweep_json(const Sweep &sweep, const std::vector<SweepFigures> &figures,
                        const std::string &numeric, std::size_t seeds);

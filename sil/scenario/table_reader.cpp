@@ -182,7 +182,12 @@ const Value *TableReader::table(const std::string &key)
 
 const Value *TableReader::array(const std::string &key)
 {
-    return find(key, Value::Kind::array, "an array of tables");
+    return list(key, "an array of tables");
+}
+
+const Value *TableReader::list(const std::string &key, const char *expected)
+{
+    return find(key, Value::Kind::array, expected);
 }
 
 void TableReader::require(const std::string &key) const

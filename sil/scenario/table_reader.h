@@ -45,6 +45,8 @@ class TableReader
     bool choice(const std::string &key, std::size_t &target, const std::vector<std::string> &names);
     const Value *table(const std::string &key);
     const Value *array(const std::string &key);
+    /* An array of something else, `expected` in complaints. */
+    const Value *list(const std::string &key, const char *expected);
     const Value *any(const std::string &key);
 
     void require(const std::string &key) const; /* throws unless present */

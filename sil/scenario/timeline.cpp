@@ -1,6 +1,10 @@
 #include "sil/scenario/timeline.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "sil/scenario/text.h"
 
@@ -13,6 +17,33 @@ namespace
 constexpr double longest_ramp_s = 600;
 constexpr double largest_bound = 1e12; /* of an expectation; any finite number in practice */
 constexpr double largest_position_rad = 1e7;
+
+/* A number of a command: what it is called, where it goes, its range. */
+struct CommandField {
+    const char *key;
+    double drive_command::*target;
+    double min, max;
+};
+
+/* Ranges keep out what is absurd; the drive knows its own limits and refuses with its own text. */
+const std::vector<CommandField> &planned_fields()
+{
+    static const std::vector<CommandField> fields = {
+        {"amplitude_rad", &drive_command::amplitude_rad, -largest_position_rad,
+         largest_position_rad},
+        {"frequency_Hz", &drive_command::frequency_Hz, 1e-3, 1e6},
+        {"cycles", &drive_command::cycles, 0, 1e9},
+        {"interval_s", &drive_command::interval_s, 1e-6, 1},
+        {"position_rad", &drive_command::position_rad, -largest_position_rad, largest_position_rad},
+        {"ramp_s", &drive_command::ramp_s, 0, longest_ramp_s},
+        {"speed_rad_s", &drive_command::speed_rad_s, -1e5, 1e5},
+        {"acceleration_rad_s2", &drive_command::acceleration_rad_s2, 1e-6, 1e12},
+        {"jerk_rad_s3", &drive_command::jerk_rad_s3, 1e-6, 1e15},
+    };
+    return fields;
+}
+
+constexpr const char *power_cycle = "power-cycle"; /* of the board, not to the drive */
 
 struct CommandKind {
     const char *name;
@@ -32,8 +63,85 @@ const std::vector<CommandKind> &command_kinds()
         {"hold", DRIVE_COMMAND_HOLD, {}},
         {"enable", DRIVE_COMMAND_ENABLE, {}},
         {"disable", DRIVE_COMMAND_DISABLE, {}},
+        {"save", DRIVE_COMMAND_SAVE, {}},
+        {"sine", DRIVE_COMMAND_SINE, {"amplitude_rad", "frequency_Hz", "cycles", "ramp_s"}},
+        {"set-points",
+         DRIVE_COMMAND_SET_POINT,
+         {"interval_s", "acceleration_rad_s2", "jerk_rad_s3"}},
+        {"velocity", DRIVE_COMMAND_VELOCITY, {"speed_rad_s", "acceleration_rad_s2", "jerk_rad_s3"}},
+        {"retarget",
+         DRIVE_COMMAND_RETARGET,
+         {"position_rad", "speed_rad_s", "acceleration_rad_s2", "jerk_rad_s3"}},
     };
     return kinds;
+}
+
+/* One position per line; empty lines and what follows a # count for nothing. */
+std::vector<double> read_positions(const std::filesystem::path &file, const std::string &asked_by)
+{
+    std::ifstream stream(file);
+    if (!stream) {
+        throw InputError(asked_by + ": cannot read " + file.string());
+    }
+    std::vector<double> positions;
+    std::string line;
+    for (std::size_t number = 1; std::getline(stream, line); ++number) {
+        const std::string text = line.substr(0, line.find('#'));
+        const std::size_t begin = text.find_first_not_of(" \t\r");
+        if (begin == std::string::npos) {
+            continue;
+        }
+        const std::size_t end = text.find_last_not_of(" \t\r") + 1;
+        double value = 0;
+        const auto result = std::from_chars(text.data() + begin, text.data() + end, value);
+        if (result.ec != std::errc() || result.ptr != text.data() + end ||
+            !(std::fabs(value) <= largest_position_rad)) {
+            throw InputError(file.string() + ":" + std::to_string(number) +
+                             ": expected one position in rad, -1e7...1e7");
+        }
+        positions.push_back(value);
+    }
+    return positions;
+}
+
+/* `positions_rad` or the lines of `file`; the last one three times, which ends the stream. */
+std::vector<double> read_set_points(TableReader &reader, const Location &event)
+{
+    const Value *list = reader.array("positions_rad");
+    std::string file;
+    std::vector<double> positions;
+    if (reader.text("file", file) == (list != nullptr)) {
+        reader.fail("positions_rad", "expected exactly one of positions_rad, file");
+    }
+    if (list != nullptr) {
+        for (const Value &item : list->items) {
+            if ((item.kind != Value::Kind::number && item.kind != Value::Kind::integer) ||
+                !(std::fabs(item.number) <= largest_position_rad)) {
+                reader.fail("positions_rad", "expected numbers in -1e7...1e7");
+            }
+            positions.push_back(item.number);
+        }
+    } else {
+        positions = read_positions(std::filesystem::path(event.file).parent_path() / file,
+                                   event.text() + ": file");
+    }
+    if (positions.empty()) {
+        reader.fail(list != nullptr ? "positions_rad" : "file", "expected at least one position");
+    }
+    positions.insert(positions.end(), 2, positions.back());
+    return positions;
+}
+
+void read_planned(TableReader &reader, const CommandKind &kind, drive_command &command)
+{
+    for (const std::string name : kind.fields) {
+        reader.require(name);
+        for (const CommandField &field : planned_fields()) {
+            if (name == field.key) {
+                reader.number(name, command.*field.target, field.min, field.max);
+            }
+        }
+    }
 }
 
 drive_command read_command(TableReader &reader, double time_left_s)
@@ -42,12 +150,17 @@ drive_command read_command(TableReader &reader, double time_left_s)
     for (const CommandKind &kind : command_kinds()) {
         names.push_back(kind.name);
     }
+    names.push_back(power_cycle);
     std::size_t index = 0;
     reader.choice("command", index, names);
     const CommandKind &kind = command_kinds()[index];
 
     drive_command command{};
     command.kind = kind.kind;
+    if (command.kind >= DRIVE_COMMAND_SINE && command.kind <= DRIVE_COMMAND_RETARGET) {
+        read_planned(reader, kind, command);
+        return command;
+    }
     for (const std::string field : kind.fields) {
         reader.require(field);
         if (field == "position_rad") {
@@ -94,8 +207,14 @@ Event read_event(const Value &table, const std::string &path, double duration_s)
     if ((command != nullptr) + (plant != nullptr) + has_load != 1) {
         reader.fail("command", "expected exactly one of command, load_torque_Nm, plant.<scale>");
     }
-    if (command != nullptr) {
+    if (command != nullptr && command->kind == Value::Kind::text && command->text == power_cycle) {
+        event.power_cycle = true;
+    } else if (command != nullptr) {
         event.command = read_command(reader, duration_s - event.time_s);
+        if (event.command->kind == DRIVE_COMMAND_SET_POINT) {
+            event.set_points_rad = read_set_points(reader, event.location);
+            event.command->position_rad = event.set_points_rad.front();
+        }
     } else if (plant != nullptr) {
         read_drift(reader, *plant, path, event);
     } else {
@@ -182,6 +301,23 @@ Expectation read_expectation(const Value &table, const std::string &path, double
     return expectation;
 }
 
+Expectation read_report(const Value &table, const std::string &path, double duration_s)
+{
+    TableReader reader(table, path);
+    std::vector<std::string> metrics;
+    for (const MetricField &field : metric_fields()) {
+        metrics.push_back(field.name);
+    }
+    std::size_t metric = 0;
+    Expectation report;
+    reader.require("metric");
+    reader.choice("metric", metric, metrics);
+    report.metric = metrics[metric];
+    report.window = read_window(reader, duration_s);
+    reader.finish();
+    return report;
+}
+
 /* "event[1]": the place in an array of tables, from 1. */
 std::string element(const std::string &array, std::size_t index)
 {
@@ -239,6 +375,17 @@ std::vector<Expectation> read_expectations(TableReader &scenario, double duratio
         }
     }
     return expectations;
+}
+
+std::vector<Expectation> read_reports(TableReader &scenario, double duration_s)
+{
+    std::vector<Expectation> reports;
+    if (const Value *tables = scenario.array("report")) {
+        for (std::size_t i = 0; i < tables->items.size(); ++i) {
+            reports.push_back(read_report(tables->items[i], element("report", i), duration_s));
+        }
+    }
+    return reports;
 }
 
 } // namespace scenario

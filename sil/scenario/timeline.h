@@ -1,5 +1,6 @@
 /*
- * What happens in a scenario and what must come of it: its events and its expectations.
+ * What happens in a scenario and what must come of it: its events, its expectations, and the
+ * figures it reports besides.
  */
 #ifndef STEADYSTEP_SCENARIO_TIMELINE_H
 #define STEADYSTEP_SCENARIO_TIMELINE_H
@@ -28,10 +29,13 @@ struct PlantScaleField {
 
 const std::vector<PlantScaleField> &plant_scale_fields();
 
-/* Something that happens at a time; exactly one of the three. */
+/* Something that happens at a time; exactly one of the four. */
 struct Event {
     double time_s = 0; /* 0 is the first S(k) with the drive ready */
     std::optional<drive_command> command;
+    std::vector<double> set_points_rad; /* of set-points: the first goes with the command, the
+                                           others follow at its interval */
+    bool power_cycle = false; /* the board restarts, with its parameter store as it was */
     std::optional<double> load_torque_Nm;
     double PlantScales::*drift = nullptr; /* this scale goes to drift_to within drift_ramp_s */
     double drift_to = 1;
@@ -39,19 +43,24 @@ struct Event {
     Location location;
 };
 
-/* One bound on one metric over one window. */
+/* One bound on one metric over one window; one that is only reported has no bound and holds. */
 struct Expectation {
     std::string metric;
     Window window;
     std::optional<double> min, max, equals;
     std::optional<std::string> equals_text; /* of `fault` */
 
+    bool bounded() const
+    {
+        return min || max || equals || equals_text;
+    }
     std::string bound() const; /* "<= 0.001" */
 };
 
-/* The arrays `event`, sorted by time, and `expect` of a scenario; throw InputError. */
+/* The arrays `event`, sorted by time, `expect` and `report` of a scenario; throw InputError. */
 std::vector<Event> read_events(TableReader &scenario, double duration_s);
 std::vector<Expectation> read_expectations(TableReader &scenario, double duration_s);
+std::vector<Expectation> read_reports(TableReader &scenario, double duration_s);
 
 } // namespace scenario
 

@@ -35,7 +35,7 @@ ROOMS = {
 EXPOSED_BY = "sil/board/board.h"
 
 # The portable firmware stands on a freestanding C compiler: no heap, no I/O, no libm.
-C_HEADERS = {"float.h", "limits.h", "stdbool.h", "stddef.h", "stdint.h", "string.h"}
+C_HEADERS = {"float.h", "limits.h", "stdatomic.h", "stdbool.h", "stddef.h", "stdint.h", "string.h"}
 # What would make a simulation depend on clock, scheduling or library version.
 BANNED_IN_SIMULATION = {"chrono", "ctime", "future", "random", "thread", "time.h"}
 

@@ -36,12 +36,21 @@ SCENARIOS = [
      ["drive", "expected a table"]),
     ("date", replaced("duration_s = 0.05", "duration_s = 2012-02-01"), 3, ["date"]),
     ("zero period", replaced('model = "bench"', "period_s = 0"), 9,
-     ["plant.period_s", "1e-05...0.001", "got 0"]),
+     ["plant.period_s", "1e-06...0.001", "got 0"]),
     ("negative inductance", replaced('model = "bench"', "inductance_scale = -1"), 9,
      ["plant.inductance_scale", "0.01...100", "got -1"]),
     ("NaN", replaced('model = "bench"', "bus_V = nan"), 9, ["plant.bus_V", "got nan"]),
     ("infinity", replaced("position_rad = 0.05", "position_rad = inf"), 14,
      ["event[1].position_rad", "got inf"]),
+    ("unknown number format", 'numerics = ["fixd"]\n' + SMALL, 1,
+     ["numerics", "did you mean fixed?"]),
+    ("a number format twice", 'numerics = ["fixed", "fixed"]\n' + SMALL, 1,
+     ["numerics", "given twice"]),
+    ("no number format", "numerics = []\n" + SMALL, 1, ["numerics", "at least one"]),
+    ("more rows than there is room for",
+     replaced("duration_s = 0.05", "duration_s = 600").replace('model = "bench"', "period_s = 1e-5"),
+     None, ["record_every"]),
+    ("no row at all", "record_every = 0\n" + SMALL, 1, ["record_every", "1...1000000"]),
     ("duration zero", replaced("duration_s = 0.05", "duration_s = 0"), 3, ["duration_s"]),
     ("a setting that the drive refuses",
      replaced("hold_on_enable = false", "hold_current_A = 30.0"), 6, ["hold_current_A", "30"]),
@@ -76,6 +85,17 @@ SCENARIOS = [
     ("window that ends first", SMALL + "window = [0.04, 0.02]\n", 21, ["expect[1].window"]),
     ("window beyond the end", SMALL + "window = [0.04, 0.2]\n", 21,
      ["expect[1].window", "end <= 0.05"]),
+    ("report with a bound",
+     SMALL + '[[report]]\nmetric = "overshoot_rad"\nmax = 1.0\n', 23,
+     ["report[1].max", "unknown key"]),
+    ("report of no figure", SMALL + '[[report]]\nmetric = "fault"\n', 22,
+     ["report[1].metric", "position_error_max_rad"]),
+    ("unknown parameter set", 'parameters = "bendjedia-2012/pip"\n' + SMALL, 1,
+     ["parameters", "unknown parameter set", "did you mean bendjedia-2012/pid?"]),
+    ("a parameter set that is not there", 'parameters = "pip.toml"\n' + SMALL, 1,
+     ["pip.toml", "no such file"]),
+    ("number for a parameter set", "parameters = 3\n" + SMALL, 1,
+     ["parameters", "expected a text"]),
     ("unknown base", 'base = "bendjedia-fig100"\n' + SMALL, 1,
      ["base", "did you mean bendjedia-fig10"]),
     ("base of itself", 'base = "./scenario.toml"\n' + SMALL, 1, ["base", "itself"]),
@@ -97,6 +117,22 @@ MOTORS = [
     ("no TOML", "id = \n", 1, ["not valid TOML"]),
 ]
 
+# name, text of the parameter set, line, what the complaint must contain
+PARAMETERS = [
+    ("no description", '[drive]\nlaw = "pid"\n', None, ["description: is missing"]),
+    ("no drive settings", 'description = "nothing"\n', None, ["drive: is missing"]),
+    ("another table", 'description = "a plant"\n[drive]\n[plant]\nbus_V = 24.0\n', 3,
+     ["plant", "unknown key"]),
+    ("unknown setting", 'description = "a slip"\n[drive]\nlay = "pid"\n', 3,
+     ["drive.lay", "did you mean law?"]),
+    ("wrong type", 'description = "a slip"\n[drive]\nlaw_bandwidth_rad_s = "fast"\n', 3,
+     ["drive.law_bandwidth_rad_s", "expected a number"]),
+    ("a bandwidth that the law cannot bear",
+     'description = "too fast"\n[drive]\nlaw = "pid"\nlaw_bandwidth_rad_s = 5000.0\n', None,
+     ["bandwidth"]),
+    ("no TOML", "description = \n", 1, ["not valid TOML"]),
+]
+
 # name, arguments after a good scenario, what the complaint must contain
 ARGUMENTS = [
     ("a key set twice", ["--set", "plant.bus_V=24", "--set", "plant.bus_V=30"],
@@ -110,6 +146,10 @@ ARGUMENTS = [
     ("unknown law", ["--set", "drive.law=lqr"], ["--set drive.law=lqr", "state-feedback, pid"]),
     ("below a value", ["--set", "duration_s.x=1"], ["duration_s", "no keys"]),
     ("unknown motor", ["--set", "motor=kim-2017"], ["unknown motor", "kim-2016"]),
+    ("unknown parameter set", ["--parameters", "bendjedia-2012/pip"],
+     ["--parameters bendjedia-2012/pip", "unknown parameter set"]),
+    ("a motor without parameter sets", ["--parameters", "bendjedia/pid"],
+     ["did you mean bendjedia-2012/pid?"]),
     ("unknown format", ["--numeric", "half"], ["--numeric", "half"]),
     ("negative seed", ["--seed", "-1"], ["--seed"]),
     ("seeds backwards", ["--seeds", "4-1"], ["--seeds 4-1", "A-B"]),
@@ -151,6 +191,17 @@ def motor_files(folder):
         (folder / "bendjedia-2012.toml").write_text(text, encoding="utf-8")
         prefix = "./bendjedia-2012.toml" + (f":{line}: " if line else "")
         complains("motor: " + name, folder, ["scenario.toml"], expected, prefix)
+
+
+def parameter_sets(folder):
+    (folder / "scenario.toml").write_text('parameters = "set.toml"\n' + SMALL, encoding="utf-8")
+    for name, text, line, expected in PARAMETERS:
+        (folder / "set.toml").write_text(text, encoding="utf-8")
+        prefix = f"set.toml:{line}: " if line else ""
+        complains("parameter set: " + name, folder, ["scenario.toml"], expected, prefix)
+        # A path on the command line means the same set, from where the command is given.
+        complains("--parameters: " + name, folder, ["scenario.toml", "--parameters", "set.toml"],
+                  expected, prefix)
 
 
 def arguments(folder):
@@ -206,7 +257,7 @@ def broken_expectation(folder):
                 f"broken: named with its bound: {line}")
 
 
-for part in (scenario_files, motor_files, arguments, output_folder, good_input,
+for part in (scenario_files, motor_files, parameter_sets, arguments, output_folder, good_input,
              broken_expectation):
     with scratch() as name:
         part(pathlib.Path(name))

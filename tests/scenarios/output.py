@@ -125,6 +125,70 @@ def base_and_set_change_only_what_they_name(folder):
     CHECKS.that(with_set["set"] == ["drive.law=pid"], "the summary names the setting")
 
 
+PID = 'description = "a set"\n[drive]\nlaw = "pid"\nhold_at_rest = false\n'
+
+
+def parameter_sets_lie_under_the_scenario(folder):
+    """--set counts more than --parameters, that more than [drive], that more than `parameters`."""
+    (folder / "set.toml").write_text(PID, encoding="utf-8")
+
+    def law(text, *arguments):
+        run_small(folder, text, *arguments)
+        return summary_of(folder)["law"]
+
+    named = 'parameters = "./set.toml"\n' + SMALL
+    own = named.replace("[drive]", '[drive]\nlaw = "state-feedback"')
+    CHECKS.that(law(SMALL) != "pid", "the default is another law")
+    CHECKS.that(law(named) == "pid", "a named set counts")
+    with_set = summary_of(folder)
+    CHECKS.that(with_set["parameters"] == "./set.toml", "the summary names the set")
+    plain = SMALL.replace("[drive]", '[drive]\nlaw = "pid"\nhold_at_rest = false')
+    run_small(folder, plain)
+    CHECKS.that(summary_of(folder)["trace_hash"] == with_set["trace_hash"],
+                "a set means the same as its keys in the scenario")
+    CHECKS.that(law(own) == "state-feedback", "the scenario's own settings count more")
+    CHECKS.that(law(own, "--parameters", "set.toml") == "pid", "--parameters counts more yet")
+    CHECKS.that("--parameters set.toml" in summary_of(folder)["reproduce"], "and is reproduced")
+    CHECKS.that(law(own, "--parameters", "set.toml", "--set", "drive.law=microstepping")
+                == "microstepping", "--set counts most")
+
+
+def reports_are_figures_without_a_bound(folder):
+    text = SMALL + ('[[report]]\nmetric = "position_error_rms_rad"\nwindow = [0.0, 0.05]\n'
+                    '[[report]]\nmetric = "load_torque_t90_s"\n')
+    result = run_small(folder, text)
+    summary = summary_of(folder)
+    rms, t90 = summary["reports"]
+    CHECKS.that(result.returncode == 0, f"what is only reported holds: {result.stdout}")
+    CHECKS.that(rms["value"] == summary["metrics"]["all"]["position_error_rms_rad"]
+                and rms["window"] == "0...0.05", f"a report's value: {rms}")
+    CHECKS.that(t90["value"] is None, f"a report without a value: {t90}")
+    CHECKS.that(result.stdout.count("reported") == 2, f"a line each: {result.stdout}")
+
+
+def json_takes_the_place_of_the_report(folder):
+    (folder / "small.toml").write_text(SMALL, encoding="utf-8")
+    (folder / "other.toml").write_text('base = "./small.toml"\n', encoding="utf-8")
+    result = run("run", "small.toml", "other.toml", "--seeds", "1-2", "--json", cwd=folder)
+    runs = json.loads(result.stdout)
+    CHECKS.that([(one["scenario"], one["seed"]) for one in runs]
+                == [("small", 1), ("small", 2), ("other", 1), ("other", 2)], "all runs, in order")
+    CHECKS.that(not (folder / "out").exists(), "nothing written")
+    run_small(folder, SMALL)
+    written = summary_of(folder)
+    CHECKS.that({key: value for key, value in written.items() if key != "cpu_s"}
+                == {key: value for key, value in runs[0].items() if key != "cpu_s"},
+                "the same as summary.json")
+
+
+def every_tenth_period_is_recorded_on_request(folder):
+    run_small(folder, SMALL)
+    _, all_rows = table(folder)
+    run_small(folder, "record_every = 10\n" + SMALL)
+    _, rows = table(folder)
+    CHECKS.that(rows == all_rows[::10], f"{len(rows)} of {len(all_rows)} rows, the same")
+
+
 def sweep_writes_its_table(folder):
     (folder / "small.toml").write_text(SMALL, encoding="utf-8")
     (folder / "sweep.toml").write_text(
@@ -138,10 +202,28 @@ def sweep_writes_its_table(folder):
     CHECKS.that(all(row["held"] and row["estimate_error_max_rad"] > 0 for row in rows), "figures")
 
 
+def a_sweep_shows_the_error_and_the_window_it_is_asked_for(folder):
+    (folder / "small.toml").write_text(
+        SMALL + '[[report]]\nmetric = "position_error_max_rad"\nwindow = [0.0, 0.005]\n',
+        encoding="utf-8")
+    (folder / "sweep.toml").write_text(
+        'description = "a window"\nerror = "position"\nbegin_s = 0.0\nend_s = 0.005\n[[row]]\n'
+        'figure = "none"\nparameter = "resistance_scale"\nscales = [1.0]\n'
+        'scenario = "./small.toml"\npaper = "nothing"\n', encoding="utf-8")
+    run("run", "small.toml", "--out", "out", cwd=folder)
+    run("sweep", "./sweep.toml", "--seeds", "1-1", "--out", "swept", cwd=folder)
+    rows = json.loads((folder / "swept/table.json").read_text(encoding="utf-8"))["rows"]
+    expected = summary_of(folder)["reports"][0]["value"]
+    CHECKS.that(rows[0]["position_error_max_rad"] == expected, f"{rows[0]} has {expected}")
+
+
 for check in (files_are_complete, trace_is_complete, metrics_agree_with_the_trace,
               enabling_is_recorded_on_request, events_act_at_their_time,
               a_drive_that_does_not_get_ready_fails, base_and_set_change_only_what_they_name,
-              sweep_writes_its_table):
+              parameter_sets_lie_under_the_scenario,
+              reports_are_figures_without_a_bound, json_takes_the_place_of_the_report,
+              every_tenth_period_is_recorded_on_request, sweep_writes_its_table,
+              a_sweep_shows_the_error_and_the_window_it_is_asked_for):
     with scratch() as name:
         check(pathlib.Path(name))
 CHECKS.end()

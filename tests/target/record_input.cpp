@@ -51,15 +51,17 @@ plant::Config bench_plant(const drive_settings &settings)
                     settings.motor.torque_constant_Nm_A, settings.motor.viscous_friction_Nms_rad,
                     settings.motor.inertia_kgm2,         settings.motor.rotor_teeth};
     config.bridge.bus_V = settings.motor.supply_V;
+    if (settings.feedback == DRIVE_FEEDBACK_ENCODER)
+        config.sensors.encoder_counts_per_turn = REPLAY_ENCODER_COUNTS;
     return config;
 }
 
 replay_samples packed(const hal_samples &samples)
 {
-    if (samples.temperature || samples.encoder_count || samples.flags)
+    if (samples.temperature || samples.flags)
         throw std::runtime_error("a sample that replay_samples does not hold is not zero");
     return {samples.current_a, samples.current_b, samples.bus_voltage, samples.phase_voltage_a,
-            samples.phase_voltage_b};
+            samples.phase_voltage_b, samples.encoder_count};
 }
 
 Recording record(const replay_case &which)
@@ -73,7 +75,7 @@ Recording record(const replay_case &which)
     int next_command = 0;
     for (std::uint32_t k = 0; k < REPLAY_PERIODS; ++k) {
         while (next_command < REPLAY_COMMANDS && replay_commands[next_command].at_period <= k + 1)
-            board.command(replay_commands[next_command++]);
+            board.command(replay_command(next_command++));
         if (k == REPLAY_LOAD_FROM || k == REPLAY_LOAD_TO)
             board.plant().set_load_torque(k == REPLAY_LOAD_FROM ? 0.1 : 0.0);
         recording.input.push_back(packed(board.samples()));
@@ -106,18 +108,18 @@ void write_header(const replay_case &which, const Recording &recording)
                 recording.drive_hash);
     std::printf("static const struct hal_facts replay_facts = {\n"
                 "    \"%s\", %a, %" PRIu32 "u, %a,\n    %a, %uu, %a, %a,\n    %s, %" PRIu32
-                "u, %a, %" PRIu32 "u,\n"
+                "u, %" PRIu32 "u, %a, %" PRIu32 "u,\n"
                 "    %" PRIu32 "u, %" PRIu32 "u};\n",
                 facts.board_name, facts.control_period_s, facts.pwm_half_period_counts,
                 facts.dead_time_s, facts.current_A_per_code, unsigned{facts.current_zero_code},
                 facts.bus_V_per_code, facts.phase_voltage_V_per_code,
                 facts.has_phase_voltages ? "true" : "false", facts.encoder_counts_per_turn,
-                facts.bridge_resistance_ohm, facts.cycle_counter_Hz, facts.parameter_page_bytes,
+                facts.actuation_delay_periods, facts.bridge_resistance_ohm, facts.cycle_counter_Hz, facts.parameter_page_bytes,
                 facts.parameter_word_bytes);
     std::printf("static const struct replay_samples replay_input[REPLAY_PERIODS] = {\n");
     for (const replay_samples &s : recording.input)
-        std::printf("{%d,%d,%d,%d,%d},\n", s.current_a, s.current_b, s.bus_voltage,
-                    s.phase_voltage_a, s.phase_voltage_b);
+        std::printf("{%d,%d,%d,%d,%d,%" PRId32 "},\n", s.current_a, s.current_b, s.bus_voltage,
+                    s.phase_voltage_a, s.phase_voltage_b, s.encoder_count);
     std::printf("};\n");
 }
 
@@ -128,8 +130,7 @@ int main(int argc, char **argv)
     bool hash_only = argc == 3 && std::strcmp(argv[1], "--hash") == 0;
     const replay_case *which = argc == 2 || hash_only ? replay_case_named(argv[argc - 1]) : nullptr;
     if (!which) {
-        std::fprintf(stderr,
-                     "usage: record_input [--hash] default-sensorless|pid|steady-state-ekf\n");
+        std::fprintf(stderr, "usage: record_input [--hash] CASE, a name of replay_case.h\n");
         return 2;
     }
     try {

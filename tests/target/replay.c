@@ -10,7 +10,7 @@
 #include REPLAY_DATA /* replay_facts, replay_case_name, replay_input, replay_drive_hash */
 #include "tests/target/report.h"
 
-enum { DRIVE_BYTES_LIMIT = 4096 };
+enum { DRIVE_BYTES_LIMIT = 6144 };
 
 static bool always(void *context)
 {
@@ -23,8 +23,20 @@ static void nothing(void *context)
     (void)context;
 }
 
-static const struct hal board = {
-    .facts = &replay_facts, .bridge_enable = always, .bridge_disable = nothing};
+/* An empty parameter store. */
+static bool unreadable(void *context, uint32_t offset, void *data, size_t count)
+{
+    (void)context;
+    (void)offset;
+    (void)data;
+    (void)count;
+    return false;
+}
+
+static const struct hal board = {.facts = &replay_facts,
+                                 .bridge_enable = always,
+                                 .bridge_disable = nothing,
+                                 .parameters_read = unreadable};
 
 static int fail(const char *reason)
 {
@@ -48,16 +60,21 @@ int main(void)
 
     int next_command = 0;
     for (uint32_t k = 0; k < REPLAY_PERIODS; ++k) {
-        while (next_command < REPLAY_COMMANDS && replay_commands[next_command].at_period <= k + 1)
-            if (!image->command(drive, &replay_commands[next_command++], error))
+        while (next_command < REPLAY_COMMANDS && replay_commands[next_command].at_period <= k + 1) {
+            const struct drive_command command = replay_command(next_command++);
+
+            if (!image->command(drive, &command, error))
                 return fail(error);
+        }
         const struct replay_samples *input = &replay_input[k];
         struct hal_samples samples = {.current_a = input->current_a,
                                       .current_b = input->current_b,
                                       .bus_voltage = input->bus_voltage,
                                       .phase_voltage_a = input->phase_voltage_a,
-                                      .phase_voltage_b = input->phase_voltage_b};
+                                      .phase_voltage_b = input->phase_voltage_b,
+                                      .encoder_count = input->encoder_count};
         (void)image->control_cycle(drive, &samples);
+        image->background(drive);
     }
 
     uint64_t hash = image->hash(drive);

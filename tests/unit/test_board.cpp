@@ -49,6 +49,11 @@ hal_outputs dummy_control_cycle(void *drive, const hal_samples *samples)
     return self->outputs;
 }
 
+const char *dummy_law_gain(position_law, std::size_t)
+{
+    return nullptr;
+}
+
 bool dummy_command(void *drive, const drive_command *command, char *error)
 {
     if (command->kind != DRIVE_COMMAND_ENABLE) {
@@ -57,6 +62,10 @@ bool dummy_command(void *drive, const drive_command *command, char *error)
     }
     static_cast<Dummy *>(drive)->commands++;
     return true;
+}
+
+void dummy_background(void *)
+{
 }
 
 void dummy_signals(const void *drive, drive_signals *signals)
@@ -69,8 +78,9 @@ std::uint64_t dummy_hash(const void *drive)
     return static_cast<std::uint64_t>(static_cast<const Dummy *>(drive)->cycles);
 }
 
-const firmware_image image = {"dummy",       sizeof(Dummy), dummy_init, dummy_control_cycle,
-                              dummy_command, dummy_signals, dummy_hash};
+const firmware_image image = {"dummy",        sizeof(Dummy), dummy_init,       dummy_control_cycle,
+                              dummy_law_gain, dummy_command, dummy_background, dummy_signals,
+                              dummy_hash};
 
 plant::Config config()
 {
@@ -98,7 +108,9 @@ void run(sil::Board &board, int periods)
 
 void test_facts_are_those_of_the_stm32_board()
 {
-    sil::Board board(config(), image, drive_settings());
+    plant::Config stm32 = config();
+    stm32.sensors.exact = false;
+    sil::Board board(stm32, image, drive_settings());
     const hal_facts &facts = board.facts();
     TEST_ASSERT_EQUAL_UINT32(8500, facts.pwm_half_period_counts);
     TEST_ASSERT_EQUAL_UINT32(170000000, facts.cycle_counter_Hz);
@@ -110,6 +122,7 @@ void test_facts_are_those_of_the_stm32_board()
     TEST_ASSERT_TRUE(facts.bus_V_per_code == 31.2 / 4096.0);
     TEST_ASSERT_TRUE(facts.has_phase_voltages);
     TEST_ASSERT_EQUAL_UINT32(0, facts.encoder_counts_per_turn);
+    TEST_ASSERT_EQUAL_UINT32(1, facts.actuation_delay_periods);
     TEST_ASSERT_EQUAL_PTR(&facts, dummy->board->facts);
 }
 

@@ -133,7 +133,7 @@ static void test_bandwidths_too_fast_are_refused_with_their_limit(void)
                              error);
     settings.current_bandwidth_rad_s = 1500.0;
     settings.law_bandwidth_rad_s = 376.0;
-    for (int law = 0; law < POSITION_LAW_COUNT; law++) {
+    for (int law = 0; law < POSITION_LAW_VOLTAGE_FIRST; law++) {
         settings.law = (enum position_law)law;
         TEST_ASSERT_FALSE(drive_init(&drive, &fake_hal, &settings, error));
         TEST_ASSERT_EQUAL_STRING("position bandwidth 376 rad/s: must be at most 375 rad/s, "

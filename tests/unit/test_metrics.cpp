@@ -206,6 +206,27 @@ void currents_are_those_of_one_phase()
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3 / std::sqrt(2.0), metrics.current_rms_A);
 }
 
+void ripple_is_what_the_q_current_does_within_two_milliseconds()
+{
+    const Record record = make_record(1, [](Row &row, std::size_t n) {
+        const double time_s = static_cast<double>(n) * period_s;
+        const double ripple = 0.2 * std::cos(6.283185307179586 * 500 * time_s);
+        row[I_Q] = 1 + 2 * time_s + (n % 2 == 0 ? 0.05 : -0.05) + ripple;
+    });
+    /* A 2 ms mean takes nothing of 5 kHz and of 500 Hz but its part of one row too many. */
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, std::sqrt(0.05 * 0.05 + 0.2 * 0.2 / 2),
+                              over(record, {Window::Kind::all}).current_ripple_rms_A);
+}
+
+void a_current_that_grows_steadily_has_no_ripple()
+{
+    const Record record = make_record(
+        0.1, [](Row &row, std::size_t n) { row[I_Q] = 30 * static_cast<double>(n) * period_s; });
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, over(record, {Window::Kind::all}).current_ripple_rms_A);
+    TEST_ASSERT_TRUE(
+        has_no_value(over(record, {Window::Kind::times, 0, 0.0015}).current_ripple_rms_A));
+}
+
 void the_first_fault_of_a_window_is_named()
 {
     const Record record = make_record(0.1, [](Row &row, std::size_t n) {
@@ -316,6 +337,22 @@ void the_worst_seed_is_named()
     TEST_ASSERT_EQUAL_UINT64(2, out.worst_seed);
 }
 
+void a_figure_that_is_only_reported_holds_and_its_worst_seed_is_named()
+{
+    const Expectation reported;
+    std::vector<Result> results(3);
+    const double values[] = {1, 9, nan};
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        results[i].seed = i + 1;
+        results[i].reported = {{values[i], "", true}};
+    }
+    const Judgement judgement = judge(reported, 0, results, &Result::reported);
+    TEST_ASSERT_TRUE(judgement.held);
+    TEST_ASSERT_EQUAL_UINT64(3, judgement.worst_seed);
+    results.pop_back();
+    TEST_ASSERT_EQUAL_DOUBLE(9, judge(reported, 0, results, &Result::reported).typical.value);
+}
+
 void a_run_without_a_value_is_the_worst()
 {
     Expectation at_most;
@@ -353,6 +390,8 @@ int main()
     RUN_TEST(a_load_step_is_timed_until_90_percent_are_estimated);
     RUN_TEST(slip_is_counted_in_full_steps_from_where_the_window_begins);
     RUN_TEST(currents_are_those_of_one_phase);
+    RUN_TEST(ripple_is_what_the_q_current_does_within_two_milliseconds);
+    RUN_TEST(a_current_that_grows_steadily_has_no_ripple);
     RUN_TEST(the_first_fault_of_a_window_is_named);
     RUN_TEST(an_estimate_that_is_not_finite_gives_no_figure);
     RUN_TEST(an_empty_window_gives_no_figure);
@@ -361,6 +400,7 @@ int main()
     RUN_TEST(time_is_the_number_nearest_to_the_decimal);
     RUN_TEST(up_to_19_seeds_the_worst_decides_then_95_percent);
     RUN_TEST(the_worst_seed_is_named);
+    RUN_TEST(a_figure_that_is_only_reported_holds_and_its_worst_seed_is_named);
     RUN_TEST(a_run_without_a_value_is_the_worst);
     return UNITY_END();
 }

@@ -341,28 +341,38 @@ static void test_a_converter_code_becomes_a_number(void)
 
 static void test_a_number_becomes_the_nearest_count(void)
 {
-    static const int32_t middles[] = {4250, 2125, 65535};
-    const coef_t half_period = coef_from_double(4250.0 * NUM_COUNT_SCALE);
-    const coef_t half_of_it = coef_from_double(2125.0 * NUM_COUNT_SCALE);
+    static const double counts[] = {4250.0, 2125.0, 32767.0};
 
     for (int i = 0; i < 3; i++) {
-        const int32_t middle = middles[i];
-        const coef_t k = middle < 4250 ? half_of_it : half_period;
-        const double counts = middle < 4250 ? 2125.0 : 4250.0;
+        const coef_t k = coef_from_double(counts[i] * NUM_COUNT_SCALE);
 
         for (double modulation = -0.92; modulation <= 0.92; modulation += 0.00037) {
-            double exact = counts * modulation;
+            double exact = counts[i] * modulation;
 
-            TEST_ASSERT_DOUBLE_WITHIN(
-                0.501 + magnitude(exact) / 32768.0, middle + exact,
-                (double)counts_from_num(num_from_double(modulation), k, middle));
+            TEST_ASSERT_DOUBLE_WITHIN(0.501 + magnitude(exact) / 32768.0, exact,
+                                      (double)counts_from_num(num_from_double(modulation), k));
         }
-        TEST_ASSERT_EQUAL_INT32(middle, counts_from_num(NUM(0.0), k, middle));
+        TEST_ASSERT_EQUAL_INT32(0, counts_from_num(NUM(0.0), k));
     }
-    TEST_ASSERT_EQUAL_INT32(4250 + 2125, counts_from_num(NUM(0.5), half_period, 4250));
-    TEST_ASSERT_EQUAL_INT32(4250 - 2125, counts_from_num(NUM(-0.5), half_period, 4250));
-    TEST_ASSERT_EQUAL_INT32(2125, counts_from_num(NUM(0.5), half_period, 0));
+    const coef_t half_period = coef_from_double(4250.0 * NUM_COUNT_SCALE);
+
+    TEST_ASSERT_EQUAL_INT32(2125, counts_from_num(NUM(0.5), half_period));
+    TEST_ASSERT_EQUAL_INT32(-2125, counts_from_num(NUM(-0.5), half_period));
 }
+
+#if STEADYSTEP_NUM != NUM_FIXED
+static void test_a_half_becomes_the_even_count(void)
+{
+    TEST_ASSERT_EQUAL_INT32(2, num_to_nearest(NUM(1.5)));
+    TEST_ASSERT_EQUAL_INT32(2, num_to_nearest(NUM(2.5)));
+    TEST_ASSERT_EQUAL_INT32(-2, num_to_nearest(NUM(-1.5)));
+    TEST_ASSERT_EQUAL_INT32(-2, num_to_nearest(NUM(-2.5)));
+    TEST_ASSERT_EQUAL_INT32(8388607, num_to_nearest(NUM(8388607.0)));
+    TEST_ASSERT_EQUAL_INT32(INT32_MAX, num_to_nearest(NUM(1e10)));
+    TEST_ASSERT_EQUAL_INT32(INT32_MIN, num_to_nearest(NUM(-1e10)));
+    TEST_ASSERT_EQUAL_INT32(0, num_to_nearest((num_t)__builtin_nan("")));
+}
+#endif
 
 static void test_a_square_root_keeps_16_bits(void)
 {
@@ -463,6 +473,7 @@ int main(void)
     RUN_TEST(test_a_nan_becomes_the_upper_bound);
     RUN_TEST(test_a_limit_holds_an_infinity_and_turns_a_nan_into_the_lower_bound);
     RUN_TEST(test_a_magnitude_has_no_sign_and_keeps_a_nan);
+    RUN_TEST(test_a_half_becomes_the_even_count);
 #endif
     RUN_TEST(test_products_are_right_to_their_resolution);
     RUN_TEST(test_a_gain_of_any_size_keeps_15_bits);

@@ -103,10 +103,10 @@ void test_currents_are_sampled_at_the_instant_and_voltages_as_means()
     bench::run(plant, bench::voltages(3.0, -2.0), 30);
     const plant::State &state = plant.state();
     const plant::Samples &samples = plant.samples();
-    TEST_ASSERT_INT_WITHIN(1, 2048 + std::lround(state.i_a_A * 4096 / 12.0), samples.current_a);
-    TEST_ASSERT_INT_WITHIN(1, 2048 + std::lround(state.i_b_A * 4096 / 12.0), samples.current_b);
-    TEST_ASSERT_INT_WITHIN(1, std::lround(state.u_a_V * 4096 / 62.4), samples.phase_voltage_a);
-    TEST_ASSERT_INT_WITHIN(1, std::lround(state.u_b_V * 4096 / 62.4), samples.phase_voltage_b);
+    TEST_ASSERT_INT_WITHIN(1, 32768 + std::lround(state.i_a_A * 65536 / 12.0), samples.current_a);
+    TEST_ASSERT_INT_WITHIN(1, 32768 + std::lround(state.i_b_A * 65536 / 12.0), samples.current_b);
+    TEST_ASSERT_INT_WITHIN(1, std::lround(state.u_a_V * 65536 / 62.4), samples.phase_voltage_a);
+    TEST_ASSERT_INT_WITHIN(1, std::lround(state.u_b_V * 65536 / 62.4), samples.phase_voltage_b);
 }
 
 void test_a_runaway_motor_does_not_hang_the_simulation()

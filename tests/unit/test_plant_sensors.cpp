@@ -18,17 +18,29 @@ namespace
 
 constexpr int draws = 200000;
 
-plant::Samples exact(double i_a_A, double u_a_V, double bus_V)
+plant::Samples sampled(const plant::SensorConfig &config, double i_a_A, double u_a_V, double bus_V)
+{
+    return plant::Sensors(config, 1).sample(
+        7, {plant::Phases{i_a_A, 0.0}, plant::Phases{u_a_V, 0.0}, bus_V, 0.0, false});
+}
+
+plant::SensorConfig noiseless()
 {
     plant::SensorConfig config;
-    config.exact = true;
-    return plant::Sensors(config, 1).sample(0, plant::Phases{i_a_A, 0.0}, plant::Phases{u_a_V, 0.0},
-                                            bus_V);
+    config.current_noise_rms_A = 0.0;
+    config.phase_voltage_noise_rms_V = 0.0;
+    return config;
+}
+
+/* Twelve bits. */
+plant::Samples codes(double i_a_A, double u_a_V, double bus_V)
+{
+    return sampled(noiseless(), i_a_A, u_a_V, bus_V);
 }
 
 void test_zero_is_the_middle_code()
 {
-    const plant::Samples samples = exact(0.0, 0.0, 0.0);
+    const plant::Samples samples = codes(0.0, 0.0, 0.0);
     TEST_ASSERT_EQUAL_UINT16(2048, samples.current_a);
     TEST_ASSERT_EQUAL_UINT16(2048, samples.current_b);
     TEST_ASSERT_EQUAL_INT16(0, samples.phase_voltage_a);
@@ -39,33 +51,95 @@ void test_codes_are_rounded_to_the_nearest()
 {
     const double current_lsb_A = 12.0 / 4096.0;
     const double voltage_lsb_V = 62.4 / 4096.0;
-    TEST_ASSERT_EQUAL_UINT16(2048 + 341, exact(341.49 * current_lsb_A, 0.0, 24.0).current_a);
-    TEST_ASSERT_EQUAL_UINT16(2048 + 342, exact(341.51 * current_lsb_A, 0.0, 24.0).current_a);
-    TEST_ASSERT_EQUAL_UINT16(2048 - 341, exact(-341.49 * current_lsb_A, 0.0, 24.0).current_a);
-    TEST_ASSERT_EQUAL_INT16(-100, exact(0.0, -100.4 * voltage_lsb_V, 24.0).phase_voltage_a);
-    TEST_ASSERT_EQUAL_UINT16(3151, exact(0.0, 0.0, 24.0).bus_voltage); /* 24 / 31.2 x 4096 */
+    TEST_ASSERT_EQUAL_UINT16(2048 + 341, codes(341.49 * current_lsb_A, 0.0, 24.0).current_a);
+    TEST_ASSERT_EQUAL_UINT16(2048 + 342, codes(341.51 * current_lsb_A, 0.0, 24.0).current_a);
+    TEST_ASSERT_EQUAL_UINT16(2048 - 341, codes(-341.49 * current_lsb_A, 0.0, 24.0).current_a);
+    TEST_ASSERT_EQUAL_INT16(-100, codes(0.0, -100.4 * voltage_lsb_V, 24.0).phase_voltage_a);
+    TEST_ASSERT_EQUAL_UINT16(3151, codes(0.0, 0.0, 24.0).bus_voltage); /* 24 / 31.2 x 4096 */
 }
 
 void test_codes_clamp_at_the_ends_of_their_range()
 {
-    TEST_ASSERT_EQUAL_UINT16(4095, exact(6.0, 0.0, 24.0).current_a);
-    TEST_ASSERT_EQUAL_UINT16(4095, exact(1e300, 0.0, 24.0).current_a);
-    TEST_ASSERT_EQUAL_UINT16(0, exact(-6.1, 0.0, 24.0).current_a);
-    TEST_ASSERT_EQUAL_INT16(2047, exact(0.0, 40.0, 24.0).phase_voltage_a);
-    TEST_ASSERT_EQUAL_INT16(-2048, exact(0.0, -40.0, 24.0).phase_voltage_a);
-    TEST_ASSERT_EQUAL_UINT16(4095, exact(0.0, 0.0, 50.0).bus_voltage);
+    TEST_ASSERT_EQUAL_UINT16(4095, codes(6.0, 0.0, 24.0).current_a);
+    TEST_ASSERT_EQUAL_UINT16(4095, codes(1e300, 0.0, 24.0).current_a);
+    TEST_ASSERT_EQUAL_UINT16(0, codes(-6.1, 0.0, 24.0).current_a);
+    TEST_ASSERT_EQUAL_INT16(2047, codes(0.0, 40.0, 24.0).phase_voltage_a);
+    TEST_ASSERT_EQUAL_INT16(-2048, codes(0.0, -40.0, 24.0).phase_voltage_a);
+    TEST_ASSERT_EQUAL_UINT16(4095, codes(0.0, 0.0, 50.0).bus_voltage);
+}
+
+void test_exact_codes_have_sixteen_bits_and_no_noise()
+{
+    plant::SensorConfig config;
+    config.exact = true;
+    TEST_ASSERT_EQUAL_INT(32768, plant::current_zero_code(config));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 12.0 / 65536.0, plant::current_A_per_code(config));
+    const plant::Samples samples =
+        sampled(config, 1000.4 * 12.0 / 65536.0, -2000.4 * 62.4 / 65536.0, 24.0);
+    TEST_ASSERT_EQUAL_UINT16(32768 + 1000, samples.current_a);
+    TEST_ASSERT_EQUAL_UINT16(32768, samples.current_b);
+    TEST_ASSERT_EQUAL_INT16(-2000, samples.phase_voltage_a);
+    TEST_ASSERT_EQUAL_UINT16(50412, samples.bus_voltage); /* 24 / 31.2 x 65536 */
+    const plant::Samples ends = sampled(config, 6.0, -40.0, 40.0);
+    TEST_ASSERT_EQUAL_UINT16(65535, ends.current_a);
+    TEST_ASSERT_EQUAL_INT16(-32768, ends.phase_voltage_a);
+    TEST_ASSERT_EQUAL_UINT16(65535, ends.bus_voltage);
+}
+
+std::int32_t count_at(const plant::SensorConfig &config, double theta_rad)
+{
+    return plant::Sensors(config, 1)
+        .sample(0, {plant::Phases(), plant::Phases(), 24.0, theta_rad, false})
+        .encoder_count;
+}
+
+void test_an_encoder_counts_whole_steps_from_angle_zero()
+{
+    plant::SensorConfig config;
+    TEST_ASSERT_EQUAL_INT32(0, count_at(config, 1.0)); /* none fitted */
+    config.encoder_counts_per_turn = 16384;
+    const double count_rad = 2.0 * bench::pi / 16384;
+    TEST_ASSERT_EQUAL_INT32(0, count_at(config, 0.0));
+    TEST_ASSERT_EQUAL_INT32(0, count_at(config, 0.999 * count_rad));
+    TEST_ASSERT_EQUAL_INT32(1, count_at(config, 1.001 * count_rad));
+    TEST_ASSERT_EQUAL_INT32(-1, count_at(config, -0.001 * count_rad));
+    TEST_ASSERT_EQUAL_INT32(16384 * 3 + 100, count_at(config, 6.0 * bench::pi + 100.5 * count_rad));
+    TEST_ASSERT_EQUAL_INT32(-100 - 1, count_at(config, -100.5 * count_rad));
+}
+
+void test_the_count_of_an_encoder_wraps_at_32_bits()
+{
+    plant::SensorConfig config;
+    config.encoder_counts_per_turn = 1 << 30;
+    const double turn_rad = 2.0 * bench::pi;
+    TEST_ASSERT_INT32_WITHIN(1, (1 << 30) + (1 << 29), count_at(config, 1.5 * turn_rad));
+    TEST_ASSERT_INT32_WITHIN(1, -(1 << 30) - (1 << 29), count_at(config, 2.5 * turn_rad));
+    TEST_ASSERT_INT32_WITHIN(1, 1 << 29, count_at(config, 4.5 * turn_rad));
+}
+
+void test_an_eccentric_encoder_errs_once_per_turn()
+{
+    plant::SensorConfig config;
+    config.encoder_counts_per_turn = 1 << 30;
+    config.encoder_eccentricity_rad = 3e-4;
+    config.encoder_phase_rad = 0.7;
+    const double count_rad = 2.0 * bench::pi / (1 << 30);
+    TEST_ASSERT_EQUAL_INT32(0, count_at(config, 0.0));
+    for (int n = -20; n <= 20; n++) {
+        const double theta = 0.15 * n; /* -3...3 rad */
+        const double error = 3e-4 * (std::sin(theta + 0.7) - std::sin(0.7));
+        TEST_ASSERT_DOUBLE_WITHIN(1.001 * count_rad, theta + error,
+                                  count_rad * count_at(config, theta));
+    }
 }
 
 void test_offsets_shift_the_codes_of_their_own_channel()
 {
-    plant::SensorConfig config;
-    config.current_noise_rms_A = 0.0;
-    config.phase_voltage_noise_rms_V = 0.0;
+    plant::SensorConfig config = noiseless();
     config.current_offset_a_A = 3 * plant::current_A_per_code(config);
     config.current_offset_b_A = -2 * plant::current_A_per_code(config);
     config.phase_voltage_offset_b_V = 5 * plant::phase_voltage_V_per_code(config);
-    const plant::Samples samples =
-        plant::Sensors(config, 1).sample(7, plant::Phases{0.0, 0.0}, plant::Phases{0.0, 0.0}, 24.0);
+    const plant::Samples samples = sampled(config, 0.0, 0.0, 24.0);
     TEST_ASSERT_EQUAL_UINT16(2051, samples.current_a);
     TEST_ASSERT_EQUAL_UINT16(2046, samples.current_b);
     TEST_ASSERT_EQUAL_INT16(0, samples.phase_voltage_a);
@@ -80,7 +154,7 @@ void test_noise_in_the_codes_has_the_stated_rms()
     double sum = 0.0, square = 0.0;
     for (std::uint64_t k = 0; k < draws; k++) {
         const double code =
-            sensors.sample(k, plant::Phases{0.0, 0.0}, plant::Phases{0.0, 0.0}, 24.0).current_b;
+            sensors.sample(k, {plant::Phases(), plant::Phases(), 24.0, 0.0, false}).current_b;
         const double current_A = (code - 2048) * plant::current_A_per_code(config);
         sum += current_A;
         square += current_A * current_A;
@@ -166,6 +240,10 @@ int main()
     RUN_TEST(test_zero_is_the_middle_code);
     RUN_TEST(test_codes_are_rounded_to_the_nearest);
     RUN_TEST(test_codes_clamp_at_the_ends_of_their_range);
+    RUN_TEST(test_exact_codes_have_sixteen_bits_and_no_noise);
+    RUN_TEST(test_an_encoder_counts_whole_steps_from_angle_zero);
+    RUN_TEST(test_the_count_of_an_encoder_wraps_at_32_bits);
+    RUN_TEST(test_an_eccentric_encoder_errs_once_per_turn);
     RUN_TEST(test_offsets_shift_the_codes_of_their_own_channel);
     RUN_TEST(test_noise_in_the_codes_has_the_stated_rms);
     RUN_TEST(test_noise_is_standard_normal);

@@ -26,6 +26,10 @@ static void test_the_defaults_are_those_of_the_interface(void)
     TEST_ASSERT_EQUAL(DRIVE_ESTIMATOR_INVARIANT_EKF, settings.estimator);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 200.0, settings.law_bandwidth_rad_s);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 1500.0, settings.current_bandwidth_rad_s);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 1000.0, settings.observer_bandwidth_rad_s);
+    TEST_ASSERT_TRUE(settings.hold_at_rest);
+    TEST_ASSERT_TRUE(settings.bridge_loss_compensation);
+    TEST_ASSERT_EQUAL(DRIVE_FEEDBACK_SENSORLESS, settings.feedback);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 3.0, settings.current_limit_A);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 5.4, settings.overcurrent_trip_A);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.3 * 24.0 / 0.157, settings.speed_limit_rad_s);
@@ -62,7 +66,11 @@ static const struct {
     {MOTOR(inertia_kgm2), 1e-9, 10.0, "kg m2"},
     {MOTOR(supply_V), 5.0, 400.0, "V"},
     {FIELD(law_bandwidth_rad_s), 1.0, 1e4, "rad/s"},
-    {FIELD(current_bandwidth_rad_s), 10.0, 1e5, "rad/s"},
+    {FIELD(current_bandwidth_rad_s), 10.0, 1e6, "rad/s"},
+    {FIELD(observer_bandwidth_rad_s), 1.0, 1e6, "rad/s"},
+    {FIELD(hold_bandwidth_rad_s), 1.0, 1e4, "rad/s"},
+    {FIELD(encoder_zero_rad), -1e4, 1e4, "rad"},
+    {FIELD(initial_load_torque_Nm), -100.0, 100.0, "N m"},
     {FIELD(current_limit_A), 0.01 * 3.0, 2.0 * 3.0, "A"},
     {FIELD(overcurrent_trip_A), 0.1 * 3.0, 4.0 * 3.0, "A"},
     {FIELD(speed_limit_rad_s), 0.1, 1e4, "rad/s"},

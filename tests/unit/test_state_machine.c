@@ -240,14 +240,14 @@ static void test_enabling_begins_with_all_blocks_at_rest(void)
     post_kind(DRIVE_COMMAND_HOLD);
     run(10);
     TEST_ASSERT_TRUE(signals().holding);
-    TEST_ASSERT_TRUE(drive.law.integral != NUM(0.0));
+    TEST_ASSERT_TRUE(drive.law.pid.integral != NUM(0.0));
     post_kind(DRIVE_COMMAND_DISABLE);
     run(1);
     post_kind(DRIVE_COMMAND_ENABLE);
     run(1);
     TEST_ASSERT_FALSE(drive.hold.active);
     TEST_ASSERT_NUM_WITHIN(0.0, 0.0, drive.hold.i_d);
-    TEST_ASSERT_NUM_WITHIN(0.0, 0.0, drive.law.integral);
+    TEST_ASSERT_NUM_WITHIN(0.0, 0.0, drive.law.pid.integral);
     TEST_ASSERT_NUM_WITHIN(0.0, 0.0, drive.current_control.integral.d);
     TEST_ASSERT_NUM_WITHIN(0.0, 0.0, drive.current_control.integral.q);
     TEST_ASSERT_NUM_WITHIN(0.0, 0.0, actuation_in_force(&drive.actuation).a);

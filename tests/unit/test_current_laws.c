@@ -1,4 +1,4 @@
-/* The position laws: from position error and estimates to the torque-producing current. */
+/* The current laws: from position error and estimates to the torque-producing current. */
 #include "firmware/control/position_law_dispatch.h"
 #include "firmware/design/pid_design.h"
 #include "firmware/design/state_feedback_design.h"
@@ -15,8 +15,8 @@
 static struct per_unit base;
 static enum position_law law;
 static struct position_law_task task;
-static struct position_law_params params;
-static struct position_law_state state;
+static union position_law_params params;
+static union position_law_state state;
 static char error[DESIGN_ERROR_TEXT];
 
 static const struct position_law_input at_rest_in_place = {NUM(0.0), NUM(0.0), NUM(0.0), NUM(0.0),
@@ -34,7 +34,7 @@ void setUp(void)
         .speed_limit_rad_s = 200.0,
         .current_limit_A = 3.0,
     };
-    state.integral = NUM(0.0);
+    state.pid.integral = NUM(0.0);
 }
 
 void tearDown(void)
@@ -63,7 +63,7 @@ static struct position_law_input input(double error_rad, double reference_speed_
 
 static double current_A(struct position_law_input in)
 {
-    return num_to_double(position_law_step(law, &state, &params, &in)) * base.current_A;
+    return num_to_double(position_law_current(law, &state, &params, &in)) * base.current_A;
 }
 
 /* `terms_A`: the sum of the terms' magnitudes, of which each gain's mantissa is a share wrong. */
@@ -120,7 +120,7 @@ static void test_state_feedback_in_place_carries_the_load_and_nothing_else(void)
 
 static void test_the_current_is_limited_in_both_directions(void)
 {
-    for (int which = 0; which < POSITION_LAW_COUNT; which++) {
+    for (int which = 0; which < POSITION_LAW_VOLTAGE_FIRST; which++) {
         design((enum position_law)which);
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, 3.0, current_A(input(0.5, 0.0, 0.0, 0.0, 0.0)));
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, -3.0, current_A(input(-0.5, 0.0, 0.0, 0.0, 0.0)));
@@ -135,7 +135,7 @@ static void test_the_largest_errors_keep_the_sign_of_the_current(void)
     const double far = POSITION_DIFFERENCE_MAX * base.rad_per_turn;
     const double acceleration = 3.0 * 0.157 / 15.62e-5;
 
-    for (int which = 0; which < POSITION_LAW_COUNT; which++) {
+    for (int which = 0; which < POSITION_LAW_VOLTAGE_FIRST; which++) {
         for (int steep = 0; steep < 2; steep++) {
             task.bandwidth_rad_s = steep ? 370.0 : 5.0;
             design((enum position_law)which);
@@ -192,7 +192,7 @@ static void test_pid_unwinds_while_the_current_is_limited_the_other_way(void)
     for (int k = 0; k < 100; k++) {
         (void)current_A(input(-0.005, 0.0, 0.0, -50.0, 0.0));
     }
-    TEST_ASSERT_TRUE(state.integral < NUM(0.0));
+    TEST_ASSERT_TRUE(state.pid.integral < NUM(0.0));
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 3.0, current_A(input(-0.005, 0.0, 0.0, -50.0, 0.0)));
 }
 
@@ -203,12 +203,12 @@ static void test_the_integral_of_the_pid_stays_within_the_current_limit(void)
     for (int k = 0; k < 20000; k++) {
         (void)current_A(input(0.01, 0.0, 0.0, 5.0, 0.0));
     }
-    TEST_ASSERT_TRUE(num_to_double(state.integral) * base.current_A <= 3.0 + 1e-6);
+    TEST_ASSERT_TRUE(num_to_double(state.pid.integral) * base.current_A <= 3.0 + 1e-6);
 }
 
 static void test_a_law_too_quick_for_the_current_control_is_refused_with_its_limit(void)
 {
-    for (int which = 0; which < POSITION_LAW_COUNT; which++) {
+    for (int which = 0; which < POSITION_LAW_VOLTAGE_FIRST; which++) {
         task.bandwidth_rad_s = 400.0;
         task.current_bandwidth_rad_s = 1500.0;
         TEST_ASSERT_FALSE(position_law_design((enum position_law)which, &params, &task, error));

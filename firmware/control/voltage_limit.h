@@ -1,0 +1,19 @@
+/* The limit of the voltage vector, for current control and voltage laws alike. */
+#ifndef STEADYSTEP_VOLTAGE_LIMIT_H
+#define STEADYSTEP_VOLTAGE_LIMIT_H
+
+#include "firmware/motor/park.h"
+
+/* d keeps the field orientation, so it is served first; q gets the rest of the circle. */
+static inline struct dq limit_voltage(struct dq v, num_t limit)
+{
+    struct dq limited = v;
+
+    if (num_abs(v.d) + num_abs(v.q) > limit) {
+        limited.d = num_limit(v.d, limit);
+        limited.q = num_limit(v.q, num_sqrt(num_mul(limit, limit) - num_mul(limited.d, limited.d)));
+    }
+    return limited;
+}
+
+#endif

@@ -1,0 +1,214 @@
+/* From the units of a command to those of the reference: turns and periods. */
+#include "firmware/design/refusal.h"
+#include "firmware/drive/drive.h"
+
+/* Ranges of the reference, electrical turns per period^n: profile.c */
+#define SPEED_MAX_TURNS        0.45
+#define ACCELERATION_MAX_TURNS 0.0078125
+
+#define TURNS_MAX         1e9
+#define DURATION_MAX      1073741824.0 /* 2^30 periods */
+#define JERK_TIME_MAX     131072.0 /* 2^17 periods: rounding of the jerk stays far below 2^-32 turn */
+#define SINE_PERIODS_MIN  20.0     /* of a cycle */
+#define INTERVAL_MIN      3.0      /* periods: a segment each */
+#define INTERVAL_MAX      65536.0
+#define AMPLITUDE_MIN_rad 1e-6
+#define FREQUENCY_MIN_Hz  1e-3
+#define CYCLES_MAX        1e9
+
+static const double two_pi = 6.283185307179586476925;
+
+/* What one turn and one period are. */
+struct units {
+    double turn_rad;
+    double period_s;
+    double speed;        /* rad/s per turn/period */
+    double acceleration; /* rad/s^2 per turn/period^2 */
+    double jerk;
+};
+
+static struct units units_of(const struct drive *drive)
+{
+    const double T = drive->board->facts->control_period_s;
+    const double turn = two_pi / (double)drive->settings.motor.rotor_teeth;
+
+    return (struct units){turn, T, turn / T, turn / (T * T), turn / (T * T * T)};
+}
+
+static double smaller(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+/* low <= value <= high, which a NaN is not. */
+static bool within(const char *quantity, double value, double low, double high, const char *unit,
+                   const char *reason, char error[DRIVE_ERROR_TEXT])
+{
+    if (value >= low && value <= high) {
+        return true;
+    }
+    return design_refuse_limit(error,
+                               (struct refusal){.quantity = quantity,
+                                                .value = value,
+                                                .relation = value > high ? "at most" : "at least",
+                                                .limit = value > high ? high : low,
+                                                .unit = unit,
+                                                .reason = reason});
+}
+
+/* What the drive can follow, rad/s and rad/s^2. */
+static double speed_limit(const struct drive *drive, const struct units *units)
+{
+    return smaller(drive->settings.speed_limit_rad_s, SPEED_MAX_TURNS * units->speed);
+}
+
+static double acceleration_limit(const struct drive *drive, const struct units *units)
+{
+    const struct drive_settings *settings = &drive->settings;
+
+    return smaller(settings->current_limit_A * settings->motor.torque_constant_Nm_A /
+                       settings->motor.inertia_kgm2,
+                   ACCELERATION_MAX_TURNS * units->acceleration);
+}
+
+static bool limits_of(const struct drive *drive, const struct drive_command *command,
+                      struct motion_limits *limits, char error[DRIVE_ERROR_TEXT])
+{
+    const struct units units = units_of(drive);
+    const double speed = speed_limit(drive, &units);
+    const double acceleration = acceleration_limit(drive, &units);
+    const double slowest = 2.0 * speed / (DURATION_MAX * units.period_s);
+    const double softest = command->acceleration_rad_s2 / (JERK_TIME_MAX * units.period_s);
+
+    if (!within("acceleration", command->acceleration_rad_s2, slowest, acceleration, "rad/s^2",
+                "limit of the drive", error) ||
+        !within("jerk", command->jerk_rad_s3, softest, 1e30, "rad/s^3",
+                "2^17 control periods to the acceleration", error)) {
+        return false;
+    }
+    limits->speed = speed / units.speed;
+    limits->acceleration = command->acceleration_rad_s2 / units.acceleration;
+    limits->jerk = command->jerk_rad_s3 / units.jerk;
+    return true;
+}
+
+static bool request_velocity(const struct drive *drive, const struct drive_command *command,
+                             struct motion_request *request, char error[DRIVE_ERROR_TEXT])
+{
+    const struct units units = units_of(drive);
+    const double limit = speed_limit(drive, &units);
+
+    request->speed = command->speed_rad_s / units.speed;
+    return within("speed", command->speed_rad_s, -limit, limit, "rad/s", "limit of the drive",
+                  error) &&
+           limits_of(drive, command, &request->limits, error);
+}
+
+static bool request_retarget(const struct drive *drive, const struct drive_command *command,
+                             struct motion_request *request, char error[DRIVE_ERROR_TEXT])
+{
+    const struct units units = units_of(drive);
+    const double range = TURNS_MAX * units.turn_rad;
+    double distance;
+
+    if (!within("position", command->position_rad, -range, range, "rad", "range of positions",
+                error)) {
+        return false;
+    }
+    request->target = position_from_rad(command->position_rad, drive->settings.motor.rotor_teeth);
+    distance = command->position_rad -
+               position_to_rad(drive->reference.next.position, drive->settings.motor.rotor_teeth);
+    distance = distance < 0.0 ? -distance : distance;
+    if (!within("speed", command->speed_rad_s, distance / (DURATION_MAX * units.period_s),
+                speed_limit(drive, &units), "rad/s", "limit of the drive, 2^30 periods to go",
+                error) ||
+        !within("speed", command->speed_rad_s, 1e-9, 1e9, "rad/s", "a speed above zero", error) ||
+        !limits_of(drive, command, &request->limits, error)) {
+        return false;
+    }
+    request->limits.speed = command->speed_rad_s / units.speed;
+    return true;
+}
+
+static bool request_set_point(const struct drive *drive, const struct drive_command *command,
+                              struct motion_request *request, char error[DRIVE_ERROR_TEXT])
+{
+    const struct units units = units_of(drive);
+    const double intervals = command->interval_s / units.period_s;
+
+    if (!within("interval", intervals, INTERVAL_MIN - 0.5, INTERVAL_MAX, "periods",
+                "3 to 2^16 control periods", error) ||
+        !limits_of(drive, command, &request->limits, error)) {
+        return false;
+    }
+    request->interval_periods = (uint32_t)(intervals + 0.5);
+    return true;
+}
+
+static bool request_sine(const struct drive *drive, const struct drive_command *command,
+                         struct motion_request *request, char error[DRIVE_ERROR_TEXT])
+{
+    const struct units units = units_of(drive);
+    const double T = units.period_s;
+    const double amplitude =
+        command->amplitude_rad < 0.0 ? -command->amplitude_rad : command->amplitude_rad;
+    const double halves = 2.0 * command->cycles;
+    const double stop_s = 0.1;
+    struct motion_limits *limits = &request->limits;
+
+    if (!within("amplitude", amplitude, AMPLITUDE_MIN_rad, TURNS_MAX * units.turn_rad, "rad",
+                "range of amplitudes", error) ||
+        !within("frequency", command->frequency_Hz, FREQUENCY_MIN_Hz, 1.0 / (SINE_PERIODS_MIN * T),
+                "Hz", "20 control periods to a cycle", error) ||
+        !within("cycles", command->cycles, 0.0, CYCLES_MAX, "", "range of cycles", error)) {
+        return false;
+    }
+    if (halves != (double)(uint32_t)halves) {
+        return design_refuse(error, "cycles: must be a whole number or a half");
+    }
+    if (!within("ramp", command->ramp_s, 0.0,
+                command->cycles > 0.0 ? command->cycles / command->frequency_Hz / 2.0
+                                      : DURATION_MAX * T,
+                "s", "half of the cycles", error) ||
+        !within("ramp", command->ramp_s, 0.0, DURATION_MAX * T, "s", "2^30 control periods",
+                error)) {
+        return false;
+    }
+    request->sine = sine_design(&(struct sine_task){
+        .amplitude_turns = command->amplitude_rad / units.turn_rad,
+        .frequency_Hz = command->frequency_Hz,
+        .cycles = command->cycles,
+        .ramp_s = command->ramp_s,
+        .period_s = T,
+    });
+    *limits = sine_peaks(&request->sine);
+    if (!within("speed of the sine", limits->speed * units.speed, 0.0, speed_limit(drive, &units),
+                "rad/s", "limit of the drive", error) ||
+        !within("acceleration of the sine", limits->acceleration * units.acceleration, 0.0,
+                acceleration_limit(drive, &units), "rad/s^2", "limit of the drive", error)) {
+        return false;
+    }
+    /* a slow sine need not stop as slowly */
+    if (limits->acceleration < limits->speed * T / stop_s) {
+        limits->acceleration = limits->speed * T / stop_s;
+    }
+    if (limits->jerk < limits->acceleration * T / stop_s) {
+        limits->jerk = limits->acceleration * T / stop_s;
+    }
+    return true;
+}
+
+bool planner_request(const struct drive *drive, const struct drive_command *command,
+                     struct motion_request *request, char error[DRIVE_ERROR_TEXT])
+{
+    switch (command->kind) {
+    case DRIVE_COMMAND_SINE:
+        return request_sine(drive, command, request, error);
+    case DRIVE_COMMAND_SET_POINT:
+        return request_set_point(drive, command, request, error);
+    case DRIVE_COMMAND_VELOCITY:
+        return request_velocity(drive, command, request, error);
+    default:
+        return request_retarget(drive, command, request, error);
+    }
+}

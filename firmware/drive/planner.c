@@ -1,0 +1,323 @@
+#include "firmware/drive/planner.h"
+
+#include <stdatomic.h>
+#include <stddef.h>
+
+#include "firmware/drive/drive.h"
+
+#define LEAD_PERIODS_MIN 3u
+#define LEAD_PERIODS_MAX 1048576u /* 2^20 */
+
+/* What passes for standing still, electrical turns per period^n: 2^-40, far below an angle_t. */
+static const double still = 9.094947017729282e-13;
+
+static uint32_t period_now(const struct drive *drive)
+{
+    return *(const volatile uint32_t *)&drive->period;
+}
+
+/*
+ * A copy of the reference as it will be before the interrupt `at_period`, unless something
+ * intervenes. false: a stop is being acted on, or the period has passed.
+ */
+static bool foresee(const struct drive *drive, uint32_t at_period, struct reference *copy)
+{
+    uint32_t period;
+
+    do { /* until no interrupt has come in between */
+        period = period_now(drive);
+        atomic_signal_fence(memory_order_seq_cst);
+        *copy = drive->reference;
+        atomic_signal_fence(memory_order_seq_cst);
+    } while (period != period_now(drive));
+    if (copy->stop_requested || (int32_t)(at_period - period) <= 0) {
+        return false;
+    }
+    reference_skip(copy, at_period - period - 1u);
+    return true;
+}
+
+/* The one the reference does not follow. Nothing may be on offer. */
+static struct motion_plan *free_plan(struct drive *drive)
+{
+    struct planner *p = &drive->planner;
+
+    reference_continue(&drive->reference, NULL);
+    return *(const struct motion_plan *volatile *)&drive->reference.plan == &p->plan[0]
+               ? &p->plan[1]
+               : &p->plan[0];
+}
+
+void planner_follow(struct drive *drive)
+{
+    struct planner *p = &drive->planner;
+    struct command_queue *queue = &drive->commands;
+    const uint32_t epoch = *(const volatile uint32_t *)&drive->reference.epoch;
+
+    if (p->epoch != epoch) { /* a reset, or the stop of a plan */
+        command_queue_withdraw_take_over(queue);
+        reference_continue(&drive->reference, NULL);
+        p->epoch = epoch;
+        p->offered = NULL;
+        p->motion = PLANNER_IDLE;
+        p->set_points_open = false;
+        p->stop_due = true;
+    }
+    if (p->set_points_open && p->motion != PLANNER_SET_POINTS && p->offered == NULL &&
+        (int32_t)(queue->read - p->set_points_command) > 0) {
+        p->set_points_open = false; /* flushed */
+    }
+}
+
+/* What has become of the plan that was to take over. */
+static void settle_offer(struct drive *drive)
+{
+    struct planner *p = &drive->planner;
+    struct command_queue *queue = &drive->commands;
+
+    if (p->offered == NULL) {
+        return;
+    }
+    if (queue->take_over.posted) {
+        if ((int32_t)(period_now(drive) - queue->take_over.at_period) <= 0) {
+            return;
+        }
+        command_queue_withdraw_take_over(queue); /* a stop or disable came first */
+    }
+    if (drive->reference.plan == p->offered) {
+        p->last = p->offered;
+        p->motion = p->offered_motion;
+        p->stop_due = p->stop_due && !p->offered_is_stop;
+    } else {
+        const bool wanted = p->offered_is_stop || queue->take_over.command == queue->read;
+
+        if (wanted && p->lead_periods < LEAD_PERIODS_MAX) {
+            p->lead_periods *= 2u;
+        }
+        if (p->offered_motion == PLANNER_SET_POINTS) {
+            set_points_rewind(&p->set_points, motion_position(&p->offered->from));
+        }
+    }
+    p->offered = NULL;
+}
+
+static void offer(struct drive *drive, const struct take_over *take_over,
+                  enum planner_motion motion)
+{
+    struct planner *p = &drive->planner;
+
+    p->offered = take_over->plan;
+    p->offered_motion = motion;
+    p->offered_is_stop = !take_over->of_command;
+    command_queue_put_take_over(&drive->commands, take_over);
+}
+
+/* Behind the handover, to rest in case the continuation does not come. */
+static void append_tail(struct planner *p, struct motion_plan *plan)
+{
+    struct motion_state end = p->end;
+    const double speed = motion_to_turns(end.speed);
+    const double acceleration = motion_to_turns(end.acceleration);
+
+    if (speed > still || speed < -still || acceleration > still || acceleration < -still) {
+        motion_plan_speed(plan, &end, 0.0, &p->limits);
+    }
+}
+
+/* Plans the next part of what goes on; false: there is nothing to plan yet. */
+static bool continue_plan(struct planner *p, struct motion_plan *plan)
+{
+    if (p->motion == PLANNER_SET_POINTS) {
+        if (!set_points_continue(&p->set_points, plan, &p->end)) {
+            return false;
+        }
+        append_tail(p, plan);
+    } else if (sine_continue(&p->sine, plan, &p->end)) {
+        append_tail(p, plan);
+    }
+    return true;
+}
+
+/* The plan in force has passed its handover, or the drive its rest: nothing can follow it. */
+static bool too_late(const struct drive *drive)
+{
+    const struct reference *r = &drive->reference;
+
+    return r->phase != REFERENCE_PLANNED || r->segment > r->plan->handover;
+}
+
+static void end_motion(struct drive *drive)
+{
+    struct planner *p = &drive->planner;
+    const struct motion_plan *plan = drive->reference.plan;
+
+    p->motion = PLANNER_IDLE;
+    p->set_points_open = false;
+    if (plan->segments > plan->handover) { /* it had to be brought to rest */
+        p->underruns++;
+    }
+}
+
+static void continue_motion(struct drive *drive)
+{
+    struct planner *p = &drive->planner;
+    struct reference *r = &drive->reference;
+    struct motion_plan *plan;
+
+    if (too_late(drive)) {
+        reference_continue(r, NULL);
+        end_motion(drive);
+        return;
+    }
+    if (r->plan != p->last) {
+        return; /* the continuation has not been taken yet */
+    }
+    if (p->last->handover > PLAN_SEGMENTS) {
+        p->motion = PLANNER_IDLE; /* the end of the sine */
+        return;
+    }
+    plan = free_plan(drive);
+    motion_plan_begin(plan, &p->end, p->epoch);
+    if (continue_plan(p, plan)) {
+        p->last = plan;
+        reference_continue(r, plan);
+    }
+}
+
+/* Where the plan that takes over in `at_period` begins. */
+static bool begin_plan(struct drive *drive, struct motion_plan *plan, uint32_t at_period)
+{
+    struct planner *p = &drive->planner;
+    struct reference copy;
+
+    if (!foresee(drive, at_period, &copy)) {
+        return false;
+    }
+    motion_plan_begin(plan, &copy.at, p->epoch);
+    p->end = copy.at;
+    if (copy.periods_left > 0u) {
+        motion_run(&p->end, copy.jerk_sixth, 1u);
+    }
+    return true;
+}
+
+static void stop(struct drive *drive)
+{
+    struct planner *p = &drive->planner;
+    const uint32_t at_period = period_now(drive) + p->lead_periods;
+    struct motion_plan *plan;
+
+    if (drive->reference.phase != REFERENCE_PLANNED) {
+        p->stop_due = false; /* rests, or has been reset */
+        return;
+    }
+    plan = free_plan(drive);
+    if (begin_plan(drive, plan, at_period)) {
+        motion_plan_speed(plan, &p->end, 0.0, &p->limits);
+        offer(drive, &(struct take_over){.at_period = at_period, .plan = plan}, PLANNER_IDLE);
+    }
+}
+
+/* From rest: sine and set-points. */
+static enum planner_motion begin_motion(struct planner *p, struct motion_plan *plan,
+                                        const struct queued_command *command)
+{
+    const bool sine = command->kind == DRIVE_COMMAND_SINE;
+
+    p->motion = sine ? PLANNER_SINE : PLANNER_SET_POINTS;
+    if (sine) {
+        p->sine = command->request.sine;
+        p->sine.centre = motion_position(&p->end);
+    }
+    (void)continue_plan(p, plan);
+    return p->motion;
+}
+
+static enum planner_motion plan_command(struct planner *p, struct motion_plan *plan,
+                                        const struct queued_command *command)
+{
+    const struct motion_request *request = &command->request;
+
+    p->limits = request->limits;
+    switch (command->kind) {
+    case DRIVE_COMMAND_VELOCITY:
+        motion_plan_speed(plan, &p->end, request->speed, &p->limits);
+        if (request->speed != 0.0) {
+            motion_plan_cruise(plan);
+        }
+        return PLANNER_IDLE;
+    case DRIVE_COMMAND_RETARGET:
+        motion_plan_move(plan, &p->end, request->target, &p->limits);
+        return PLANNER_IDLE;
+    default:
+        return begin_motion(p, plan, command);
+    }
+}
+
+/* Sine and set-points wait for rest, set-points for the second one as well. */
+static bool may_begin(const struct drive *drive, const struct queued_command *command)
+{
+    if (command->kind == DRIVE_COMMAND_VELOCITY || command->kind == DRIVE_COMMAND_RETARGET) {
+        return true;
+    }
+    return !reference_busy(&drive->reference) &&
+           (command->kind == DRIVE_COMMAND_SINE ||
+            set_points_waiting(&drive->planner.set_points) >= 2u);
+}
+
+/* The oldest command, if it is one to be planned and its period is near. */
+static void take_command(struct drive *drive)
+{
+    struct planner *p = &drive->planner;
+    const struct command_queue *queue = &drive->commands;
+    const uint32_t entry = queue->read;
+    const struct queued_command *command = &queue->entry[entry % COMMAND_QUEUE_LENGTH];
+    const uint32_t earliest = period_now(drive) + p->lead_periods;
+    const int32_t wait = (int32_t)(command->at_period - earliest);
+    const uint32_t at_period = wait > 0 ? command->at_period : earliest;
+    struct motion_plan *plan;
+
+    if (entry == queue->written || !queued_command_is_planned(command) ||
+        drive->state != DRIVE_OPERATION_ENABLED || wait > (int32_t)p->lead_periods ||
+        !may_begin(drive, command)) {
+        return;
+    }
+    plan = free_plan(drive);
+    if (begin_plan(drive, plan, at_period)) {
+        const enum planner_motion motion = plan_command(p, plan, command);
+
+        p->motion = PLANNER_IDLE; /* what has been going on ends */
+        offer(drive,
+              &(struct take_over){
+                  .at_period = at_period, .plan = plan, .of_command = true, .command = entry},
+              motion);
+    }
+}
+
+void drive_background(struct drive *drive)
+{
+    struct planner *p = &drive->planner;
+
+    planner_follow(drive);
+    settle_offer(drive);
+    if (p->offered != NULL) {
+        return;
+    }
+    if (p->stop_due) {
+        stop(drive);
+    } else if (p->motion != PLANNER_IDLE) {
+        continue_motion(drive);
+    }
+    if (p->offered == NULL && !p->stop_due && drive->commands.attention) {
+        take_command(drive);
+    }
+}
+
+void planner_init(struct drive *drive)
+{
+    const double lead = DRIVE_LEAD_s / drive->board->facts->control_period_s + 0.5;
+
+    drive->planner.epoch = drive->reference.epoch;
+    drive->planner.lead_periods =
+        (uint32_t)lead > LEAD_PERIODS_MIN ? (uint32_t)lead : LEAD_PERIODS_MIN;
+}

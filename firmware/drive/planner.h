@@ -1,0 +1,69 @@
+/*
+ * The planner: turns sines, set-points, speed changes, new targets and the stops of these into
+ * plans for the reference (motion_plan.h). Everything here belongs to the background, which reaches
+ * the interrupt by two pointers alone, each written when what it points to is complete:
+ *
+ *   take-over     a plan that begins in a given period, from where the reference will be then. That
+ *                 is known from a copy of the reference, run ahead by the reference's own code. The
+ *                 interrupt accepts it only if it is there indeed.
+ *   continuation  a plan that begins where the plan in force hands over.
+ *
+ * Two plans are kept: the one in force and the one offered.
+ */
+#ifndef STEADYSTEP_PLANNER_H
+#define STEADYSTEP_PLANNER_H
+
+#include "firmware/drive/command_queue.h"
+#include "firmware/motion/motion_plan.h"
+#include "firmware/motion/set_points.h"
+#include "firmware/motion/sine.h"
+
+/* Whether it is known where the next move starts. */
+enum planned_end {
+    PLANNED_END_KNOWN,
+    PLANNED_END_AFTER_STOP,  /* where the reference comes to rest after a stop */
+    PLANNED_END_AFTER_MOTION /* likewise after sine, set-points or velocity */
+};
+
+/* What the plan in force belongs to. */
+enum planner_motion {
+    PLANNER_IDLE, /* nothing, or a plan that needs no continuation */
+    PLANNER_SINE,
+    PLANNER_SET_POINTS
+};
+
+struct planner {
+    struct motion_plan plan[2];
+    const struct motion_plan *offered; /* to be taken over; NULL: none */
+    const struct motion_plan *last;    /* the last one accepted or offered as continuation */
+    struct motion_state end;           /* at the handover of `last` */
+    enum planner_motion motion;
+    enum planner_motion offered_motion;
+    bool offered_is_stop;
+    bool stop_due; /* a stop has come: the plan in force has yet to be brought to rest */
+    uint32_t epoch;
+    uint32_t lead_periods;
+    struct motion_limits limits; /* of the motion in force */
+    struct sine sine;
+    struct set_points set_points;
+    bool set_points_open;
+    uint32_t set_points_command; /* queue entry that begins them */
+    uint32_t underruns;
+};
+
+struct drive;
+
+/*
+ * Checks a command that is to be planned and states it in the units of the reference. false, with
+ * the quantity, its value and the bound it breaks in `error`.
+ */
+bool planner_request(const struct drive *drive, const struct drive_command *command,
+                     struct motion_request *request, char error[DRIVE_ERROR_TEXT]);
+
+/* Start-up, when drive and reference are set up. */
+void planner_init(struct drive *drive);
+
+/* Follows what has happened to the reference: to be called before a command is posted. */
+void planner_follow(struct drive *drive);
+
+#endif

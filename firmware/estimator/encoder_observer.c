@@ -1,0 +1,122 @@
+#include "firmware/estimator/encoder_observer.h"
+
+#include "firmware/design/elementary.h"
+
+/* p = e^-0.5 = 0.6: beyond it a count of noise goes straight into the speed. */
+#define BANDWIDTH_PERIOD_MAX 0.5
+
+bool encoder_observer_design(struct encoder_observer_params *params,
+                             const struct motor_model_params *model,
+                             const struct encoder_observer_task *task,
+                             char error[DESIGN_ERROR_TEXT])
+{
+    const struct per_unit *base = task->base;
+    const double period_s = task->period_s;
+
+    if (task->counts_per_turn < 4u * (uint32_t)task->rotor_teeth) {
+        return design_refuse_limit(error, (struct refusal){.quantity = "encoder counts per turn",
+                                                           .value = (double)task->counts_per_turn,
+                                                           .relation = "at least",
+                                                           .limit = 4.0 * task->rotor_teeth,
+                                                           .unit = "",
+                                                           .reason = "four per rotor tooth"});
+    }
+    if (!design_require_positive(error, "observer_bandwidth_rad_s", task->bandwidth_rad_s,
+                                 "rad/s")) {
+        return false;
+    }
+    if (task->bandwidth_rad_s * period_s > BANDWIDTH_PERIOD_MAX) {
+        return design_refuse_limit(error, (struct refusal){.quantity = "observer_bandwidth_rad_s",
+                                                           .value = task->bandwidth_rad_s,
+                                                           .relation = "at most",
+                                                           .limit = BANDWIDTH_PERIOD_MAX / period_s,
+                                                           .unit = "rad/s",
+                                                           .reason = "0.5 per control period"});
+    }
+    /* 1 - p by its series' sum, exact for small w_o T */
+    const double x = task->bandwidth_rad_s * period_s;
+    const double q = x * exponential_phi1(-x);
+    const double p = 1.0 - q;
+    const double speed_per_turn = base->rad_per_turn / base->speed_rad_s / period_s;
+    const double acceleration_per_turn =
+        base->rad_per_turn / (base->acceleration_rad_s2 * period_s * period_s);
+
+    params->model = *model;
+    params->encoder = encoder_design(task->rotor_teeth, task->counts_per_turn);
+    params->gain_angle = coef_from_double(q * (1.0 + p + p * p));
+    params->gain_speed = coef_from_double(1.5 * q * q * (1.0 + p) * speed_per_turn);
+    params->gain_load = coef_from_double(q * q * q * acceleration_per_turn);
+    params->gain_resistance = coef_from_double(0.0);
+    if (task->resistance_adaptation_s > 0.0) {
+        const double current = task->hold_current_A / base->current_A;
+        const double admittance = num_to_double(model->nominal_admittance);
+
+        params->gain_resistance = coef_from_double(
+            period_s / (task->resistance_adaptation_s * admittance * current * current));
+    }
+    return true;
+}
+
+void encoder_observer_reset(struct encoder_observer *observer,
+                            const struct encoder_observer_params *params, struct position position,
+                            num_t load_torque, num_t resistance, int32_t count)
+{
+    encoder_set(&observer->encoder, position, count);
+    estimate_reset(&observer->estimate, &params->model, position, resistance);
+    observer->estimate.rotor.load_torque = load_torque;
+    observer->known_torque = NUM(0.0);
+}
+
+void encoder_observer_place(struct encoder_observer *observer, struct position position)
+{
+    encoder_set(&observer->encoder, position, observer->encoder.count);
+    observer->estimate.rotor.position = position;
+}
+
+static void adapt_resistance(struct estimate *x, const struct encoder_observer_params *params,
+                             struct phases current, struct phases voltage)
+{
+    const struct phases expected = forced_current(&x->winding, x->free_current, voltage);
+    const num_t along =
+        num_mul(current.a - expected.a, current.a) + num_mul(current.b - expected.b, current.b);
+
+    winding_set_resistance(&x->winding, &params->model,
+                           x->winding.resistance - num_mul_coef(along, params->gain_resistance));
+}
+
+/*
+ * Mean of i_q over S(k-1)...S(k) from its two ends, each in the rotor's frame of its own instant: h
+ * before and after the middle of the period. (The mean of the phase currents is the chord of the
+ * arc that they run through, short by h^2/2: 0.8 % at 50 rad/s, 10 kHz and 50 teeth.)
+ */
+static num_t mean_torque_current(const struct estimate *x, struct phases current)
+{
+    const struct dq first = park(x->current, x->mid_period);
+    const struct dq last = park(current, x->mid_period);
+
+    return num_half(num_mul_unit(first.q + last.q, x->half_turn.cos) +
+                    num_mul_unit(first.d - last.d, x->half_turn.sin));
+}
+
+void encoder_observer_step(struct encoder_observer *observer,
+                           const struct encoder_observer_params *params, struct phases current,
+                           struct phases voltage, int32_t count, bool holding)
+{
+    struct estimate *x = &observer->estimate;
+    struct rotor *rotor = &x->rotor;
+    const struct position measured = encoder_step(&observer->encoder, &params->encoder, count);
+
+    if (holding) {
+        adapt_resistance(x, params, current, voltage);
+    }
+    predict_rotor(&params->model, rotor, mean_torque_current(x, current) - observer->known_torque);
+
+    const num_t innovation = num_limit(position_difference(measured, rotor->position), NUM(0.25));
+
+    rotor->position = position_add(rotor->position,
+                                   angle_from_turns(num_mul_coef(innovation, params->gain_angle)));
+    rotor->speed += num_mul_coef(innovation, params->gain_speed);
+    rotor->load_torque -= num_mul_coef(innovation, params->gain_load);
+    x->current = current;
+    estimate_look_ahead(x, &params->model);
+}

@@ -1,0 +1,668 @@
+/*
+ * The Taylor-series integrator of the equations of real_motor.h. Internal to real_motor.cpp; the
+ * orders and their bounds are those of the plain motor (integrator.h).
+ */
+#ifndef STEADYSTEP_PLANT_REAL_INTEGRATOR_H
+#define STEADYSTEP_PLANT_REAL_INTEGRATOR_H
+
+#include <utility>
+
+#include "sil/plant/elementary.h"
+#include "sil/plant/integrator.h"
+#include "sil/plant/real_motor.h"
+#include "sil/plant/taylor.h"
+
+namespace plant
+{
+
+namespace real_integrator
+{
+
+/*
+ * A series of order P over a step h leaves out about (rate h)^(P+1) / (P+1)!, of the motor and of
+ * the bus each with its own rate. Orders are lower than the plain motor's, because each costs
+ * thrice as much: the lowest that a segment's length allows, the highest in as many steps as it
+ * takes.
+ */
+struct Reach {
+    double motor, bus; /* the greatest rate x step */
+};
+constexpr Reach reach_2 = {0.006, 0.05};
+constexpr Reach reach_3 = {0.025, 0.2};
+constexpr Reach reach_4 = {0.1, 0.3};
+
+constexpr double no_current_A = 1e-12; /* what rounding leaves of a current that has ended */
+
+/*
+ * The unknowns as power series in the time since the start of the step. Functions of the rotor
+ * angle are series of psi, the angle turned since: F(psi(t)) = sum F_j psi(t)^j, and psi^j starts
+ * with t^j, so that the sum is finite for every coefficient.
+ */
+template <int order> struct Series {
+    Phases flux[order + 1]; /* x */
+    Phases flux_squared[order + 1];
+    Phases current[order + 1];
+    double omega[order + 1];
+    double acceleration[order]; /* without Coulomb friction */
+    double bus[order + 1];
+    Phases slope[order];                 /* f */
+    double turned[order + 1][order + 1]; /* [j][n]: coefficient j + n of psi^j, j > 0 */
+
+    /* Taylor coefficients in psi: of m, of f, and of the detent torque. */
+    Phases magnet_at[order + 1];
+    Phases slope_at[order];
+    double detent_at[order];
+};
+
+/* Which of its cases each part is in during a step. */
+struct Mode {
+    Phases share;      /* of the bus voltage that acts on a phase; 0 where it floats */
+    Phases drop_V;     /* of diodes, signed */
+    Phases conducting; /* 1, or 0 where the phase floats */
+    Phases direction;  /* of the current where only diodes let it flow: 1 or -1; else 0 */
+    bool floating;     /* some phase floats */
+    bool stuck;        /* Coulomb friction holds the rotor */
+    double sliding;    /* sign of the speed against which it acts; 0: none or stuck */
+    bool source_conducts;
+    bool relaxing;      /* no phase draws from the bus: its exponential is taken, no series */
+    double source_rate; /* 1/s, as far as they act in the series */
+    double brake_rate;
+    double per_capacitance;
+};
+
+/* One motor on its way: what it is, where it is, and what has flowed. */
+struct Course {
+    const RealCoefficients &motor;
+    RealMotorState &state;
+    MotorIntegrals &integrals;
+};
+
+/* Sum of F_j times coefficient k of psi^j. */
+template <int k, typename X, typename Turned, int... j>
+[[gnu::always_inline]] inline X composed(const X *at, const Turned &turned,
+                                         std::integer_sequence<int, j...>)
+{
+    return ((at[j + 1] * turned[j + 1][k - 1 - j]) + ...);
+}
+
+template <int k, typename X, typename Turned>
+[[gnu::always_inline]] inline X composed(const X *at, const Turned &turned)
+{
+    if constexpr (k == 0) {
+        return at[0];
+    } else {
+        return composed<k>(at, turned, std::make_integer_sequence<int, k>());
+    }
+}
+
+/* Coefficient k of psi and its powers from the speed's coefficients before it. */
+template <int k, int j, int order> [[gnu::always_inline]] inline void raise(Series<order> &x)
+{
+    if constexpr (j <= k) {
+        x.turned[j][k - j] = cauchy_product<k - j>(x.turned[1], x.turned[j - 1]);
+        raise<k, j + 1>(x);
+    }
+}
+
+template <int k, int order> [[gnu::always_inline]] inline void turn(Series<order> &x, double teeth)
+{
+    if constexpr (k > 0) {
+        x.turned[1][k - 1] = (teeth * (1.0 / k)) * x.omega[k - 1];
+        raise<k, 2>(x);
+    }
+}
+
+/* Coefficient k of the current, the flux's being known. */
+template <bool turning, int k, int order>
+[[gnu::always_inline]] inline void magnetise(Series<order> &x, const Magnetics &magnetics)
+{
+    x.flux_squared[k] = cauchy_square<k>(x.flux);
+    x.current[k] = x.flux[k] + magnetics.saturation * cauchy_product<k>(x.flux, x.flux_squared);
+    if constexpr (turning || k == 0) {
+        x.current[k] -= magnetics.magnet_A * composed<k>(x.magnet_at, x.turned);
+    }
+}
+
+/* Coefficients k + 1 and later from those before; the equations are in real_motor.h. */
+template <bool floating, bool turning, int k, int order>
+[[gnu::always_inline]] inline void expand(Series<order> &x, const RealCoefficients &motor,
+                                          const Mode &mode)
+{
+    const RealCoefficients::Share &share = motor.share[k];
+    const Magnetics &magnetics = motor.magnetics;
+    constexpr double part = 1.0 / (k + 1);
+
+    if constexpr (turning && !floating) {
+        turn<k>(x, magnetics.teeth);
+    }
+    magnetise<turning, k>(x, magnetics);
+    if constexpr (floating) {
+        x.current[k] *= mode.conducting;
+    }
+    x.slope[k] = x.slope_at[0];
+    double acceleration = 0.0;
+    if constexpr (turning) {
+        x.slope[k] = composed<k>(x.slope_at, x.turned);
+        const Phases pull = cauchy_product<k>(x.slope, x.flux);
+        acceleration = motor.torque * (pull[0] + pull[1]) - composed<k>(x.detent_at, x.turned) -
+                       motor.friction * x.omega[k];
+    } else {
+        acceleration = motor.torque * dot(x.slope_at[0], x.flux[k]);
+        if constexpr (k == 0) {
+            acceleration -= x.detent_at[0];
+        }
+    }
+    Phases voltage_V = mode.share * x.bus[k];
+    double bus = -(mode.source_rate + mode.brake_rate) * x.bus[k] -
+                 mode.per_capacitance * dot(mode.share, x.current[k]);
+    double coulomb = 0.0;
+    if constexpr (k == 0) {
+        acceleration -= motor.load;
+        coulomb = mode.sliding * motor.coulomb;
+        voltage_V += mode.drop_V;
+        bus += mode.source_rate * motor.supply.source_V;
+    }
+    x.acceleration[k] = acceleration;
+    x.omega[k + 1] = turning ? part * (acceleration - coulomb) : 0.0;
+    x.bus[k + 1] = part * bus;
+    Phases flux = share.voltage * voltage_V + share.resistance * x.current[k];
+    if constexpr (floating) { /* current 0: (1 + 3 b x^2) dx/dt = I_f dm/dt, divided */
+        Phases rest = {0.0, 0.0};
+        if constexpr (turning) {
+            turn<k + 1>(x, magnetics.teeth);
+            rest = magnetics.magnet_A * composed<k + 1>(x.magnet_at, x.turned);
+        }
+        for (int j = 1; j <= k; j++) {
+            rest -= (3.0 * magnetics.saturation * part * (k + 1 - j)) * x.flux_squared[j] *
+                    x.flux[k + 1 - j];
+        }
+        const Phases open = rest / (1.0 + 3.0 * magnetics.saturation * x.flux_squared[0]);
+        flux = mode.conducting * flux + (1.0 - mode.conducting) * open;
+    }
+    x.flux[k + 1] = flux;
+    if constexpr (k + 1 < order) {
+        expand<floating, turning, k + 1>(x, motor, mode);
+    }
+}
+
+/* Taylor coefficients j and later in psi, of f and of the detent torque. */
+template <int j, int order>
+[[gnu::always_inline]] inline void differentiate(Series<order> &x, const RealCoefficients &motor,
+                                                 const Axes &axes)
+{
+    if constexpr (j < order) {
+        const RealCoefficients::InAngle &share = motor.in_angle[j];
+        constexpr int lane = 1 - j % 2; /* a sine and its derivatives */
+        const Phases third = exchanged(axes.thrice);
+        x.slope_at[j] = share.once * (j % 2 == 0 ? quarter_turn(axes.once) : -axes.once) +
+                        share.thrice * (j % 2 == 0 ? third : -quarter_turn(third));
+        x.magnet_at[j + 1] = x.slope_at[j] * (1.0 / (j + 1));
+        x.detent_at[j] = share.detent_4 * axes.four_times[lane] +
+                         share.detent_2 * axes.twice[lane] + share.detent_1 * axes.once[lane];
+        differentiate<j + 1>(x, motor, axes);
+    }
+}
+
+/* Coefficients 0, and those in psi. */
+template <int order>
+[[gnu::always_inline]] inline void start(Series<order> &x, const RealCoefficients &motor,
+                                         const RealMotorState &state)
+{
+    const Magnetics &magnetics = motor.magnetics;
+    const Axes axes = axes_of(state.axis);
+    x.flux[0] = state.flux;
+    x.omega[0] = state.omega_rad_s;
+    x.bus[0] = state.bus_V;
+
+    x.magnet_at[0] = magnetics.magnet_axis(axes.once, axes.thrice);
+    differentiate<0>(x, motor, axes);
+    magnetise<true, 0>(x, magnetics);
+}
+
+/* Back-EMF of an open phase: L0 dx/dt with no current. */
+template <int order>
+double open_circuit_V(const Series<order> &x, const Magnetics &magnetics, int phase)
+{
+    return magnetics.torque * x.omega[0] * x.slope_at[0][phase] /
+           (1.0 + 3.0 * magnetics.saturation * x.flux_squared[0][phase]);
+}
+
+/* A phase with a leg in dead time: see integrator::Terminal. */
+template <int order>
+[[gnu::always_inline]] inline void set_phase(Mode &mode, int phase, const Segment &segment,
+                                             const Series<order> &x, const RealCoefficients &motor,
+                                             const RealMotorState &state)
+{
+    const double legs = segment.diode_V[phase];
+    const double drop_V = legs * motor.diode_drop;
+    const double positive = segment.if_positive_V[phase] + legs;
+    const double negative = segment.if_negative_V[phase] - legs;
+    double sign = x.current[0][phase];
+    if (state.blocked[phase] || magnitude(sign) < no_current_A) {
+        const double emf_V = open_circuit_V(x, motor.magnetics, phase);
+        sign = emf_V < positive * state.bus_V - drop_V
+                   ? 1.0
+                   : (emf_V > negative * state.bus_V + drop_V ? -1.0 : 0.0);
+    }
+    if (sign == 0.0) {
+        mode.share[phase] = 0.0;
+        mode.conducting[phase] = 0.0;
+        mode.floating = true;
+    } else {
+        const double direction = sign > 0.0 ? 1.0 : -1.0;
+        mode.share[phase] = sign > 0.0 ? positive : negative;
+        mode.drop_V[phase] = -direction * drop_V;
+        mode.direction[phase] = direction;
+    }
+}
+
+/* At rest the rotor sticks as long as friction can hold it. */
+template <int order>
+void set_friction(Mode &mode, const Series<order> &x, const RealCoefficients &motor)
+{
+    if (x.omega[0] == 0.0) {
+        const double acceleration =
+            motor.torque * dot(x.slope_at[0], x.flux[0]) - x.detent_at[0] - motor.load;
+        mode.stuck = magnitude(acceleration) <= motor.coulomb;
+        mode.sliding = mode.stuck ? 0.0 : (acceleration > 0.0 ? 1.0 : -1.0);
+    } else {
+        mode.sliding = x.omega[0] > 0.0 ? 1.0 : -1.0;
+    }
+}
+
+template <int order>
+void set_bus(Mode &mode, const Series<order> &x, const RealCoefficients &motor,
+             const RealMotorState &state)
+{
+    const Supply &supply = motor.supply;
+    const bool drawing = mode.share[0] != 0.0 || mode.share[1] != 0.0;
+    mode.source_conducts =
+        state.bus_V < supply.source_V ||
+        (state.bus_V == supply.source_V && (!drawing || dot(mode.share, x.current[0]) >= 0.0));
+    mode.brake_rate = state.braking ? supply.brake_rate : 0.0;
+    mode.source_rate = mode.source_conducts ? supply.source_rate : 0.0;
+    mode.per_capacitance = supply.per_capacitance;
+    mode.relaxing = !drawing && mode.source_conducts && !state.braking;
+    if (mode.relaxing) {
+        mode.source_rate = 0.0;
+    }
+}
+
+template <int order>
+[[gnu::always_inline]] inline Mode mode_of(const Series<order> &x, const Segment &segment,
+                                           const RealCoefficients &motor,
+                                           const RealMotorState &state)
+{
+    Mode mode = {};
+    mode.conducting = Phases{1.0, 1.0};
+    mode.share = segment.if_positive_V;
+    if (segment.dead_time) {
+        for (int phase = 0; phase < 2; phase++) {
+            if (segment.diode_V[phase] != 0.0) {
+                set_phase(mode, phase, segment, x, motor, state);
+            }
+        }
+    }
+    if (motor.coulomb > 0.0) {
+        set_friction(mode, x, motor);
+    }
+    if (!motor.supply.stiff()) {
+        set_bus(mode, x, motor, state);
+    }
+    return mode;
+}
+
+template <int order>
+[[gnu::noinline]] void add_energies(const Course &course, const Series<order> &x,
+                                    const Segment &segment, const Mode &mode, double h)
+{
+    const RealCoefficients &motor = course.motor;
+    const Supply &supply = motor.supply;
+    MotorIntegrals &integrals = course.integrals;
+    const double inertia = 1.0 / motor.inverse_inertia;
+    const Phases charge = integral<order>(x.current, h);
+    const Phases current_squared = integral_of_square<order>(x.current, h);
+    const double way = integral<order>(x.omega, h);
+    integrals.diode_J += motor.diode_drop * (segment.diode_V[0] * magnitude(charge[0]) +
+                                             segment.diode_V[1] * magnitude(charge[1]));
+    integrals.copper_J += motor.resistance * (current_squared[0] + current_squared[1]);
+    integrals.friction_J += motor.friction * inertia * integral_of_square<order>(x.omega, h);
+    integrals.load_J += motor.load * inertia * way;
+    integrals.coulomb_J += mode.sliding * motor.coulomb * inertia * way;
+    if (supply.stiff()) {
+        integrals.supplied_J += supply.source_V * dot(mode.share, charge);
+        return;
+    }
+    double below[order + 1]; /* Vs - V */
+    for (int k = 0; k <= order; k++) {
+        below[k] = -x.bus[k];
+    }
+    below[0] += supply.source_V;
+    const double source_A_per_V = mode.source_rate * supply.capacitance_F;
+    /* One term less: the charge that the series has put into the capacitor. */
+    integrals.supplied_J += supply.source_V * source_A_per_V * integral<order - 1>(below, h);
+    integrals.source_J += source_A_per_V * integral_of_square<order>(below, h);
+    integrals.brake_J +=
+        mode.brake_rate * supply.capacitance_F * integral_of_square<order>(x.bus, h);
+}
+
+/* The bus without a load goes to the source's voltage. */
+template <bool track_energy>
+[[gnu::always_inline]] inline void relax(const Course &course, double h)
+{
+    const Supply &supply = course.motor.supply;
+    const double below_V = supply.source_V - course.state.bus_V;
+    const double left_V = below_V * falling_exponential(-supply.source_rate * h);
+    course.state.bus_V = supply.source_V - left_V;
+    if constexpr (track_energy) {
+        const double capacitance_F = supply.capacitance_F;
+        course.integrals.supplied_J += supply.source_V * capacitance_F * (below_V - left_V);
+        course.integrals.source_J += 0.5 * capacitance_F * (below_V * below_V - left_V * left_V);
+    }
+}
+
+/* The state at the end of the step. */
+template <bool track_energy, int order>
+[[gnu::always_inline]] inline void accept(const Course &course, const Series<order> &x,
+                                          const Segment &segment, const Mode &mode, double h)
+{
+    RealMotorState &state = course.state;
+    course.integrals.voltage_Vs += mode.share * integral<order>(x.bus, h) + mode.drop_V * h;
+    if constexpr (track_energy) {
+        add_energies(course, x, segment, mode, h);
+    }
+    state.flux = value<order>(x.flux, h);
+    if (!mode.stuck) {
+        const double turned_rad = course.motor.magnetics.teeth * integral<order>(x.omega, h);
+        state.omega_rad_s = value<order>(x.omega, h);
+        state.electrical_rad += turned_rad;
+        state.axis = turned_by_little(state.axis, turned_rad);
+    }
+    state.bus_V = value<order>(x.bus, h);
+    if (mode.relaxing) {
+        relax<track_energy>(course, h);
+    }
+    state.blocked[0] = state.blocked[1] = false;
+}
+
+/*
+ * What must be >= 0 for the mode to go on, as a series: a current that diodes carry along its
+ * direction, the back-EMF of a floating phase within what the diodes hold, ...
+ */
+template <int order> struct Margin {
+    double coefficient[order + 1];
+};
+
+template <int order>
+Margin<order> margin_of_phase(int phase, const Series<order> &x, const RealCoefficients &motor,
+                              const Segment &segment, const Mode &mode, double h)
+{
+    Margin<order> margin = {};
+    if (mode.conducting[phase] != 0.0) {
+        for (int k = 0; k <= order; k++) {
+            margin.coefficient[k] = mode.direction[phase] * x.current[k][phase];
+        }
+        return margin;
+    }
+    double emf[order];
+    for (int k = 0; k < order; k++) {
+        emf[k] = motor.magnetics.inductance * (k + 1) * x.flux[k + 1][phase];
+    }
+    const double drops = segment.diode_V[phase];
+    const bool negative = value<order - 1>(emf, h) < 0.0;
+    const double sign = negative ? 1.0 : -1.0;
+    const double share =
+        negative ? -(segment.if_positive_V[phase] + drops) : segment.if_negative_V[phase] - drops;
+    for (int k = 0; k < order; k++) {
+        margin.coefficient[k] = sign * emf[k] + share * x.bus[k];
+    }
+    margin.coefficient[0] += drops * motor.diode_drop;
+    return margin;
+}
+
+/* ... the speed while the rotor slides, what friction holds while it sticks, ... */
+template <int order>
+Margin<order> margin_of_friction(const Series<order> &x, const RealCoefficients &motor,
+                                 const Mode &mode, double h)
+{
+    Margin<order> margin = {};
+    if (!mode.stuck) {
+        for (int k = 0; k <= order; k++) {
+            margin.coefficient[k] = mode.sliding * x.omega[k];
+        }
+        return margin;
+    }
+    const double sign = value<order - 1>(x.acceleration, h) < 0.0 ? 1.0 : -1.0;
+    for (int k = 0; k < order; k++) {
+        margin.coefficient[k] = sign * x.acceleration[k];
+    }
+    margin.coefficient[0] += motor.coulomb;
+    return margin;
+}
+
+/* ... and the bus below or above a threshold. */
+template <int order>
+Margin<order> margin_of_bus(const Series<order> &x, double threshold_V, bool below)
+{
+    Margin<order> margin = {};
+    const double sign = below ? -1.0 : 1.0;
+    for (int k = 0; k <= order; k++) {
+        margin.coefficient[k] = sign * x.bus[k];
+    }
+    margin.coefficient[0] -= sign * threshold_V;
+    return margin;
+}
+
+/* The first end of a mode within a step. */
+enum class End {
+    of_step,
+    of_current_a,
+    of_current_b,
+    of_floating,
+    of_motion,
+    of_rest,
+    of_source,
+    of_brake
+};
+
+struct Event {
+    double time_s;
+    End end = End::of_step;
+};
+
+template <int order> void consider(Event &first, End end, const Margin<order> &margin, double h)
+{
+    const double at_end = value<order>(margin.coefficient, h);
+    if (!(at_end < 0.0)) {
+        return;
+    }
+    const double *x = margin.coefficient;
+    const bool at_once = x[0] < 0.0 || (x[0] == 0.0 && x[1] <= 0.0);
+    const double zero_s = at_once ? 0.0 : falling_zero<order>(x, h, at_end);
+    const double least_s = integrator::least_progress * h;
+    const double time_s = zero_s > least_s ? zero_s : least_s;
+    if (time_s < first.time_s) {
+        first = {time_s, end};
+    }
+}
+
+template <int order>
+Event first_event(const Series<order> &x, const RealCoefficients &motor,
+                  const RealMotorState &state, const Segment &segment, const Mode &mode, double h)
+{
+    Event first = {h};
+    for (int phase = 0; phase < 2; phase++) {
+        if (segment.diode_V[phase] != 0.0) {
+            const End current = phase == 0 ? End::of_current_a : End::of_current_b;
+            consider(first, mode.conducting[phase] != 0.0 ? current : End::of_floating,
+                     margin_of_phase(phase, x, motor, segment, mode, h), h);
+        }
+    }
+    if (motor.coulomb > 0.0) {
+        consider(first, !mode.stuck ? End::of_motion : End::of_rest,
+                 margin_of_friction(x, motor, mode, h), h);
+    }
+    const Supply &supply = motor.supply;
+    if (!supply.stiff()) {
+        consider(first, End::of_source, margin_of_bus(x, supply.source_V, mode.source_conducts), h);
+    }
+    if (supply.brake_rate > 0.0) {
+        consider(first, End::of_brake,
+                 margin_of_bus(x, state.braking ? supply.brake_off_V : supply.brake_on_V,
+                               !state.braking),
+                 h);
+    }
+    return first;
+}
+
+/* Puts a floating phase's flux where its current is 0, to rounding. */
+inline void hold_open(RealMotorState &state, const Magnetics &magnetics, int phase)
+{
+    const double current_A = magnetics.current_A(state.flux, axes_of(state.axis))[phase];
+    state.flux[phase] -=
+        current_A / (1.0 + 3.0 * magnetics.saturation * state.flux[phase] * state.flux[phase]);
+    state.blocked[phase] = true;
+}
+
+/* A step in which a phase floats or a mode ends: goes as far as the first event. */
+template <int order, bool track_energy>
+[[gnu::noinline]] double accept_to_event(const Course &course, Series<order> &x,
+                                         const Segment &segment, const Mode &mode, double h)
+{
+    const Magnetics &magnetics = course.motor.magnetics;
+    RealMotorState &state = course.state;
+    const Event event = first_event(x, course.motor, state, segment, mode, h);
+    const Phases before = state.flux;
+    accept<track_energy>(course, x, segment, mode, event.time_s);
+    course.integrals.voltage_Vs +=
+        (1.0 - mode.conducting) * magnetics.inductance * (state.flux - before);
+    for (int phase = 0; phase < 2; phase++) {
+        const End current = phase == 0 ? End::of_current_a : End::of_current_b;
+        if (mode.conducting[phase] == 0.0 || event.end == current) {
+            hold_open(state, magnetics, phase);
+        }
+    }
+    if (event.end == End::of_motion) {
+        state.omega_rad_s = 0.0;
+    } else if (event.end == End::of_source) {
+        state.bus_V = course.motor.supply.source_V;
+    } else if (event.end == End::of_brake) {
+        state.braking = !state.braking;
+    }
+    return event.time_s;
+}
+
+/* Whether a mode ends within a step, which is the exception. */
+template <int order>
+[[gnu::always_inline]] inline bool mode_ends(const Series<order> &x, const RealCoefficients &motor,
+                                             const RealMotorState &state, const Segment &segment,
+                                             const Mode &mode, double h)
+{
+    const Supply &supply = motor.supply;
+    if (mode.stuck ? magnitude(value<order - 1>(x.acceleration, h)) > motor.coulomb
+                   : mode.sliding * value<order>(x.omega, h) < 0.0) {
+        return true;
+    }
+    if (segment.dead_time) {
+        const Phases along = mode.direction * value<order>(x.current, h);
+        if (along[0] < 0.0 || along[1] < 0.0) {
+            return true;
+        }
+    }
+    if (supply.stiff()) {
+        return false;
+    }
+    const double bus_V = value<order>(x.bus, h);
+    if (mode.source_conducts ? bus_V > supply.source_V : bus_V < supply.source_V) {
+        return true;
+    }
+    return supply.brake_rate > 0.0 &&
+           (state.braking ? bus_V < supply.brake_off_V : bus_V > supply.brake_on_V);
+}
+
+/* All series; the current's last coefficient where somebody wants it. */
+template <bool floating, bool turning, bool whole_current, int order>
+[[gnu::always_inline]] inline void expand_all(Series<order> &x, const RealCoefficients &motor,
+                                              const Mode &mode)
+{
+    expand<floating, turning, 0>(x, motor, mode);
+    if constexpr (whole_current) {
+        if constexpr (turning && !floating) {
+            turn<order>(x, motor.magnetics.teeth);
+        }
+        magnetise<turning, order>(x, motor.magnetics);
+        if constexpr (floating) {
+            x.current[order] *= mode.conducting;
+        }
+    }
+}
+
+/* Advances by h or to the first event before; returns the time that passed. */
+template <int order, bool track_energy, bool dead_time>
+[[gnu::always_inline]] inline double step(const Course &course, const Segment &segment, double h)
+{
+    const RealCoefficients &motor = course.motor;
+    Series<order> x;
+    start(x, motor, course.state);
+    const Mode mode = mode_of(x, segment, motor, course.state);
+    constexpr bool whole_current = track_energy || dead_time;
+    if (mode.floating) {
+        if (mode.stuck) {
+            expand_all<true, false, true>(x, motor, mode);
+        } else {
+            expand_all<true, true, true>(x, motor, mode);
+        }
+        return accept_to_event<order, track_energy>(course, x, segment, mode, h);
+    }
+    if (mode.stuck) {
+        expand_all<false, false, whole_current>(x, motor, mode);
+    } else {
+        expand_all<false, true, whole_current>(x, motor, mode);
+    }
+    if (mode_ends(x, motor, course.state, segment, mode, h)) {
+        return accept_to_event<order, track_energy>(course, x, segment, mode, h);
+    }
+    accept<track_energy>(course, x, segment, mode, h);
+    return h;
+}
+
+/* To the end of a stretch of constant switches, in steps of at most longest_s. */
+template <int order, bool track_energy>
+[[gnu::always_inline]] inline void cross(const Course &course, const Segment &segment,
+                                         double longest_s)
+{
+    double left_s = segment.duration_s;
+    while (left_s > 0.0) {
+        const double h = left_s < longest_s ? left_s : longest_s;
+        left_s -= segment.dead_time ? step<order, track_energy, true>(course, segment, h)
+                                    : step<order, track_energy, false>(course, segment, h);
+    }
+}
+
+/* Through a timetable; rate: how fast the solution can change, 1/s. */
+template <bool track_energy>
+void follow(const Course &course, const Timetable &timetable, double rate)
+{
+    const Supply &supply = course.motor.supply;
+    for (const Segment &segment : timetable) {
+        const bool draws =
+            segment.dead_time || segment.if_positive_V[0] != 0.0 || segment.if_positive_V[1] != 0.0;
+        const double bus_rate = supply.brake_rate + (draws ? supply.source_rate : 0.0);
+        const double duration_s = segment.duration_s;
+        if (rate * duration_s < reach_2.motor && bus_rate * duration_s < reach_2.bus) {
+            cross<2, track_energy>(course, segment, duration_s);
+        } else if (rate * duration_s < reach_3.motor && bus_rate * duration_s < reach_3.bus) {
+            cross<3, track_energy>(course, segment, duration_s);
+        } else {
+            const double by_motor_s = reach_4.motor / rate;
+            const double by_bus_s = reach_4.bus / bus_rate; /* infinite on a stiff bus */
+            cross<4, track_energy>(course, segment, by_motor_s < by_bus_s ? by_motor_s : by_bus_s);
+        }
+    }
+}
+
+} // namespace real_integrator
+
+} // namespace plant
+
+#endif

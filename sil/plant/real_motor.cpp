@@ -1,0 +1,148 @@
+#include "sil/plant/real_motor.h"
+
+#include <cmath>
+
+#include "sil/plant/elementary.h"
+#include "sil/plant/real_integrator.h"
+#include "sil/plant/require.h"
+
+namespace plant
+{
+
+namespace
+{
+
+constexpr double fastest_rate = 1e9; /* 1/s: a runaway motor ends, if not accurately */
+
+/* What the magnetic circuit depends on. */
+bool same_magnetics(const MotorConfig &x, const MotorConfig &y)
+{
+    return x.inductance_H == y.inductance_H && x.torque_constant_Nm_A == y.torque_constant_Nm_A &&
+           x.rotor_teeth == y.rotor_teeth;
+}
+
+} // namespace
+
+RealMotor::RealMotor(const Config &config)
+    : imperfections_(config.imperfections), track_energy_(config.track_energy)
+{
+    require_motion(config.initial_theta_rad, config.initial_omega_rad_s);
+    require(imperfections_.coulomb_friction >= 0.0 && imperfections_.coulomb_friction <= 10.0,
+            "coulomb_friction", imperfections_.coulomb_friction, "0...10");
+    require(imperfections_.bridge_resistance_ohm >= 0.0 &&
+                imperfections_.bridge_resistance_ohm <= 1e4,
+            "bridge_resistance_ohm", imperfections_.bridge_resistance_ohm, "0...1e4 ohm");
+    coefficients_.supply = supply_of(config.supply, config.bridge.bus_V);
+    coefficients_.diode_drop = config.bridge.diode_drop_V;
+    state_.omega_rad_s = config.initial_omega_rad_s;
+    state_.electrical_rad = config.motor.rotor_teeth * config.initial_theta_rad;
+    state_.bus_V = config.bridge.bus_V;
+    set_parameters(config.motor);
+}
+
+void RealMotor::set_parameters(const MotorConfig &config)
+{
+    require_motor(config);
+    const Phases kept_A = motor_.rotor_teeth > 0 ? current_A() : Phases{0.0, 0.0};
+    RealCoefficients &motor = coefficients_;
+    if (!same_magnetics(config, motor_)) {
+        motor.magnetics = magnetics_of(config, imperfections_);
+    }
+    motor_ = config;
+    const Magnetics &magnetics = motor.magnetics;
+    const double per_J = 1.0 / config.inertia_kgm2;
+    motor.load *= per_J / (motor.inverse_inertia > 0.0 ? motor.inverse_inertia : per_J);
+    motor.inverse_inertia = per_J;
+    motor.resistance = config.resistance_ohm + imperfections_.bridge_resistance_ohm;
+    motor.torque = magnetics.torque * per_J;
+    motor.friction = config.viscous_friction_Nms_rad * per_J;
+    motor.coulomb =
+        imperfections_.coulomb_friction * holding_torque_Nm(config, imperfections_) * per_J;
+    const double detent_4 = magnetics.unmagnetised_detent_4() * per_J;
+    const double detent_2 = magnetics.detent_2 * per_J;
+    const double detent_1 = magnetics.detent_1 * per_J;
+    motor.stiffness = magnetics.teeth *
+                      (4.0 * magnitude(detent_4) + 2.0 * magnitude(detent_2) + magnitude(detent_1));
+    RealCoefficients::InAngle in_angle = {1.0, -magnetics.harmonic, detent_4, detent_2, detent_1};
+    for (int k = 0; k < MotorCoefficients::highest_order; k++) {
+        const double next = 1.0 / (k + 1);
+        const Phases per_L = Phases{next, next} / magnetics.inductance;
+        motor.share[k] = {per_L * -motor.resistance, per_L};
+        motor.in_angle[k] = in_angle;
+        const double turned = k % 2 == 0 ? next : -next;
+        in_angle.once *= turned;
+        in_angle.thrice *= 3.0 * turned;
+        in_angle.detent_4 *= 4.0 * turned;
+        in_angle.detent_2 *= 2.0 * turned;
+        in_angle.detent_1 *= turned;
+    }
+    begin_period();
+    state_.flux = magnetics.flux(kept_A, axes_of(state_.axis));
+}
+
+void RealMotor::set_load_torque(double load_torque_Nm)
+{
+    coefficients_.load = load_torque_Nm * coefficients_.inverse_inertia;
+}
+
+void RealMotor::begin_period()
+{
+    const RealCoefficients &motor = coefficients_;
+    const Magnetics &magnetics = motor.magnetics;
+    wrap(state_.electrical_turns, state_.electrical_rad);
+    state_.axis = unit_vector(state_.electrical_rad);
+    integrals_.voltage_Vs = Phases{0.0, 0.0};
+
+    /* Rotation, L/R, the exchange of magnetic with kinetic energy, and with that of the bus. */
+    const double most = magnitude(state_.flux[0]) + magnitude(state_.flux[1]);
+    const double per_L = (1.0 + 3.0 * magnetics.saturation * most * most) / magnetics.inductance;
+    const double stiffness =
+        motor.torque * (magnetics.torque * per_L + magnetics.teeth * most) + motor.stiffness;
+    const double rate = magnetics.teeth * magnitude(state_.omega_rad_s) + motor.resistance * per_L +
+                        std::sqrt(stiffness + 2.0 * per_L * motor.supply.per_capacitance);
+    rate_ = rate < fastest_rate ? rate : fastest_rate; /* also if not a number */
+}
+
+void RealMotor::advance(const Timetable &timetable)
+{
+    const real_integrator::Course course = {coefficients_, state_, integrals_};
+    if (track_energy_) {
+        real_integrator::follow<true>(course, timetable, rate_);
+    } else {
+        real_integrator::follow<false>(course, timetable, rate_);
+    }
+}
+
+Phases RealMotor::current_A() const
+{
+    const Phases current_A = coefficients_.magnetics.current_A(state_.flux, axes_of(state_.axis));
+    return Phases{state_.blocked[0] ? 0.0 : current_A[0], state_.blocked[1] ? 0.0 : current_A[1]};
+}
+
+double RealMotor::theta_rad() const
+{
+    return (state_.electrical_turns * (2.0 * pi) + state_.electrical_rad) /
+           coefficients_.magnetics.teeth;
+}
+
+double RealMotor::torque_Nm() const
+{
+    return coefficients_.magnetics.torque_Nm(state_.flux, axes_of(state_.axis));
+}
+
+double RealMotor::magnetic_J() const
+{
+    return coefficients_.magnetics.energy_J(state_.flux, axes_of(state_.axis));
+}
+
+double RealMotor::kinetic_J() const
+{
+    return 0.5 * state_.omega_rad_s * state_.omega_rad_s / coefficients_.inverse_inertia;
+}
+
+double RealMotor::capacitor_J() const
+{
+    return 0.5 * coefficients_.supply.capacitance_F * state_.bus_V * state_.bus_V;
+}
+
+} // namespace plant

@@ -1,0 +1,103 @@
+/*
+ * A motor with saturation, flux harmonic, detent and Coulomb friction (magnetics.h), the bridge's
+ * resistance, and the bus (supply.h), integrated from switching edge to switching edge.
+ *
+ *   L0 dx/dt = u - (R + R_bridge) i           x: flux linkage / L0 of the phases (a, b)
+ *   J dw/dt  = torque(x, N theta) - Kv w - T_L - Tc sign(w)
+ *   d theta/dt = w
+ *   C dV/dt  = source and brake - share . i   u = share V -+ diode drops
+ *
+ * At rest the rotor sticks until the other torques exceed Tc. Taylor series in time as for the
+ * plain motor (motor.h); what depends on the rotor angle is a Taylor series in the angle turned,
+ * and so the sum of its powers.
+ */
+#ifndef STEADYSTEP_PLANT_REAL_MOTOR_H
+#define STEADYSTEP_PLANT_REAL_MOTOR_H
+
+#include "sil/plant/bridge.h"
+#include "sil/plant/magnetics.h"
+#include "sil/plant/motor.h"
+#include "sil/plant/phases.h"
+#include "sil/plant/plant.h"
+#include "sil/plant/supply.h"
+
+namespace plant
+{
+
+struct RealMotorState {
+    Phases flux = {0.0, 0.0}; /* x, A */
+    Phases axis = {1.0, 0.0}; /* (cos, sin) of N theta */
+    double omega_rad_s = 0.0;
+    double electrical_turns = 0.0; /* N theta: whole turns and the rest, as in MotorState */
+    double electrical_rad = 0.0;
+    double bus_V = 0.0;
+    bool blocked[2] = {true, true}; /* diodes hold the phase's current at 0 */
+    bool braking = false;           /* the brake resistor is connected */
+};
+
+/* Configuration as the equations want it: torques over inertia, rad/s^2. */
+struct RealCoefficients {
+    Magnetics magnetics;
+    Supply supply;
+    double resistance = 0.0, diode_drop = 0.0;
+    double inverse_inertia = 0.0;
+    double torque = 0.0, friction = 0.0, load = 0.0, coulomb = 0.0; /* Kx, Kv, T_L, Tc over J */
+    double stiffness = 0.0; /* of the detent, 1/s^2: the greatest slope over J */
+
+    /* -R/L0 and 1/L0 over k + 1: from Taylor coefficient k to k + 1. */
+    struct Share {
+        Phases resistance, voltage;
+    } share[MotorCoefficients::highest_order];
+
+    /* Taylor coefficient j in N theta: 1, -h 3^j, D4 4^j, Td2 2^j and Td1 over j!, with the signs
+       + + - - + of the derivatives of a sine. */
+    struct InAngle {
+        double once, thrice, detent_4, detent_2, detent_1;
+    } in_angle[MotorCoefficients::highest_order];
+};
+
+class RealMotor
+{
+  public:
+    /* Throws std::invalid_argument. */
+    RealMotor(const Config &config);
+
+    void set_parameters(const MotorConfig &config); /* currents, angle and speed go on */
+    void set_load_torque(double load_torque_Nm);
+
+    void begin_period();
+    /* A timetable of a bus of 1 V with diodes of 1 V: voltages scale with the bus as it is. */
+    void advance(const Timetable &timetable);
+
+    const MotorIntegrals &integrals() const
+    {
+        return integrals_;
+    }
+    Phases current_A() const;
+    double omega_rad_s() const
+    {
+        return state_.omega_rad_s;
+    }
+    double theta_rad() const;
+    double torque_Nm() const; /* of the magnetic circuit, detent included */
+    double bus_V() const
+    {
+        return state_.bus_V;
+    }
+    double magnetic_J() const;
+    double kinetic_J() const;
+    double capacitor_J() const;
+
+  private:
+    ImperfectionConfig imperfections_;
+    MotorConfig motor_;
+    RealCoefficients coefficients_;
+    RealMotorState state_;
+    MotorIntegrals integrals_;
+    bool track_energy_;
+    double rate_ = 0.0; /* 1/s: how fast the solution can change, bounds the step */
+};
+
+} // namespace plant
+
+#endif

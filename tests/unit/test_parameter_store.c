@@ -1,0 +1,158 @@
+/* Learned parameters in a flash that is erased in pages and programmed once per word. */
+#include <string.h>
+
+#include <unity.h>
+
+#include "firmware/drive/parameter_store.h"
+
+enum { PAGE = 256, PAGES = 2, WORD = 8 };
+
+static uint8_t flash[PAGE * PAGES];
+static int bytes_until_power_fails; /* while programming; < 0: never */
+static int erased_pages;
+static struct hal_facts facts;
+static struct hal board;
+
+static bool erase(void *context, uint32_t page)
+{
+    (void)context;
+    erased_pages++;
+    memset(&flash[page * PAGE], 0xff, PAGE);
+    return true;
+}
+
+static bool program(void *context, uint32_t offset, const void *data, size_t count)
+{
+    const uint8_t *bytes = data;
+
+    (void)context;
+    if (offset % WORD != 0 || count % WORD != 0 || offset + count > sizeof flash) {
+        return false;
+    }
+    for (size_t i = 0; i < count; i++) {
+        if (flash[offset + i] != 0xff) {
+            return false;
+        }
+    }
+    for (size_t i = 0; i < count && bytes_until_power_fails != 0; i++) {
+        flash[offset + i] = bytes[i];
+        bytes_until_power_fails--;
+    }
+    return true;
+}
+
+static bool read_back(void *context, uint32_t offset, void *data, size_t count)
+{
+    (void)context;
+    if (offset + count > sizeof flash) {
+        return false;
+    }
+    memcpy(data, &flash[offset], count);
+    return true;
+}
+
+void setUp(void)
+{
+    memset(flash, 0xff, sizeof flash);
+    bytes_until_power_fails = -1;
+    erased_pages = 0;
+    facts = (struct hal_facts){.parameter_page_bytes = PAGE, .parameter_word_bytes = WORD};
+    board = (struct hal){.facts = &facts,
+                         .parameters_erase = erase,
+                         .parameters_program = program,
+                         .parameters_read = read_back};
+}
+
+void tearDown(void)
+{
+}
+
+static bool save(double torque_Nm)
+{
+    const struct learned_parameters learned = {
+        {torque_Nm, -torque_Nm, 2.0 * torque_Nm, 0.0, 1e-7, -3.0 * torque_Nm}};
+
+    return parameter_store_write(&board, &learned);
+}
+
+/* The first coefficient; -1: nothing is kept. */
+static double kept(void)
+{
+    struct learned_parameters learned;
+
+    return parameter_store_read(&board, &learned) ? learned.detent_torque_Nm[0] : -1.0;
+}
+
+static void test_what_is_saved_is_found_again(void)
+{
+    struct learned_parameters learned;
+
+    TEST_ASSERT_TRUE(save(0.0123456));
+    TEST_ASSERT_TRUE(parameter_store_read(&board, &learned));
+    TEST_ASSERT_DOUBLE_WITHIN(5e-8, 0.0123456, learned.detent_torque_Nm[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(5e-8, -0.0123456, learned.detent_torque_Nm[1]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1e-7, learned.detent_torque_Nm[4]);
+    TEST_ASSERT_DOUBLE_WITHIN(5e-8, -0.0370368, learned.detent_torque_Nm[5]);
+}
+
+static void test_an_erased_store_keeps_nothing(void)
+{
+    TEST_ASSERT_EQUAL_DOUBLE(-1.0, kept());
+}
+
+static void test_the_last_of_many_savings_counts(void)
+{
+    for (int i = 1; i <= 100; i++) {
+        TEST_ASSERT_TRUE(save(1e-3 * i));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-7, 1e-3 * i, kept());
+    }
+    /* six records in a page */
+    TEST_ASSERT_EQUAL_INT(17, erased_pages);
+}
+
+static void test_the_supply_may_fail_at_any_byte_of_any_saving(void)
+{
+    for (int savings = 1; savings <= 13; savings++) {
+        for (int bytes = 0; bytes < 36; bytes++) {
+            setUp();
+            for (int i = 1; i <= savings; i++) {
+                TEST_ASSERT_TRUE(save(1e-3 * i));
+            }
+            bytes_until_power_fails = bytes;
+            (void)save(1.0);
+            bytes_until_power_fails = -1;
+            TEST_ASSERT_DOUBLE_WITHIN(1e-7, 1e-3 * savings, kept());
+            TEST_ASSERT_TRUE(save(2.0)); /* and the store goes on */
+            TEST_ASSERT_DOUBLE_WITHIN(1e-7, 2.0, kept());
+        }
+    }
+}
+
+static void test_a_flipped_bit_makes_a_record_void(void)
+{
+    TEST_ASSERT_TRUE(save(0.01));
+    for (int bit = 0; bit < 36 * 8; bit++) {
+        flash[bit / 8] ^= (uint8_t)(1 << bit % 8);
+        TEST_ASSERT_EQUAL_DOUBLE(-1.0, kept());
+        flash[bit / 8] ^= (uint8_t)(1 << bit % 8);
+    }
+}
+
+static void test_a_board_without_a_store_keeps_nothing(void)
+{
+    facts.parameter_page_bytes = 0;
+    TEST_ASSERT_FALSE(save(0.01));
+    TEST_ASSERT_EQUAL_DOUBLE(-1.0, kept());
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_what_is_saved_is_found_again);
+    RUN_TEST(test_an_erased_store_keeps_nothing);
+    RUN_TEST(test_the_last_of_many_savings_counts);
+    RUN_TEST(test_the_supply_may_fail_at_any_byte_of_any_saving);
+    RUN_TEST(test_a_flipped_bit_makes_a_record_void);
+    RUN_TEST(test_a_board_without_a_store_keeps_nothing);
+    return UNITY_END();
+}

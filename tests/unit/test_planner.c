@@ -1,0 +1,452 @@
+/* Sines, set-points, speeds and new targets: from the command to the reference. */
+#include <stddef.h>
+#include <string.h>
+
+#include "tests/unit/fake_board.h"
+#include "tests/unit/num_assert.h"
+
+#define LEAD_PERIODS 10u /* DRIVE_LEAD_s */
+
+static const double acceleration_rad_s2 = 500.0;
+static const double jerk_rad_s3 = 50000.0;
+
+static struct drive drive;
+static struct drive_settings settings;
+static struct hal_samples samples;
+static char error[DRIVE_ERROR_TEXT];
+static double largest_jerk; /* of all periods since enable(), rad/s^3, from the exact states */
+static uint32_t background_every;
+
+/* One period; the background is called as the application's loop would. */
+static void run(uint32_t periods)
+{
+    const double rad_s3 = drive.base.rad_per_turn / 1e-12;
+
+    for (uint32_t k = 0; k < periods; k++) {
+        const double before = motion_to_turns(drive.reference.at.acceleration);
+
+        (void)drive_control_cycle(&drive, &samples);
+        const double jerk = (motion_to_turns(drive.reference.at.acceleration) - before) * rad_s3;
+
+        largest_jerk = jerk > largest_jerk ? jerk : -jerk > largest_jerk ? -jerk : largest_jerk;
+        if (drive.period % background_every == 0u) {
+            drive_background(&drive);
+        }
+    }
+}
+
+static bool post(struct drive_command command)
+{
+    return drive_command(&drive, &command, error);
+}
+
+static void must_post(struct drive_command command)
+{
+    TEST_ASSERT_TRUE_MESSAGE(post(command), error);
+}
+
+static void must_refuse(struct drive_command command, const char *text)
+{
+    TEST_ASSERT_FALSE(post(command));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error, text), error);
+}
+
+static struct drive_signals signals(void)
+{
+    struct drive_signals now;
+
+    drive_signals_read(&drive, &now);
+    return now;
+}
+
+void setUp(void)
+{
+    drive_settings_default(&settings, &bench_params);
+    settings.calibrate_offsets = false;
+    settings.hold_on_enable = false;
+    fake_board = (struct fake_board){.trip_latched = false};
+    samples = samples_at_rest;
+    background_every = 1;
+    TEST_ASSERT_TRUE_MESSAGE(drive_init(&drive, &fake_hal, &settings, error), error);
+    must_post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE});
+    run(2);
+    TEST_ASSERT_EQUAL(DRIVE_OPERATION_ENABLED, signals().state);
+    largest_jerk = 0.0;
+}
+
+void tearDown(void)
+{
+}
+
+static struct drive_command velocity(double speed_rad_s)
+{
+    return (struct drive_command){.kind = DRIVE_COMMAND_VELOCITY,
+                                  .speed_rad_s = speed_rad_s,
+                                  .acceleration_rad_s2 = acceleration_rad_s2,
+                                  .jerk_rad_s3 = jerk_rad_s3};
+}
+
+static struct drive_command retarget(double position_rad)
+{
+    return (struct drive_command){.kind = DRIVE_COMMAND_RETARGET,
+                                  .position_rad = position_rad,
+                                  .speed_rad_s = 2.0,
+                                  .acceleration_rad_s2 = acceleration_rad_s2,
+                                  .jerk_rad_s3 = jerk_rad_s3};
+}
+
+static struct drive_command move_to(double position_rad)
+{
+    return (struct drive_command){.kind = DRIVE_COMMAND_MOVE_SMOOTH,
+                                  .position_rad = position_rad,
+                                  .duration_s = 0.05,
+                                  .ramp_s = 0.02,
+                                  .jerk_s = 0.005};
+}
+
+static struct drive_command sine(double cycles, double ramp_s)
+{
+    return (struct drive_command){.kind = DRIVE_COMMAND_SINE,
+                                  .amplitude_rad = 0.02,
+                                  .frequency_Hz = 20.0,
+                                  .cycles = cycles,
+                                  .ramp_s = ramp_s};
+}
+
+static struct drive_command set_point(double position_rad)
+{
+    return (struct drive_command){.kind = DRIVE_COMMAND_SET_POINT,
+                                  .position_rad = position_rad,
+                                  .interval_s = 1e-3,
+                                  .acceleration_rad_s2 = acceleration_rad_s2,
+                                  .jerk_rad_s3 = jerk_rad_s3};
+}
+
+static void stop_now(void)
+{
+    must_post((struct drive_command){.kind = DRIVE_COMMAND_STOP});
+}
+
+static void run_to_rest(void)
+{
+    for (uint32_t k = 0; signals().reference_moving || k < LEAD_PERIODS + 3u; k++) {
+        run(1);
+        TEST_ASSERT_TRUE(k < 10000u);
+    }
+}
+
+/* The jerk of the sine and of its ramps below. */
+static void nothing_jerked_but_the_sine(void)
+{
+    TEST_ASSERT_TRUE(largest_jerk <= 200000.0);
+}
+
+static void nothing_jerked(void)
+{
+    TEST_ASSERT_TRUE(largest_jerk <= 1.001 * jerk_rad_s3);
+}
+
+static void the_reference_is_at(double position_rad)
+{
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, position_rad, signals().theta_ref_rad);
+}
+
+static void the_speed_is(double speed_rad_s)
+{
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, speed_rad_s, signals().omega_ref_rad_s);
+}
+
+/* ---- velocity ---- */
+
+static void test_a_speed_begins_in_the_period_it_is_addressed_to(void)
+{
+    struct drive_command command = velocity(2.0);
+
+    command.at_period = drive.period + 40u;
+    must_post(command);
+    run(40);
+    TEST_ASSERT_FALSE(signals().reference_moving);
+    run(1); /* the reference of this interrupt was that of the one before */
+    TEST_ASSERT_TRUE(signals().reference_moving);
+    run(300);
+    the_speed_is(2.0);
+    nothing_jerked();
+}
+
+static void test_reversed_in_mid_change_and_stopped_without_a_kink(void)
+{
+    must_post(velocity(2.0));
+    run(70);
+    must_post(velocity(-2.0));
+    run(45);
+    must_post(velocity(1.0));
+    run(33);
+    stop_now();
+    run_to_rest();
+    the_speed_is(0.0);
+    nothing_jerked();
+}
+
+static void test_after_a_stop_of_a_speed_moves_start_where_it_came_to_rest(void)
+{
+    must_post(velocity(2.0));
+    run(200);
+    must_refuse(move_to(0.1), "the reference follows a sine, set-points or a speed");
+    stop_now();
+    must_refuse(move_to(0.1), "has not come to rest after the stop");
+    must_refuse(velocity(1.0), "has not come to rest after the stop");
+    run_to_rest();
+    nothing_jerked();
+    must_post(move_to(0.1));
+    run_to_rest();
+    the_reference_is_at(0.1);
+}
+
+static void test_a_stop_flushes_a_speed_that_has_not_begun(void)
+{
+    struct drive_command command = velocity(2.0);
+
+    command.at_period = drive.period + 15u;
+    must_post(command);
+    run(8); /* planned already */
+    stop_now();
+    run(100);
+    TEST_ASSERT_FALSE(signals().reference_moving);
+    the_reference_is_at(0.0);
+    must_post(velocity(1.0)); /* and nothing is stuck */
+    run(200);
+    the_speed_is(1.0);
+}
+
+static void test_disabling_and_enabling_leaves_nothing_of_a_speed(void)
+{
+    must_post(velocity(2.0));
+    run(100);
+    must_post((struct drive_command){.kind = DRIVE_COMMAND_DISABLE});
+    run(3);
+    must_post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE});
+    run(100);
+    TEST_ASSERT_EQUAL(DRIVE_OPERATION_ENABLED, signals().state);
+    TEST_ASSERT_FALSE(signals().reference_moving);
+    must_post(move_to(0.1));
+    run_to_rest();
+    the_reference_is_at(0.1);
+}
+
+/* Its plan comes after the period it was made for: refused by the interrupt, it is made again. */
+static void test_a_background_that_is_late_plans_further_ahead(void)
+{
+    must_post(velocity(2.0));
+    run(100);
+    must_post(velocity(-2.0));
+    drive_background(&drive);
+    TEST_ASSERT_NOT_NULL(drive.planner.offered);
+    drive.commands.take_over.at_period -= LEAD_PERIODS; /* as if so much time had passed */
+    run(2);
+    TEST_ASSERT_EQUAL_UINT32(2u * LEAD_PERIODS, drive.planner.lead_periods);
+    run(250);
+    the_speed_is(-2.0);
+    nothing_jerked();
+}
+
+/* ---- retarget ---- */
+
+static void test_a_new_target_in_mid_move_is_reached_without_a_kink(void)
+{
+    must_post(move_to(0.08));
+    run(150);
+    must_post(retarget(-0.05));
+    must_post(move_to(0.02)); /* waits for rest, as ever */
+    run_to_rest();
+    the_reference_is_at(-0.05);
+    run(20);
+    run_to_rest();
+    the_reference_is_at(0.02);
+    TEST_ASSERT_TRUE(largest_jerk <= 60000.0);
+}
+
+static void test_a_new_target_ends_a_speed_and_a_sine(void)
+{
+    must_post(velocity(-2.0));
+    run(120);
+    must_post(retarget(0.04));
+    run_to_rest();
+    the_reference_is_at(0.04);
+    nothing_jerked();
+    must_post(sine(0.0, 0.05));
+    run(1033);
+    must_post(retarget(-0.04));
+    run_to_rest();
+    the_reference_is_at(-0.04);
+    nothing_jerked_but_the_sine();
+    TEST_ASSERT_EQUAL_UINT32(0, signals().reference_underruns);
+}
+
+/* ---- sine ---- */
+
+static void test_a_sine_swings_about_where_the_reference_rests_and_ends_there(void)
+{
+    double highest = 0.0;
+
+    must_post(move_to(0.1));
+    must_post(sine(5.0, 0.05)); /* waits for rest */
+    run(530);
+    for (int k = 0; k < 2500; k++) {
+        run(1);
+        highest = signals().theta_ref_rad > highest ? signals().theta_ref_rad : highest;
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.12, highest);
+    TEST_ASSERT_FALSE(signals().reference_moving);
+    the_reference_is_at(0.1);
+    TEST_ASSERT_EQUAL_UINT32(0, signals().reference_underruns);
+    nothing_jerked_but_the_sine();
+    must_post(move_to(0.0));
+    run_to_rest();
+    the_reference_is_at(0.0);
+}
+
+static void test_a_sine_stops_without_a_kink(void)
+{
+    must_post(sine(0.0, 0.05));
+    run(3333);
+    TEST_ASSERT_TRUE(signals().reference_moving);
+    stop_now();
+    run_to_rest();
+    the_speed_is(0.0);
+    nothing_jerked_but_the_sine();
+    TEST_ASSERT_EQUAL_UINT32(0, signals().reference_underruns);
+}
+
+static void test_a_sine_that_is_not_supplied_comes_to_rest_and_counts_an_underrun(void)
+{
+    must_post(sine(0.0, 0.05));
+    run(1000);
+    background_every = UINT32_MAX;
+    run(1000);
+    TEST_ASSERT_FALSE(signals().reference_moving);
+    nothing_jerked_but_the_sine();
+    background_every = 1;
+    run(1);
+    TEST_ASSERT_EQUAL_UINT32(1, signals().reference_underruns);
+}
+
+/* ---- set-points ---- */
+
+/* From rest to rest in thirty set-points. */
+static double wanted(int i)
+{
+    const double s = i < 0 ? 0.0 : i > 30 ? 1.0 : (double)i / 30.0;
+
+    return 0.02 * s * s * s * (10.0 + s * (6.0 * s - 15.0));
+}
+
+static void test_set_points_are_reached_two_intervals_and_the_lead_after_they_came(void)
+{
+    for (int i = 1; i <= 34; i++) {
+        must_post(set_point(wanted(i)));
+        run(2);
+        if (i > 3) { /* the one of 30 periods before: 2 x 10 and 10, and it is S(k+1) */
+            the_reference_is_at(wanted(i - 3));
+        }
+        run(8);
+    }
+    run(50);
+    TEST_ASSERT_FALSE(signals().reference_moving);
+    the_reference_is_at(0.02);
+    TEST_ASSERT_EQUAL_UINT32(0, signals().reference_underruns);
+    must_post(move_to(0.0));
+    run_to_rest();
+    the_reference_is_at(0.0);
+}
+
+static void test_set_points_that_run_dry_come_to_rest_and_count_an_underrun(void)
+{
+    for (int i = 1; i <= 15; i++) {
+        must_post(set_point(wanted(i)));
+        run(10);
+    }
+    run(20);
+    largest_jerk = 0.0; /* the set-points' own, which end here */
+    run_to_rest();
+    TEST_ASSERT_EQUAL_UINT32(1, signals().reference_underruns);
+    the_speed_is(0.0);
+    nothing_jerked();
+}
+
+static void test_too_many_set_points_are_refused(void)
+{
+    for (int i = 1; i <= 15; i++) {
+        must_post(set_point(wanted(i)));
+    }
+    must_refuse(set_point(wanted(16)), "15 set-points are waiting already");
+}
+
+static void test_a_stop_ends_the_stream_of_set_points(void)
+{
+    for (int i = 1; i <= 10; i++) {
+        must_post(set_point(wanted(i)));
+        run(10);
+    }
+    stop_now();
+    run_to_rest();
+    TEST_ASSERT_EQUAL_UINT32(0, signals().reference_underruns);
+    must_post(move_to(0.0));
+    run_to_rest();
+    the_reference_is_at(0.0);
+}
+
+/* ---- refusals ---- */
+
+static void test_what_is_out_of_range_is_refused_with_its_bound(void)
+{
+    struct drive_command command = velocity(1000.0);
+
+    must_refuse(command, "speed 1000 rad/s: must be at most");
+    command = velocity(1.0);
+    command.acceleration_rad_s2 = 1e6;
+    must_refuse(command, "acceleration 1e+06 rad/s^2: must be at most");
+    command = velocity(1.0);
+    command.jerk_rad_s3 = 0.0;
+    must_refuse(command, "jerk 0 rad/s^3: must be at least");
+    command = retarget(1.0);
+    command.speed_rad_s = 0.0;
+    must_refuse(command, "speed 0 rad/s: must be at least");
+    command = sine(1.0, 0.1);
+    must_refuse(command, "ramp 0.1 s: must be at most 0.025 s");
+    command = sine(1.25, 0.0);
+    must_refuse(command, "cycles: must be a whole number or a half");
+    command = sine(1.0, 0.0);
+    command.frequency_Hz = 600.0;
+    must_refuse(command, "frequency 600 Hz: must be at most 500 Hz");
+    command.frequency_Hz = 20.0;
+    command.amplitude_rad = 2.0;
+    must_refuse(command, "of the sine");
+    command = set_point(0.0);
+    command.interval_s = 1e-4;
+    must_refuse(command, "interval");
+    must_refuse(set_point(1.0), "set-point refused: the speed");
+    run(100);
+    TEST_ASSERT_FALSE(signals().reference_moving);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_speed_begins_in_the_period_it_is_addressed_to);
+    RUN_TEST(test_reversed_in_mid_change_and_stopped_without_a_kink);
+    RUN_TEST(test_after_a_stop_of_a_speed_moves_start_where_it_came_to_rest);
+    RUN_TEST(test_a_stop_flushes_a_speed_that_has_not_begun);
+    RUN_TEST(test_disabling_and_enabling_leaves_nothing_of_a_speed);
+    RUN_TEST(test_a_background_that_is_late_plans_further_ahead);
+    RUN_TEST(test_a_new_target_in_mid_move_is_reached_without_a_kink);
+    RUN_TEST(test_a_new_target_ends_a_speed_and_a_sine);
+    RUN_TEST(test_a_sine_swings_about_where_the_reference_rests_and_ends_there);
+    RUN_TEST(test_a_sine_stops_without_a_kink);
+    RUN_TEST(test_a_sine_that_is_not_supplied_comes_to_rest_and_counts_an_underrun);
+    RUN_TEST(test_set_points_are_reached_two_intervals_and_the_lead_after_they_came);
+    RUN_TEST(test_set_points_that_run_dry_come_to_rest_and_count_an_underrun);
+    RUN_TEST(test_too_many_set_points_are_refused);
+    RUN_TEST(test_a_stop_ends_the_stream_of_set_points);
+    RUN_TEST(test_what_is_out_of_range_is_refused_with_its_bound);
+    return UNITY_END();
+}

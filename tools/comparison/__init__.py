@@ -1,0 +1,1 @@
+"""The fair comparison of position laws: experiment, simulator, optimiser, table, plots, page."""

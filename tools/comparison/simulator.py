@@ -1,0 +1,101 @@
+"""Runs steadystep-sil and reads what comes of it."""
+import json
+import pathlib
+import shlex
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+DEFAULT_PROGRAM = ROOT / "build/sil/steadystep-sil"
+SCENARIOS = ROOT / "sil/scenarios"
+LONGEST_RUN_s = 900  # of one call; some hundred times what it takes
+
+
+class Refused(Exception):
+    """The simulator or the drive refuses its input; the text says what and why."""
+
+
+class Simulator:
+    def __init__(self, program=DEFAULT_PROGRAM, numeric="float"):
+        self.program = pathlib.Path(program)
+        self.numeric = numeric
+        if not self.program.is_file():
+            raise Refused(f"{self.program}: not found; build the preset sil first (tools/demo does)")
+
+    def _call(self, arguments, accepted=(0, 1)):
+        try:
+            done = subprocess.run([self.program, "--scenarios", SCENARIOS, *map(str, arguments)],
+                                  capture_output=True, text=True, check=False,
+                                  timeout=LONGEST_RUN_s)
+        except subprocess.TimeoutExpired as error:
+            raise Refused(f"{shlex.join(map(str, arguments))}: no end after {LONGEST_RUN_s} s"
+                          ) from error
+        if done.returncode not in accepted:
+            lines = done.stderr.strip().splitlines()
+            text = lines[-1] if lines else f"ended with code {done.returncode}"
+            raise Refused(text.removeprefix("steadystep-sil: "))
+        return done.stdout
+
+    def version(self):
+        return self._call(["--version"]).strip()
+
+    def laws(self):
+        """Names of all laws, each with the gains that it can be given."""
+        # 2: some other scenario of the folder is not in order.
+        lines = self._call(["list"], (0, 2)).split("\nlaws,", 1)[1].splitlines()[1:]
+        words = [line.split() for line in lines if line.startswith("  ")]
+        return {name: gains for name, *gains in words}
+
+    def run(self, scenarios, parameters=None, settings=None, seeds=(1, 1), out=None):
+        """Summaries of all scenarios and seeds, as summary.json has them; Refused if refused."""
+        command = ["run", *scenarios, "--numeric", self.numeric, "--jobs", 1, "--json"]
+        if parameters:
+            command += ["--parameters", parameters]
+        for key, value in (settings or {}).items():
+            command += ["--set", f"{key}={toml_value(value)}"]
+        command += (["--seed", seeds[0]] if seeds[0] == seeds[1] else
+                    ["--seeds", f"{seeds[0]}-{seeds[1]}"])
+        if out:
+            command += ["--out", out]
+        return json.loads(self._call(command))
+
+    def run_each(self, scenarios, **how):
+        """For each scenario its summaries, or the Refused that stands in their place."""
+        try:
+            runs = self.run(scenarios, **how)
+            count = len(runs) // len(scenarios)
+            return [runs[i * count:(i + 1) * count] for i in range(len(scenarios))]
+        except Refused as refusal:
+            if len(scenarios) == 1:
+                return [refusal]
+            return [self.run_each([one], **how)[0] for one in scenarios]
+
+
+def toml_value(value):
+    """A Python value as TOML spells it in one line."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {toml_value(item)}" for key, item in value.items()) + " }"
+    return "[" + ", ".join(toml_value(item) for item in value) + "]"
+
+
+def toml_document(document):
+    """A document of values, tables and arrays of tables, one key a line."""
+    plain = [f"{key} = {toml_value(value)}" for key, value in document.items()
+             if not isinstance(value, dict) and not is_array_of_tables(value)]
+    tables = []
+    for key, value in document.items():
+        parts = [("[{}]", value)] if isinstance(value, dict) else (
+            [("[[{}]]", one) for one in value] if is_array_of_tables(value) else [])
+        for heading, table in parts:
+            tables.append("\n" + heading.format(key))
+            tables += [f"{name} = {toml_value(item)}" for name, item in table.items()]
+    return "\n".join(plain + tables) + "\n"
+
+
+def is_array_of_tables(value):
+    return isinstance(value, list) and value != [] and all(isinstance(one, dict) for one in value)
