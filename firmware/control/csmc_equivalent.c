@@ -2,7 +2,7 @@
 
 #include "firmware/control/voltage_limit.h"
 
-enum { K1, K2, MU_D, MU_Q, K0_D, K0_Q, RESISTANCE, INDUCTANCE, GAINS };
+enum { K1, K2, MU_D, MU_Q, K0_D, K0_Q, RESISTANCE, INDUCTANCE, Q_D, Q_Q, GAINS };
 
 static const struct law_gain gains[GAINS] = {
     [K1] = SLIDING_MODE_GAIN_K1,
@@ -13,53 +13,21 @@ static const struct law_gain gains[GAINS] = {
     [K0_Q] = SLIDING_MODE_GAIN_K0_Q,
     [RESISTANCE] = {"resistance_tolerance_ohm", 0.0, 1e3},
     [INDUCTANCE] = {"inductance_tolerance_H", 0.0, 1.0},
+    [Q_D] = {"q_d_V", 0.0, 1e3},
+    [Q_Q] = {"q_q_V", 0.0, 1e3},
 };
 
 const struct law_gain_list csmc_equivalent_law_gains = {gains, GAINS};
 
-/* Of the paper: R within 20 +- 1 ohm, L within 35 +- 5 mH, q_i = 2.1 k0 mu L. */
+/* Of the paper: R within 20 +- 1 ohm, L within 35 +- 5 mH. */
 #define RESISTANCE_TOLERANCE (1.0 / 20.0)
 #define INDUCTANCE_TOLERANCE (5.0 / 35.0)
-#define INTEGRATOR_MARGIN    2.1
-
-/*
- * Widths of the layers where none are given. The least beta grows with them, so they decide on no
- * bandwidth: an error of a fiftieth of a full step and a twentieth of the rated current, about the
- * paper's.
- */
-#define LAYER_FULL_STEPS    0.02
-#define LAYER_RATED_CURRENT 0.05
 
 static const double term_limit = 8.0; /* per-unit, of each of three voltages */
 
 static num_t error_limit(double gain)
 {
     return num_from_double(gain * term_limit > term_limit ? term_limit / gain : term_limit);
-}
-
-/* The loop's gain against the current is k2 plus that of the least beta. */
-static bool check_bandwidth(const struct position_law_task *task, char error[DESIGN_ERROR_TEXT])
-{
-    const struct sliding_mode_gains unit =
-        sliding_mode_gains_of(&(struct sliding_mode_task){.motor = task->motor,
-                                                          .period_s = task->period_s,
-                                                          .bandwidth_rad_s = 1.0,
-                                                          .current_bandwidth_rad_s = 1.0});
-    const double gain_per_bandwidth = unit.k2_1_s + INTEGRATOR_MARGIN * unit.k0_q_1_s;
-    const double most =
-        task->delay_periods > 0u ? SLIDING_MODE_DELAYED_MAX : SLIDING_MODE_IMMEDIATE_MAX;
-    const double limit = most / (gain_per_bandwidth * task->period_s);
-
-    if (task->bandwidth_rad_s > limit) {
-        return design_refuse_limit(
-            error, (struct refusal){.quantity = "law_bandwidth_rad_s",
-                                    .value = task->bandwidth_rad_s,
-                                    .relation = "at most",
-                                    .limit = limit,
-                                    .unit = "rad/s",
-                                    .reason = "current gain k2 + 2.1 k0 times the period"});
-    }
-    return true;
 }
 
 bool csmc_equivalent_law_design(struct csmc_equivalent_law_params *params,
@@ -73,21 +41,22 @@ bool csmc_equivalent_law_design(struct csmc_equivalent_law_params *params,
     const double k2 = law_gain_or(task, K2, derived.k2_1_s);
     const double k0_d = law_gain_or(task, K0_D, derived.k0_d_1_s);
     const double k0_q = law_gain_or(task, K0_Q, derived.k0_q_1_s);
-    const double mu_d = law_gain_or(task, MU_D, LAYER_RATED_CURRENT * motor->rated_current_A);
-    const double mu_q = law_gain_or(task, MU_Q, LAYER_FULL_STEPS * k1 * base->rad_per_turn / 4.0);
+    const double mu_d = law_gain_or(task, MU_D, derived.mu_d_A);
+    const double mu_q = law_gain_or(task, MU_Q, derived.mu_q_rad_s2);
     const double resistance_tolerance_ohm =
         law_gain_or(task, RESISTANCE, RESISTANCE_TOLERANCE * motor->resistance_ohm);
     const double inductance_tolerance_H =
         law_gain_or(task, INDUCTANCE, INDUCTANCE_TOLERANCE * motor->inductance_H);
-    const double largest_inductance_H = motor->inductance_H + inductance_tolerance_H;
+    const bool layers_given = law_gain_is_given(task, MU_D) && law_gain_is_given(task, MU_Q);
+    const bool surface_given = law_gain_is_given(task, K1) && law_gain_is_given(task, K2);
     const double k3 = motor->torque_constant_Nm_A / motor->inertia_kgm2;
     const double k4 = motor->viscous_friction_Nms_rad / motor->inertia_kgm2;
     /* L/k3, from an acceleration per second to a voltage */
     const double jerk = motor->inductance_H / k3 * base->acceleration_rad_s2 / base->voltage_V;
     const double speed = k1 * jerk * base->speed_rad_s / base->acceleration_rad_s2;
 
-    if (!(law_gain_is_given(task, K1) && law_gain_is_given(task, K2)) &&
-        !check_bandwidth(task, error)) {
+    if ((!layers_given && !sliding_mode_current_bandwidth_check(&bandwidths, error)) ||
+        (!surface_given && !sliding_mode_bandwidth_check(&bandwidths, error))) {
         return false;
     }
     params->surface = sliding_surface_design(task, k1, k2);
@@ -106,10 +75,8 @@ bool csmc_equivalent_law_design(struct csmc_equivalent_law_params *params,
     params->resistance_tolerance =
         coef_from_double(resistance_tolerance_ohm / base->resistance_ohm);
     params->inductance_tolerance = coef_from_double(inductance_tolerance_H / motor->inductance_H);
-    params->least_d =
-        num_from_double(INTEGRATOR_MARGIN * k0_d * mu_d * largest_inductance_H / base->voltage_V);
-    params->least_q = num_from_double(INTEGRATOR_MARGIN * k0_q * mu_q * largest_inductance_H / k3 /
-                                      base->voltage_V);
+    params->least_d = num_from_double(law_gain_or(task, Q_D, derived.voltage_V) / base->voltage_V);
+    params->least_q = num_from_double(law_gain_or(task, Q_Q, derived.voltage_V) / base->voltage_V);
     return true;
 }
 

@@ -5,11 +5,15 @@
  *   v_d = R i_d - N w L i_q - beta_d sat(s1/mu_d)
  *   v_q = R i_q + N w L i_d + Km w + L/k3 (j* - k1 de2 - k2 dde2 + k4 dw/dt) - beta_q sat(s2/mu_q)
  *
- * and beta just large enough for what the tolerances dR and dL of the motor can add, in volts:
+ * and beta large enough for what the tolerances dR and dL of the motor can add, in volts:
  *
- *   beta_d = dR |i_d| + dL N |w i_q| + 2.1 k0_d mu_d (L + dL)
- *   beta_q = dR |i_q| + dL |k1 de2 + k2 dde2 - k4 dw/dt - k3 N w i_d|/k3
- *            + 2.1 k0_q mu_q (L + dL)/k3
+ *   beta_d = dR |i_d| + dL N |w i_q| + q_d
+ *   beta_q = dR |i_q| + dL |k1 de2 + k2 dde2 - k4 dw/dt - k3 N w i_d|/k3 + q_q
+ *
+ * The paper takes q_d = 2.1 k0_d mu_d (L + dL) and q_q = 2.1 k0_q mu_q (L + dL)/k3, a volt: enough
+ * for its motor and load, which are known but for R and L. By default q is the supply, as M in
+ * csmc.h: it also bears bridge, detent and friction. Then the layers follow from the current
+ * bandwidth.
  *
  * The nominal R is the drive's, calibrated where it calibrates; j* is left out of beta_q as in the
  * paper, whose reference is constant.
@@ -34,7 +38,7 @@ struct csmc_equivalent_law_params {
     num_t acceleration_limit;
     coef_t resistance_tolerance; /* dR */
     coef_t inductance_tolerance; /* dL/L */
-    num_t least_d;               /* last terms of beta */
+    num_t least_d;               /* q */
     num_t least_q;
 };
 

@@ -14,6 +14,7 @@
 #ifndef STEADYSTEP_CURRENT_CONTROL_H
 #define STEADYSTEP_CURRENT_CONTROL_H
 
+#include "firmware/control/voltage_limit.h"
 #include "firmware/motor/motor_params.h"
 #include "firmware/motor/park.h"
 #include "firmware/motor/per_unit.h"
@@ -35,9 +36,31 @@ struct current_control_params current_control_design(const struct motor_params *
 
 void current_control_reset(struct current_control *control);
 
+static inline num_t current_control_integrate(const struct current_control_params *params,
+                                              num_t integral, num_t error, num_t taken_away)
+{
+    return integral + num_mul_coef(error, params->integral) +
+           num_mul_coef(taken_away, params->unwind);
+}
+
 /* Voltage in the control frame, of magnitude at most voltage_limit. */
-struct dq current_control_step(struct current_control *control,
-                               const struct current_control_params *params, struct dq reference,
-                               struct dq current, num_t speed, num_t voltage_limit);
+__attribute__((always_inline)) static inline struct dq
+current_control_step(struct current_control *control, const struct current_control_params *params,
+                     struct dq reference, struct dq current, num_t speed, num_t voltage_limit)
+{
+    num_t reactance = num_mul_coef(speed, params->reactance);
+    struct dq error = {reference.d - current.d, reference.q - current.q};
+    struct dq wanted = {num_mul_coef(error.d, params->proportional) + control->integral.d -
+                            num_mul(reactance, current.q),
+                        num_mul_coef(error.q, params->proportional) + control->integral.q +
+                            num_mul(reactance, current.d) + speed};
+    struct dq v = limit_voltage(wanted, voltage_limit);
+
+    control->integral.d =
+        current_control_integrate(params, control->integral.d, error.d, v.d - wanted.d);
+    control->integral.q =
+        current_control_integrate(params, control->integral.q, error.q, v.q - wanted.q);
+    return v;
+}
 
 #endif

@@ -1,5 +1,7 @@
 #include "firmware/control/detent_compensation.h"
 
+#include <stddef.h>
+
 /* k per electrical turn: nine tenths are learned in eight turns, a fifth of a turn of the shaft. */
 static const double learning_per_turn = 0.3;
 
@@ -97,20 +99,20 @@ static num_t share(num_t x)
 
 /* a cos + b sin of one harmonic; scaled. */
 static num_t played(const struct detent_compensation *detent, const struct detent_harmonics *now,
-                    int harmonic)
+                    size_t harmonic)
 {
     const struct sincos *h = &now->of[harmonic];
-    const num_t *c = &detent->coefficient[2 * harmonic];
+    const num_t *c = &detent->coefficient[2u * harmonic];
 
     return num_mul_unit(c[0], h->cos) + num_mul_unit(c[1], h->sin);
 }
 
 static void learn(struct detent_compensation *detent,
                   const struct detent_compensation_params *params,
-                  const struct detent_harmonics *then, int harmonic, num_t step)
+                  const struct detent_harmonics *then, size_t harmonic, num_t step)
 {
     const struct sincos *h = &then->of[harmonic];
-    num_t *c = &detent->coefficient[2 * harmonic];
+    num_t *c = &detent->coefficient[2u * harmonic];
 
     c[0] = num_limit(c[0] + num_mul_unit(step, h->cos), params->limit);
     c[1] = num_limit(c[1] + num_mul_unit(step, h->sin), params->limit);
@@ -133,7 +135,7 @@ void detent_compensation_step(struct detent_compensation *detent,
     num_t torque = NUM(0.0);
 
     detent->mean += num_mul(num_mul_coef(residual, params->mean_rate), travel);
-    for (int i = 0; i < DETENT_HARMONICS; i++) {
+    for (size_t i = 0; i < DETENT_HARMONICS; i++) {
         learn(detent, params, &then, i, num_mul(step, share(learning)));
         torque += num_mul(played(detent, &now, i), share(playing));
         learning += learning; /* of twice the harmonic */

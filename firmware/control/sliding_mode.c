@@ -35,6 +35,7 @@ struct sliding_surface_params sliding_surface_design(const struct position_law_t
                                      base->torque_Nm),
         .position_limit = error_limit(position),
         .speed_limit = error_limit(speed),
+        .current_limit = num_from_double(task->current_limit_A / base->current_A),
     };
 }
 

@@ -8,6 +8,9 @@
  *
  *   d sigma/dt = -k0 sigma + mu sat(s/mu),  s = s* + k0 sigma                      (3), (4)
  *
+ * Read as s2* = i_q - demand, the demand is a current, limited as that of every law. (The paper has
+ * no limit; where i_q stays below it and the layer is narrow, there is no difference.)
+ *
  * A surface is counted in levels, s/mu, of which the boundary layer is -1...1. The integrator keeps
  * k0 sigma/mu, which cannot leave -1...1: it needs no anti-windup.
  */
@@ -33,6 +36,7 @@ struct tracking_error {
     num_t position;
     num_t speed;
     num_t acceleration;
+    num_t torque; /* i_q at which the acceleration is the reference's */
 };
 
 struct sliding_surface_params {
@@ -41,6 +45,7 @@ struct sliding_surface_params {
     coef_t friction;      /* Kv */
     num_t position_limit; /* keeps each term inside the number range */
     num_t speed_limit;
+    num_t current_limit;
 };
 
 /* Levels beyond the layer that are told apart, so that integrators can be added. */
@@ -78,12 +83,14 @@ static inline struct tracking_error tracking_error_of(const struct sliding_surfa
                                                       const struct voltage_law_input *input)
 {
     const struct position_law_input *motion = &input->motion;
+    const num_t torque = num_mul_coef(motion->speed, params->friction) + motion->load_torque +
+                         motion->reference_acceleration;
 
     return (struct tracking_error){
         .position = -motion->position_error,
         .speed = motion->speed - motion->reference_speed,
-        .acceleration = input->current.q - num_mul_coef(motion->speed, params->friction) -
-                        motion->load_torque - motion->reference_acceleration,
+        .acceleration = input->current.q - torque,
+        .torque = torque,
     };
 }
 
@@ -91,9 +98,12 @@ static inline struct tracking_error tracking_error_of(const struct sliding_surfa
 static inline num_t sliding_surface(const struct sliding_surface_params *params,
                                     const struct tracking_error *e)
 {
-    return num_mul_coef(num_headroom(e->position, params->position_limit), params->position) +
-           num_mul_coef(num_headroom(e->speed, params->speed_limit), params->speed) +
-           e->acceleration;
+    const num_t demand =
+        e->torque -
+        num_mul_coef(num_headroom(e->position, params->position_limit), params->position) -
+        num_mul_coef(num_headroom(e->speed, params->speed_limit), params->speed);
+
+    return e->acceleration + e->torque - num_limit(demand, params->current_limit);
 }
 
 /* s/mu, within +-SURFACE_LEVELS_MAX. */

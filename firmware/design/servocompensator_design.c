@@ -101,20 +101,20 @@ bool servocompensator_design(const struct servocompensator_task *task,
     const int n = 1 + 2 * task->harmonics;
     const double rate = task->decay_1_s * task->period_s;
     struct complex_number p[POLES_MAX];
-    struct complex_number q[POLES_MAX];
+    struct complex_number q[POLES_MAX] = {{0.0, 0.0}}; /* the integrator's is 1 */
+    int poles = 1;
 
     if (!check(task, error)) {
         return false;
     }
-    q[0] = (struct complex_number){0.0, 0.0};
     for (int i = 0; i < n; i++) {
         p[i] = pole_less_one(rate * pattern[i].re, rate * pattern[i].im);
     }
     for (int h = 1; h <= task->harmonics; h++) {
         const double angle = h * task->frequency_rad_s * task->period_s;
 
-        q[2 * h - 1] = pole_less_one(0.0, angle);
-        q[2 * h] = pole_less_one(0.0, -angle);
+        q[poles++] = pole_less_one(0.0, angle);
+        q[poles++] = pole_less_one(0.0, -angle);
     }
     design->input = residue(n, p, q, 0).re;
     for (int h = 1; h <= task->harmonics; h++) {

@@ -15,7 +15,8 @@
 
 /*
  * Current bandwidth times period: with a period of delay z^2 - z + g rings beyond 0.25 and is
- * unstable from 1 on; without, z - 1 + g is stable below 2, and at 1 it settles in one period.
+ * unstable from 1 on. The drive's prediction takes the delay out as far as R and L are right, which
+ * these laws are there not to rely on. Without a delay z - 1 + g settles in one period at 1.
  */
 #define SLIDING_MODE_DELAYED_MAX   0.25
 #define SLIDING_MODE_IMMEDIATE_MAX 1.0

@@ -10,6 +10,9 @@
 #include "firmware/drive/drive.h"
 #include "firmware/drive/state_machine.h"
 
+/* The blocks that both paths of control() go through are compiled into each of them. */
+#define IN_PLACE __attribute__((always_inline)) static inline
+
 static const struct hal_outputs bridge_off = {.bridge_on = false};
 
 /* The motor at the instant at which the answer begins to act, as known at S(k). */
@@ -23,22 +26,23 @@ struct prediction {
 };
 
 /* At S(k+1), with the voltage already committed. */
-static struct prediction predict(const struct drive *drive, const struct estimate *estimate)
+IN_PLACE struct prediction predict(const struct drive *drive, const struct estimate *estimate)
 {
     const struct motor_model_params *model = &drive->params.model;
-    struct prediction next = {.rotor = estimate->rotor,
-                              .frame = estimate_end_of_period(estimate),
-                              .reference = &drive->reference.next};
+    struct prediction next = {
+        .current = forced_current(&estimate->winding, estimate->free_current,
+                                  actuation_in_force(&drive->actuation)),
+        .rotor = estimate->rotor,
+        .frame = estimate_end_of_period(estimate),
+        .reference = &drive->reference.next,
+    };
 
-    next.rotor.load_torque += drive->detent.torque;
-    next.current = forced_current(&estimate->winding, estimate->free_current,
-                                  actuation_in_force(&drive->actuation));
     predict_rotor(model, &next.rotor, park(next.current, estimate->mid_period).q);
     return next;
 }
 
 /* At S(k): without a delay nothing need be predicted. */
-static struct prediction present(const struct drive *drive, const struct estimate *estimate)
+IN_PLACE struct prediction present(const struct drive *drive, const struct estimate *estimate)
 {
     return (struct prediction){.current = estimate->current,
                                .rotor = estimate->rotor,
@@ -46,7 +50,8 @@ static struct prediction present(const struct drive *drive, const struct estimat
                                .reference = &drive->reference.now};
 }
 
-static struct position_law_input law_input(const struct drive *drive, const struct prediction *next)
+IN_PLACE struct position_law_input law_input(const struct drive *drive,
+                                             const struct prediction *next)
 {
     const struct reference_sample *reference = next->reference;
     const bool feed_forward = drive->params.feed_forward;
@@ -60,13 +65,14 @@ static struct position_law_input law_input(const struct drive *drive, const stru
     };
 }
 
-static void consider_hold(struct drive *drive, const struct prediction *next, num_t position_error)
+IN_PLACE void consider_hold(struct drive *drive, const struct prediction *next,
+                            num_t position_error)
 {
     standstill_hold_consider(&drive->hold, &drive->params.hold, next->reference->position.fraction,
                              drive->reference.rest_periods, position_error, next->rotor.speed);
 }
 
-static struct dq wanted_current(struct drive *drive, const struct prediction *next)
+IN_PLACE struct dq wanted_current(struct drive *drive, const struct prediction *next)
 {
     const struct drive_params *params = &drive->params;
     struct dq current;
@@ -88,8 +94,8 @@ static struct dq wanted_current(struct drive *drive, const struct prediction *ne
  * Hold or current law, then current control. The hold fixes the current frame to the reference; in
  * motion it turns with the rotor.
  */
-static struct phases regulate_current(struct drive *drive, const struct estimate *estimate,
-                                      const struct prediction *next)
+IN_PLACE struct phases regulate_current(struct drive *drive, const struct estimate *estimate,
+                                        const struct prediction *next)
 {
     drive->current_reference = wanted_current(drive, next);
 
@@ -140,6 +146,7 @@ static struct phases regulate_voltage(struct drive *drive, const struct estimate
 static void expect_current(struct drive *drive, const struct estimate *estimate,
                            struct prediction *next)
 {
+    next->load_torque_change = NUM(0.0);
     next->undisturbed_current =
         drive->params.immediate
             ? estimate->current
@@ -158,11 +165,8 @@ static void remember_demand(struct drive *drive, const struct estimate *estimate
     drive->demanded_voltage = voltage;
 }
 
-static struct hal_outputs modulate(struct drive *drive, struct phases voltage)
+IN_PLACE struct hal_outputs modulate(struct drive *drive, struct phases command)
 {
-    const struct phases command = drive->params.bridge_loss_compensation
-                                      ? actuation_compensate(&drive->actuation, voltage)
-                                      : voltage;
     const struct modulation out =
         modulator_step(&drive->modulator, &drive->params.modulator, command);
     const struct hal_outputs duties = {
@@ -171,47 +175,72 @@ static struct hal_outputs modulate(struct drive *drive, struct phases voltage)
     };
 
     actuation_commit(&drive->actuation, out.voltage);
-    if (drive->params.immediate) {
-        actuation_commit(&drive->actuation, out.voltage); /* measured at the next S(k) already */
-    }
     return duties;
 }
 
 /* The detent torque at the instant of action, learned from what the observer has left of it. */
-static void compensate_detent(struct drive *drive, const struct estimate *estimate,
-                              struct prediction *next)
+__attribute__((noinline)) static void
+compensate_detent(struct drive *drive, const struct estimate *estimate, struct prediction *next)
 {
     const num_t before = drive->detent.torque;
 
+    if (!drive->params.immediate) { /* the prediction knew the estimated part of the load alone */
+        next->rotor.speed -= num_mul_coef(before, drive->params.model.speed_per_torque);
+    }
     detent_compensation_step(&drive->detent, &drive->params.detent, next->rotor.position.fraction,
                              next->frame, next->rotor.speed, estimate->rotor.load_torque);
-    drive->estimator.encoder.known_torque = drive->detent.torque;
+    estimator_tell_torque(&drive->estimator, &drive->params.estimator, drive->detent.torque);
     next->load_torque_change = drive->detent.torque - before;
     next->rotor.load_torque = estimate->rotor.load_torque + drive->detent.torque;
 }
 
-static struct hal_outputs control(struct drive *drive, const struct estimate *estimate)
+/*
+ * The path of voltage laws, of the detent compensation and of what only a simulation has: no
+ * delay, no loss compensation. Kept out of the interrupt's body, so that the registers and the
+ * stack of the heaviest law cost the default path nothing.
+ */
+__attribute__((noinline)) static struct hal_outputs control_in_full(struct drive *drive,
+                                                                    const struct estimate *estimate)
 {
-    const bool observes_voltage = position_law_gives_voltage(drive->params.position_law);
-    const bool law_gives_voltage = observes_voltage && !drive->hold.active;
-
-    reference_step(&drive->reference, &drive->params.reference);
-
+    const struct drive_params *params = &drive->params;
     struct prediction next =
-        drive->params.immediate ? present(drive, estimate) : predict(drive, estimate);
-    if (drive->params.detent_learning) {
+        params->immediate ? present(drive, estimate) : predict(drive, estimate);
+    struct phases voltage;
+    struct hal_outputs duties;
+
+    expect_current(drive, estimate, &next);
+    if (params->detent_learning) {
         compensate_detent(drive, estimate, &next);
     }
-    if (observes_voltage) {
-        expect_current(drive, estimate, &next);
+    voltage = !drive->hold.active && position_law_gives_voltage(params->position_law)
+                  ? regulate_voltage(drive, estimate, &next)
+                  : regulate_current(drive, estimate, &next);
+    remember_demand(drive, estimate, &next, voltage);
+    duties = modulate(drive, params->bridge_loss_compensation
+                                 ? actuation_compensate(&drive->actuation, voltage)
+                                 : voltage);
+    if (params->immediate) {
+        actuation_commit_past(&drive->actuation); /* measured at the next S(k) already */
     }
-    const struct phases voltage = law_gives_voltage ? regulate_voltage(drive, estimate, &next)
-                                                    : regulate_current(drive, estimate, &next);
-    const struct hal_outputs duties = modulate(drive, voltage);
+    return duties;
+}
 
-    if (observes_voltage) {
-        remember_demand(drive, estimate, &next, voltage);
-    }
+/* The path of the sensorless default: a current law or the hold. */
+IN_PLACE struct hal_outputs control_current(struct drive *drive, const struct estimate *estimate)
+{
+    const struct prediction next = predict(drive, estimate);
+    const struct phases voltage = regulate_current(drive, estimate, &next);
+
+    return modulate(drive, actuation_compensate(&drive->actuation, voltage));
+}
+
+static struct hal_outputs control(struct drive *drive, const struct estimate *estimate)
+{
+    struct hal_outputs duties;
+
+    reference_step(&drive->reference, &drive->params.reference);
+    duties =
+        drive->params.in_full ? control_in_full(drive, estimate) : control_current(drive, estimate);
     standstill_hold_leave(&drive->hold, drive->reference.rest_periods);
     return duties;
 }

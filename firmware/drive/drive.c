@@ -208,6 +208,8 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
     params->immediate = facts->actuation_delay_periods == 0u;
     params->hold_at_rest = settings->hold_at_rest;
     params->bridge_loss_compensation = settings->bridge_loss_compensation;
+    params->in_full = position_law_gives_voltage(settings->law) || settings->detent_learning ||
+                      params->immediate || !settings->bridge_loss_compensation;
     params->encoder_zero_known =
         settings->feedback == DRIVE_FEEDBACK_ENCODER && settings->encoder_zero_known;
     params->encoder_zero =

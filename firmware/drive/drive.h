@@ -26,8 +26,6 @@ struct drive_params {
     struct motor_model_params model;
     struct estimator_params estimator;
     struct reference_params reference;
-    union position_law_params law;
-    struct detent_compensation_params detent;
     struct standstill_hold_params hold;
     struct current_control_params current_control;
     struct modulator_params modulator;
@@ -38,6 +36,7 @@ struct drive_params {
     bool calibrate_offsets;
     bool feed_forward;
     bool immediate; /* no period of delay: the answer acts from S(k) on */
+    bool in_full;   /* more is in use than a current law with delay and loss compensation */
     bool hold_at_rest;
     bool bridge_loss_compensation;
     bool detent_learning;
@@ -45,21 +44,23 @@ struct drive_params {
     struct position encoder_zero;      /* rotor where count 0 begins */
     struct position encoder_zero_told; /* with initial_angle_error_rad */
     num_t initial_load_torque;
+    union position_law_params law; /* large, so behind what every law uses */
+    struct detent_compensation_params detent;
 };
 
 struct drive {
     struct drive_params params;
 
-    /* blocks, in the order of the block diagram */
+    /* blocks, in the order of the block diagram, the large ones last */
     struct measurement measurement;
     struct estimator estimator;
     struct reference reference;
     struct standstill_hold hold;
-    union position_law_state law;
-    struct detent_compensation detent;
     struct current_control current_control;
     struct modulator modulator;
     struct actuation actuation;
+    union position_law_state law;
+    struct detent_compensation detent;
 
     /* supervision */
     enum drive_state state;

@@ -88,13 +88,14 @@ struct drive_settings {
                                 count; else it is initial_angle_rad at the end of the hold; false */
     double encoder_zero_rad; /* rotor angle where count 0 begins; 0 */
     double initial_load_torque_Nm; /* load that the encoder observer begins with; 0 */
-    bool bridge_loss_compensation; /* dead time and diodes, from measured voltages; true */
 
     /* Detent torque a_1, b_1, a_2, b_2, a_4, b_4 at harmonics of the electrical angle, known before
        or learned and kept (control/detent_compensation.h). */
-    bool detent_learning; /* with an encoder only; true for its default law, else false */
     double detent_torque_Nm[DRIVE_DETENT_COEFFICIENTS]; /* where learning begins if nothing
                                                            is kept from before; 0 */
+    bool detent_learning; /* with an encoder only; true for its default law, else false */
+
+    bool bridge_loss_compensation; /* dead time and diodes, from measured voltages; true */
 
     bool resistance_adaptation;  /* track the series resistance while holding; true */
     double hold_current_A;       /* d-axis current at rest; half the rated current */

@@ -129,8 +129,9 @@ bool drive_settings_check(const struct drive_settings *settings, char error[DRIV
             return false;
         }
     }
-    if (settings->detent_learning && settings->feedback != DRIVE_FEEDBACK_ENCODER) {
-        return design_refuse(error, "detent_learning: needs feedback = \"encoder\"");
+    if (settings->detent_learning && (settings->feedback != DRIVE_FEEDBACK_ENCODER ||
+                                      settings->observer != DRIVE_OBSERVER_MODEL)) {
+        return design_refuse(error, "detent_learning: needs an encoder and its model observer");
     }
     return true;
 }

@@ -17,17 +17,23 @@ enum estimator_kind {
 /* Only the one in use is designed and stepped. */
 struct estimator_params {
     enum estimator_kind kind;
-    struct invariant_ekf_params invariant;
-    struct steady_state_ekf_params steady_state;
-    struct encoder_observer_params encoder; /* designed for the high-gain observer, too */
-    struct high_gain_observer_params high_gain;
+    union {
+        struct invariant_ekf_params invariant;
+        struct steady_state_ekf_params steady_state;
+        struct {
+            struct encoder_observer_params encoder; /* designed for the high-gain observer, too */
+            struct high_gain_observer_params high_gain;
+        };
+    };
 };
 
 struct estimator {
-    struct invariant_ekf invariant;
-    struct steady_state_ekf steady_state;
-    struct encoder_observer encoder;
-    struct high_gain_observer high_gain;
+    union {
+        struct invariant_ekf invariant;
+        struct steady_state_ekf steady_state;
+        struct encoder_observer encoder;
+        struct high_gain_observer high_gain;
+    };
 };
 
 /* One period's measurements. */
@@ -76,6 +82,15 @@ static inline void estimator_reset(struct estimator *estimator,
     } else {
         high_gain_observer_reset(&estimator->high_gain, &params->high_gain, start->position,
                                  start->encoder_position, start->resistance, start->encoder_count);
+    }
+}
+
+/* Torque that the next prediction takes into account besides the load; the model observer's. */
+static inline void estimator_tell_torque(struct estimator *estimator,
+                                         const struct estimator_params *params, num_t torque)
+{
+    if (params->kind == ESTIMATOR_ENCODER_OBSERVER) {
+        estimator->encoder.known_torque = torque;
     }
 }
 

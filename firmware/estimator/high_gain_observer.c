@@ -8,7 +8,7 @@ static const double alpha[3] = {17.0, 80.0, 100.0};
 #define EPSILON_PERIOD_MIN 0.01
 
 /* z3 eps^2 never exceeds this for an initial error of one. */
-#define PEAK 8.0
+#define PEAK 4.3
 
 /* Error from which the observer may start: a full step. */
 #define INITIAL_ERROR_TURNS 0.25

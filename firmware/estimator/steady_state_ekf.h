@@ -36,8 +36,8 @@ void steady_state_ekf_reset(struct steady_state_ekf *ekf,
                             num_t resistance);
 
 /* From S(k-1) to S(k). `voltage`: mean over that period; `current`: sampled at S(k). */
-void steady_state_ekf_step(struct steady_state_ekf *ekf,
-                           const struct steady_state_ekf_params *params, struct phases current,
-                           struct phases voltage);
+__attribute__((noinline)) void steady_state_ekf_step(struct steady_state_ekf *ekf,
+                                                     const struct steady_state_ekf_params *params,
+                                                     struct phases current, struct phases voltage);
 
 #endif

@@ -53,6 +53,12 @@ static inline struct phases actuation_compensate(const struct actuation *actuati
     return command;
 }
 
+/* Without a delay the command committed last is what the next measurement shows. */
+static inline void actuation_commit_past(struct actuation *actuation)
+{
+    actuation->past = actuation->present;
+}
+
 /* The command of S(k), as it was modulated. */
 static inline void actuation_commit(struct actuation *actuation, struct phases command)
 {

@@ -43,18 +43,31 @@ static uint64_t hash_law(uint64_t hash, const struct drive_params *p)
     return hash;
 }
 
+static uint64_t hash_estimator(uint64_t hash, const struct estimator_params *p)
+{
+    switch (p->kind) {
+    case ESTIMATOR_INVARIANT_EKF:
+        hash = HASH_RANGE(hash, p->invariant.moving, current, resistance);
+        hash = HASH_RANGE(hash, p->invariant.holding, current, resistance);
+        return HASH_RANGE(hash, p->invariant.following, current, resistance);
+    case ESTIMATOR_STEADY_STATE_EKF:
+        return HASH_RANGE(hash, p->steady_state, rotation, gain_load);
+    case ESTIMATOR_HIGH_GAIN_OBSERVER:
+        hash = HASH_RANGE(hash, p->high_gain, transition[0][0], acceleration_per_turn);
+        break;
+    case ESTIMATOR_ENCODER_OBSERVER:
+        break;
+    }
+    return HASH_RANGE(hash, p->encoder, gain_angle, gain_resistance);
+}
+
 /* Every gain of the design, once. */
 static uint64_t hash_gains(uint64_t hash, const struct drive_params *p)
 {
     hash = HASH_RANGE(hash, p->measurement, current, bus_voltage);
     hash = HASH_RANGE(hash, p->model, rate, admittance_per_resistance);
-    hash = HASH_RANGE(hash, p->estimator.invariant.moving, current, resistance);
-    hash = HASH_RANGE(hash, p->estimator.invariant.holding, current, resistance);
-    hash = HASH_RANGE(hash, p->estimator.invariant.following, current, resistance);
-    hash = HASH_RANGE(hash, p->estimator.steady_state, rotation, gain_load);
+    hash = hash_estimator(hash, &p->estimator);
     hash = HASH_RANGE(hash, p->reference, speed, jerk);
-    hash = HASH_RANGE(hash, p->estimator.encoder, gain_angle, gain_resistance);
-    hash = HASH_RANGE(hash, p->estimator.high_gain, transition[0][0], acceleration_per_turn);
     hash = hash_law(hash, p);
     hash = HASH_RANGE(hash, p->current_control, proportional, reactance);
     hash = fnv1a(hash, coef_bits(p->hold.damping));

@@ -22,8 +22,7 @@ hal_facts facts_of(const plant::Config &config)
     facts.dead_time_s =
         config.bridge.model == plant::BridgeModel::switched ? config.bridge.dead_time_s : 0.0;
     facts.current_A_per_code = plant::current_A_per_code(config.sensors);
-    facts.current_zero_code =
-        static_cast<std::uint16_t>(plant::current_zero_code(config.sensors));
+    facts.current_zero_code = static_cast<std::uint16_t>(plant::current_zero_code(config.sensors));
     facts.bus_V_per_code = plant::bus_V_per_code(config.sensors);
     facts.phase_voltage_V_per_code = plant::phase_voltage_V_per_code(config.sensors);
     facts.has_phase_voltages = true;

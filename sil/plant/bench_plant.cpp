@@ -65,5 +65,11 @@ int main()
     measure("averaged, at speed", averaged, 0.0, 8.0);
     averaged.sensors.exact = true;
     measure("averaged, at speed, exact sensors", averaged, 0.0, 8.0);
+    plant::Config real = config;
+    real.imperfections = {3.0, 0.10, 0.02, 0.05, 0.015, 0.0075, 0.015, 0.22};
+    real.supply = {0.1, 470e-6, 10.0, 30.0};
+    measure("real, at speed", real, 0.0, 8.0);
+    measure("real, d-axis current at rest", real, 1.5, 0.0);
+    measure("real, at rest without current", real, 0.0, 0.0);
     return 0;
 }

@@ -31,7 +31,8 @@ constexpr Reach reach_2 = {0.006, 0.05};
 constexpr Reach reach_3 = {0.025, 0.2};
 constexpr Reach reach_4 = {0.1, 0.3};
 
-constexpr double no_current_A = 1e-12; /* what rounding leaves of a current that has ended */
+constexpr double least_progress_s = 1e-12; /* to an event, however rounding falls */
+constexpr double no_current_A = 1e-12;     /* what rounding leaves of a current that has ended */
 
 /*
  * The unknowns as power series in the time since the start of the step. Functions of the rotor
@@ -258,12 +259,14 @@ template <int order>
 
 /* At rest the rotor sticks as long as friction can hold it. */
 template <int order>
-void set_friction(Mode &mode, const Series<order> &x, const RealCoefficients &motor)
+[[gnu::always_inline]] inline void set_friction(Mode &mode, const Series<order> &x,
+                                                const RealCoefficients &motor,
+                                                const RealMotorState &state)
 {
     if (x.omega[0] == 0.0) {
         const double acceleration =
             motor.torque * dot(x.slope_at[0], x.flux[0]) - x.detent_at[0] - motor.load;
-        mode.stuck = magnitude(acceleration) <= motor.coulomb;
+        mode.stuck = !state.released && magnitude(acceleration) <= motor.coulomb;
         mode.sliding = mode.stuck ? 0.0 : (acceleration > 0.0 ? 1.0 : -1.0);
     } else {
         mode.sliding = x.omega[0] > 0.0 ? 1.0 : -1.0;
@@ -271,8 +274,9 @@ void set_friction(Mode &mode, const Series<order> &x, const RealCoefficients &mo
 }
 
 template <int order>
-void set_bus(Mode &mode, const Series<order> &x, const RealCoefficients &motor,
-             const RealMotorState &state)
+[[gnu::always_inline]] inline void set_bus(Mode &mode, const Series<order> &x,
+                                           const RealCoefficients &motor,
+                                           const RealMotorState &state)
 {
     const Supply &supply = motor.supply;
     const bool drawing = mode.share[0] != 0.0 || mode.share[1] != 0.0;
@@ -304,7 +308,7 @@ template <int order>
         }
     }
     if (motor.coulomb > 0.0) {
-        set_friction(mode, x, motor);
+        set_friction(mode, x, motor, state);
     }
     if (!motor.supply.stiff()) {
         set_bus(mode, x, motor, state);
@@ -383,6 +387,7 @@ template <bool track_energy, int order>
         relax<track_energy>(course, h);
     }
     state.blocked[0] = state.blocked[1] = false;
+    state.released = false;
 }
 
 /*
@@ -479,7 +484,7 @@ template <int order> void consider(Event &first, End end, const Margin<order> &m
     const double *x = margin.coefficient;
     const bool at_once = x[0] < 0.0 || (x[0] == 0.0 && x[1] <= 0.0);
     const double zero_s = at_once ? 0.0 : falling_zero<order>(x, h, at_end);
-    const double least_s = integrator::least_progress * h;
+    const double least_s = least_progress_s < h ? least_progress_s : h;
     const double time_s = zero_s > least_s ? zero_s : least_s;
     if (time_s < first.time_s) {
         first = {time_s, end};
@@ -544,6 +549,8 @@ template <int order, bool track_energy>
     }
     if (event.end == End::of_motion) {
         state.omega_rad_s = 0.0;
+    } else if (event.end == End::of_rest) {
+        state.released = true;
     } else if (event.end == End::of_source) {
         state.bus_V = course.motor.supply.source_V;
     } else if (event.end == End::of_brake) {

@@ -33,6 +33,7 @@ struct RealMotorState {
     double bus_V = 0.0;
     bool blocked[2] = {true, true}; /* diodes hold the phase's current at 0 */
     bool braking = false;           /* the brake resistor is connected */
+    bool released = false;          /* friction has just ceased to hold the rotor, to rounding */
 };
 
 /* Configuration as the equations want it: torques over inertia, rad/s^2. */

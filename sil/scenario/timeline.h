@@ -35,7 +35,7 @@ struct Event {
     std::optional<drive_command> command;
     std::vector<double> set_points_rad; /* of set-points: the first goes with the command, the
                                            others follow at its interval */
-    bool power_cycle = false; /* the board restarts, with its parameter store as it was */
+    bool power_cycle = false;           /* the board restarts, with its parameter store as it was */
     std::optional<double> load_torque_Nm;
     double PlantScales::*drift = nullptr; /* this scale goes to drift_to within drift_ramp_s */
     double drift_to = 1;

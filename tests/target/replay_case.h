@@ -37,6 +37,8 @@ static const struct replay_case replay_cases[] = {
     {"pid", POSITION_LAW_PID, DRIVE_FEEDBACK_SENSORLESS, DRIVE_ESTIMATOR_INVARIANT_EKF},
     {"steady-state-ekf", POSITION_LAW_STATE_FEEDBACK, DRIVE_FEEDBACK_SENSORLESS,
      DRIVE_ESTIMATOR_STEADY_STATE_EKF},
+    {"default-encoder", POSITION_LAW_FEEDBACK_LINEARISATION, DRIVE_FEEDBACK_ENCODER,
+     DRIVE_ESTIMATOR_INVARIANT_EKF},
     {"microstepping", POSITION_LAW_MICROSTEPPING, DRIVE_FEEDBACK_ENCODER,
      DRIVE_ESTIMATOR_INVARIANT_EKF},
 };
@@ -102,7 +104,7 @@ static inline void replay_settings(const struct replay_case *which, struct drive
                                               15.62e-5, 3.0,    24.0,  50};
     drive_settings_default(settings, &motor);
     drive_settings_select_feedback(settings, which->feedback);
-    settings->law = which->law;
+    drive_settings_select_law(settings, which->law);
     settings->estimator = which->estimator;
     settings->hold_on_enable_s = 0.030;
 }

@@ -138,8 +138,9 @@ static void test_the_currents_change_by_what_the_errors_ask_at_any_speed(void)
 
         const struct bench_vector after = after_a_period(i_d, i_q, speed);
 
-        TEST_ASSERT_DOUBLE_WITHIN(2e-3, i_q + change, after.b);
-        TEST_ASSERT_DOUBLE_WITHIN(2e-3, i_d * exp(-CURRENT_BANDWIDTH * PERIOD_S), after.a);
+        /* within a hundredth of the change: R d/2 sin h/2 is left out */
+        TEST_ASSERT_DOUBLE_WITHIN(4e-3, i_q + change, after.b);
+        TEST_ASSERT_DOUBLE_WITHIN(4e-3, i_d * exp(-CURRENT_BANDWIDTH * PERIOD_S), after.a);
     }
 }
 

@@ -362,6 +362,20 @@ void a_run_without_a_value_is_the_worst()
     TEST_ASSERT_EQUAL_UINT64(2, judgement.worst_seed);
 }
 
+/* 20 V, in the second half with a square wave of 3 V on it. */
+void the_ripple_of_the_q_voltage_is_about_its_mean()
+{
+    const Record record = make_record(0.1, [](Row &row, std::size_t n) {
+        row[U_Q] = n < at(0.05) ? 20 : n % 2 == 0 ? 23 : 17;
+    });
+    const Metrics quiet = over(record, {Window::Kind::times, 0, 0.0499});
+    const Metrics loud = over(record, {Window::Kind::times, 0.05, 0.0999});
+    TEST_ASSERT_EQUAL_DOUBLE(0, quiet.voltage_q_peak_to_peak_V);
+    TEST_ASSERT_EQUAL_DOUBLE(0, quiet.voltage_q_ripple_V);
+    TEST_ASSERT_EQUAL_DOUBLE(6, loud.voltage_q_peak_to_peak_V);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 3, loud.voltage_q_ripple_V);
+}
+
 } // namespace
 
 void setUp(void)
@@ -376,6 +390,7 @@ int main()
 {
     UNITY_BEGIN();
     RUN_TEST(move_ends_with_the_profile_and_rest_follows);
+    RUN_TEST(the_ripple_of_the_q_voltage_is_about_its_mean);
     RUN_TEST(a_step_counts_as_motion_until_the_rotor_rests);
     RUN_TEST(without_motion_everything_is_rest);
     RUN_TEST(enabling_before_time_zero_is_in_no_window);

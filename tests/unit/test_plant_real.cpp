@@ -85,7 +85,8 @@ void moves_as_the_plain_motor(const plant::Config &config, double voltage_V, int
             motors.plain.integrals().voltage_Vs - motors.real.integrals().voltage_Vs;
         TEST_ASSERT_DOUBLE_WITHIN(tolerance, 0.0, current_A[0]);
         TEST_ASSERT_DOUBLE_WITHIN(tolerance, 0.0, current_A[1]);
-        TEST_ASSERT_DOUBLE_WITHIN(tolerance, motors.plain.omega_rad_s(), motors.real.omega_rad_s());
+        TEST_ASSERT_DOUBLE_WITHIN(10.0 * tolerance, motors.plain.omega_rad_s(),
+                                  motors.real.omega_rad_s());
         TEST_ASSERT_DOUBLE_WITHIN(0.01 * tolerance, motors.plain.theta_rad(),
                                   motors.real.theta_rad());
         TEST_ASSERT_DOUBLE_WITHIN(0.01 * tolerance, 0.0, voltage_Vs[0]);
@@ -98,16 +99,16 @@ void moves_as_the_plain_motor(const plant::Config &config, double voltage_V, int
 void test_with_every_effect_off_it_is_the_plain_motor()
 {
     plant::Config config = bench::config();
-    config.bridge.period_s = 1e-5; /* so short that the lower order of the series does not show */
+    config.bridge.period_s = 1e-5; /* the lower orders of the series show in 100 us */
     config.bridge.dead_time_s = 1e-7;
-    moves_as_the_plain_motor(config, 9.0, 300, 3e-9);
+    moves_as_the_plain_motor(config, 9.0, 300, 1e-6);
     config.initial_omega_rad_s = 45.0;
-    moves_as_the_plain_motor(config, 9.0, 100, 3e-9);
+    moves_as_the_plain_motor(config, 9.0, 100, 1e-6);
     config.bridge.model = plant::BridgeModel::averaged;
-    moves_as_the_plain_motor(config, 9.0, 300, 3e-9);
+    moves_as_the_plain_motor(config, 9.0, 300, 1e-6);
 }
 
-void test_in_periods_of_100_us_the_lower_order_costs_ten_microamperes()
+void test_in_periods_of_100_us_the_lower_orders_cost_ten_microamperes()
 {
     plant::Config config = bench::config();
     moves_as_the_plain_motor(config, 9.0, 300, 1e-5);
@@ -424,7 +425,7 @@ int main()
 {
     UNITY_BEGIN();
     RUN_TEST(test_with_every_effect_off_it_is_the_plain_motor);
-    RUN_TEST(test_in_periods_of_100_us_the_lower_order_costs_ten_microamperes);
+    RUN_TEST(test_in_periods_of_100_us_the_lower_orders_cost_ten_microamperes);
     RUN_TEST(test_open_circuit_voltage_has_the_third_harmonic);
     RUN_TEST(test_the_rotor_swings_about_a_detent_at_its_natural_frequency);
     RUN_TEST(test_a_free_rotor_slows_down_evenly_and_stays_where_it_stops);

@@ -7,6 +7,8 @@ PARTS = [
     ("no feed-forward", {"drive.feed_forward": False}),
     ("no jerk feed-forward", {"drive.law_gains.jerk_feed_forward": 0.0}),
     ("no load compensation", {"drive.law_gains.load_compensation": 0.0}),
+    ("no voltage-disturbance observer", {"drive.law_gains.voltage_disturbance_rad_s": 0.0}),
+    ("no detent learning", {"drive.detent_learning": False}),
     ("no bridge-loss compensation", {"drive.bridge_loss_compensation": False}),
 ]
 

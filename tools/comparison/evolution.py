@@ -36,12 +36,12 @@ def minimise(cost_of, numbers, budget, seed):
         yield done, points[best], costs[best]
         if done >= budget or tried >= MOST_TRIALS * budget:
             return
-        trials = [trial(draw, points, i, best, numbers) for i in range(size)]
+        trials = [trial(draw, points, i, best, numbers) for i in range(min(size, budget - done))]
         for i, (point, cost) in enumerate(zip(trials, cost_of(trials))):
             done += is_allowed(cost)
             if cost <= costs[i]:
                 points[i], costs[i] = point, cost
-        tried += size
+        tried += len(trials)
 
 
 def first_members(cost_of, draw, size, numbers, most):

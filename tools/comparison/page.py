@@ -5,7 +5,7 @@ import tomllib
 
 from comparison import tuning
 from comparison.experiment import PLANTS
-from comparison.table import main_columns, mismatch_columns
+from comparison.table import column, main_columns, mismatch_columns
 
 STYLE = """
 body { font: 15px/1.5 "Helvetica Neue", Helvetica, Arial, sans-serif; color: #1a1a1a;
@@ -93,18 +93,15 @@ def plain_table(headings, rows):
 
 def costs_section(comparison, plant):
     """Current and voltage, move by move."""
-    headings = ["law"] + [f"{move.name}: {what}" for move in comparison.moves
-                          for what in ("ripple A", "current A", "voltage V")]
-    rows = []
-    for entry in comparison.entries:
-        row = [entry.name]
-        for move in comparison.moves:
-            figures = comparison.cell(entry, plant, move).figures
-            row += ["–" if figures.get(metric) is None else f"{figures[metric]:.{digits}f}"
-                    for metric, digits in (("current_ripple_rms_A", 3), ("current_rms_A", 2),
-                                           ("voltage_rms_V", 2))]
-        rows.append(row)
-    return plain_table(headings, rows)
+    columns = []
+    for move in comparison.moves:
+        cells = [comparison.cell(entry, plant, move) for entry in comparison.entries]
+        columns += [column(move.name, heading, cells, metric, 1, digits,
+                           comparison.motor.full_step_rad)._replace(bold=None)
+                    for metric, heading, digits in (("current_ripple_rms_A", "ripple A", 3),
+                                                    ("current_rms_A", "current A", 2),
+                                                    ("voltage_rms_V", "voltage V", 2))]
+    return grouped_table([entry.name for entry in comparison.entries], columns, None)
 
 
 def cycles_section(comparison, cycles):

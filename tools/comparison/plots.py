@@ -25,7 +25,7 @@ STYLE = {
 OWN_SCALE = "#fff4e5"  # behind a law whose error leaves the common scale
 SHOWN_AFTER_STEP_s = 0.04
 SHOWN_BEFORE_LOAD_s = 0.005
-COMMON_SCALE = 2.5  # times the median law's largest error; a law beyond has its own
+COMMON_SCALE = 3.0  # times the largest error of the law at the lower quartile; others have their own
 
 
 def read_trace(folder):
@@ -54,7 +54,7 @@ def common_limit(traces, begin_s, end_s):
     for trace in traces.values():
         shown = (trace["time_s"] >= begin_s) & (trace["time_s"] <= end_s)
         sizes.append(size_of(trace["error_mrad"][shown]))
-    return 1.15 * min(max(sizes), COMMON_SCALE * float(np.median(sizes)))
+    return 1.15 * min(max(sizes), COMMON_SCALE * float(np.percentile(sizes, 25)))
 
 
 def size_of(error):
@@ -166,7 +166,7 @@ def draw(comparison, plant, move):
         drawn, small = io.BytesIO(), io.BytesIO()
         figure.savefig(drawn)
         plt.close(figure)
-    # 64 colours are enough for lines, and make a third of the file.
-    Image.open(drawn).convert("RGB").quantize(64, dither=Image.Dither.NONE).save(
+    # 256 colours are enough for lines, and make half of the file.
+    Image.open(drawn).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(
         small, format="PNG", optimize=True)
     return small.getvalue()

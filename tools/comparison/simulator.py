@@ -32,7 +32,7 @@ class Simulator:
         if done.returncode not in accepted:
             lines = done.stderr.strip().splitlines()
             text = lines[-1] if lines else f"ended with code {done.returncode}"
-            raise Refused(text.removeprefix("steadystep-sil: "))
+            raise Refused(text.removeprefix("steadystep-sil: ").replace(f"{ROOT}/", ""))
         return done.stdout
 
     def version(self):
