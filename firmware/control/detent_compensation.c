@@ -3,11 +3,11 @@
 #include <stddef.h>
 
 /* k per electrical turn: nine tenths are learned in eight turns, a fifth of a turn of the shaft. */
-static const double learning_per_turn = 0.3;
+#define LEARNING_PER_TURN 0.3
 
 /* k_m: fast against the learning, slow against the first harmonic, whose phase it leads by 9 deg.
  */
-static const double mean_per_turn = 1.0;
+#define MEAN_PER_TURN 1.0
 
 /* Learning ends at this frequency of a harmonic over the observer's bandwidth: its delay of three
    time constants is then still within a tenth of a period of its phase. */
@@ -25,7 +25,25 @@ static const double playing_rad_per_period = 0.6;
 #define TRAVEL_SCALE 64.0
 #define TRAVEL_MAX   NUM(1.9)
 
+#define MEAN_PACE     UNIT(MEAN_PER_TURN / TRAVEL_SCALE)
+#define LEARNING_PACE UNIT(2.0 * LEARNING_PER_TURN * TORQUE_SCALE / TRAVEL_SCALE)
+
+/* Electrical turns; below half a turn. */
+#define LAG_MAX NUM(0.49)
+
+/* Per-unit speed; its eightfold is within the number range. */
+#define SPEED_MAX 3.9
+/* Of the fourth harmonic; what fades out beyond never does. */
+#define FADE_MAX (4.0 * SPEED_MAX)
+
 static const double sqrt_2 = 1.41421356237309504880;
+
+/* zero: the per-unit speed at which the share reaches 0. */
+static struct detent_fade fade_out(double zero)
+{
+    return (struct detent_fade){num_from_double(0.5 * zero < FADE_MAX ? 0.5 * zero : FADE_MAX),
+                                coef_from_double(2.0 / zero)};
+}
 
 struct detent_compensation_params
 detent_compensation_design(const struct detent_compensation_task *task)
@@ -41,13 +59,8 @@ detent_compensation_design(const struct detent_compensation_task *task)
     return (struct detent_compensation_params){
         .travel = coef_from_double(TRAVEL_SCALE * base->turns_per_period),
         .lag = coef_from_double(lag_periods * base->turns_per_period),
-        .rate = coef_from_double(2.0 * learning_per_turn * TORQUE_SCALE / TRAVEL_SCALE),
-        .mean_rate = coef_from_double(mean_per_turn / TRAVEL_SCALE),
-        .learning_fade = coef_from_double(2.0 * electrical_rad_s / (learning_share * bandwidth)),
-        .playing_fade =
-            coef_from_double(2.0 * electrical_rad_s * task->period_s / playing_rad_per_period),
-        .torque = coef_from_double(1.0 / TORQUE_SCALE),
-        .lag_limit = NUM(0.49),
+        .learning = fade_out(learning_share * bandwidth / electrical_rad_s),
+        .playing = fade_out(playing_rad_per_period / (electrical_rad_s * task->period_s)),
         .residual_limit = num_from_double(limit),
         .limit = num_from_double(limit * TORQUE_SCALE),
     };
@@ -84,62 +97,50 @@ static struct sincos doubled(struct sincos x)
     return sincos_add(x, x);
 }
 
-static struct detent_harmonics harmonics_of(struct sincos frame)
+/* The harmonics fade one after the other, so that no period pays for more than one product. */
+static num_t faded(num_t whole, num_t speed, const struct detent_fade *fade)
 {
-    const struct sincos second = doubled(frame);
-
-    return (struct detent_harmonics){{frame, second, doubled(second)}};
-}
-
-/* 1 up to x = 1, half of where a harmonic fades out, and 0 from x = 2 on. */
-static num_t share(num_t x)
-{
-    return num_clamp(NUM(2.0) - x, NUM(0.0), NUM(1.0));
+    if (speed <= fade->speed) {
+        return whole;
+    }
+    return speed < fade->speed + fade->speed
+               ? num_mul(whole, NUM(2.0) - num_mul_coef(speed, fade->slope))
+               : NUM(0.0);
 }
 
 /* a cos + b sin of one harmonic; scaled. */
-static num_t played(const struct detent_compensation *detent, const struct detent_harmonics *now,
-                    size_t harmonic)
+static num_t played(const num_t coefficient[2], struct sincos harmonic)
 {
-    const struct sincos *h = &now->of[harmonic];
-    const num_t *c = &detent->coefficient[2u * harmonic];
-
-    return num_mul_unit(c[0], h->cos) + num_mul_unit(c[1], h->sin);
+    return num_mul_unit(coefficient[0], harmonic.cos) + num_mul_unit(coefficient[1], harmonic.sin);
 }
 
-static void learn(struct detent_compensation *detent,
-                  const struct detent_compensation_params *params,
-                  const struct detent_harmonics *then, size_t harmonic, num_t step)
+static void learn(num_t coefficient[2], struct sincos harmonic, num_t step, num_t limit)
 {
-    const struct sincos *h = &then->of[harmonic];
-    num_t *c = &detent->coefficient[2u * harmonic];
-
-    c[0] = num_limit(c[0] + num_mul_unit(step, h->cos), params->limit);
-    c[1] = num_limit(c[1] + num_mul_unit(step, h->sin), params->limit);
+    coefficient[0] = num_limit(coefficient[0] + num_mul_unit(step, harmonic.cos), limit);
+    coefficient[1] = num_limit(coefficient[1] + num_mul_unit(step, harmonic.sin), limit);
 }
 
 void detent_compensation_step(struct detent_compensation *detent,
                               const struct detent_compensation_params *params, angle_t angle,
                               struct sincos frame, num_t speed, num_t load_torque)
 {
-    const num_t pace = num_abs(speed);
+    const num_t pace = num_abs(num_limit(speed, NUM(SPEED_MAX)));
     const num_t travel = num_clamp(num_mul_coef(pace, params->travel), NUM(0.0), TRAVEL_MAX);
-    const num_t lag = num_limit(num_mul_coef(speed, params->lag), params->lag_limit);
+    const num_t lag = num_limit(num_mul_coef(speed, params->lag), LAG_MAX);
     const num_t residual = num_limit(load_torque - detent->mean, params->residual_limit);
-    const num_t step = num_mul(num_mul_coef(residual, params->rate), travel);
-    num_t learning = num_clamp(num_mul_coef(pace, params->learning_fade), NUM(0.0), NUM(2.0));
-    num_t playing = num_clamp(num_mul_coef(pace, params->playing_fade), NUM(0.0), NUM(2.0));
-    const struct detent_harmonics now = harmonics_of(frame);
-    const struct detent_harmonics then =
-        harmonics_of(sincos_of(angle - (angle_t)angle_from_turns(lag)));
+    const num_t step = num_mul(num_mul_unit(residual, LEARNING_PACE), travel);
+    struct sincos now = frame;
+    struct sincos then = sincos_of(angle - (angle_t)angle_from_turns(lag));
     num_t torque = NUM(0.0);
+    num_t pace_of_harmonic = pace;
 
-    detent->mean += num_mul(num_mul_coef(residual, params->mean_rate), travel);
-    for (size_t i = 0; i < DETENT_HARMONICS; i++) {
-        learn(detent, params, &then, i, num_mul(step, share(learning)));
-        torque += num_mul(played(detent, &now, i), share(playing));
-        learning += learning; /* of twice the harmonic */
-        playing += playing;
+    detent->mean += num_mul(num_mul_unit(residual, MEAN_PACE), travel);
+    for (num_t *c = detent->coefficient; c != detent->coefficient + DETENT_COEFFICIENTS; c += 2) {
+        learn(c, then, faded(step, pace_of_harmonic, &params->learning), params->limit);
+        torque += faded(played(c, now), pace_of_harmonic, &params->playing);
+        now = doubled(now);
+        then = doubled(then);
+        pace_of_harmonic += pace_of_harmonic;
     }
-    detent->torque = num_mul_coef(torque, params->torque);
+    detent->torque = num_mul_unit(torque, UNIT(1.0 / TORQUE_SCALE));
 }

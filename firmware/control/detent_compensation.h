@@ -34,22 +34,19 @@ enum { DETENT_HARMONICS = 3, DETENT_COEFFICIENTS = 2 * DETENT_HARMONICS };
 /* Of the holding torque, sqrt 2 Km x rated current. */
 #define DETENT_SHARE_MAX 0.15
 
-struct detent_compensation_params {
-    coef_t travel;        /* scaled turns per period, per speed */
-    coef_t lag;           /* electrical turns from the lag to the present angle, per speed */
-    coef_t rate;          /* 2 k, scaled */
-    coef_t mean_rate;     /* k_m, scaled */
-    coef_t learning_fade; /* 2 at the speed where the first harmonic stops learning */
-    coef_t playing_fade;  /* 2 at the speed where it is no longer compensated */
-    coef_t torque;        /* per scaled torque */
-    num_t lag_limit;      /* electrical turns, below half a turn */
-    num_t residual_limit; /* of T_L - m */
-    num_t limit;          /* of a coefficient, scaled */
+/* A share of 1 up to a speed, and from there in a line to 0 at twice that speed. */
+struct detent_fade {
+    num_t speed;
+    coef_t slope; /* 1 at that speed */
 };
 
-/* cos h phi and sin h phi of h = 1, 2, 4. */
-struct detent_harmonics {
-    struct sincos of[DETENT_HARMONICS];
+struct detent_compensation_params {
+    coef_t travel;               /* scaled turns per period, per speed */
+    coef_t lag;                  /* electrical turns from the lag to the present angle, per speed */
+    struct detent_fade learning; /* of the first harmonic */
+    struct detent_fade playing;
+    num_t residual_limit; /* of T_L - m */
+    num_t limit;          /* of a coefficient, scaled */
 };
 
 struct detent_compensation {

@@ -34,6 +34,11 @@ static double smaller(double a, double b)
     return a < b ? a : b;
 }
 
+static unit_t ratio(double x)
+{
+    return unit_from_num(num_from_double(x));
+}
+
 bool feedback_linearisation_law_design(struct feedback_linearisation_law_params *params,
                                        const struct position_law_task *task,
                                        char error[DESIGN_ERROR_TEXT])
@@ -77,9 +82,9 @@ bool feedback_linearisation_law_design(struct feedback_linearisation_law_params 
     params->position = coef_from_double(position);
     params->speed = coef_from_double(speed);
     params->acceleration = coef_from_double(k.k_acceleration);
-    params->field = coef_from_double(x * exponential_phi1(-x));
-    params->jerk = coef_from_double(law_gain_or(task, JERK, 1.0));
-    params->load = coef_from_double(law_gain_or(task, LOAD, 1.0));
+    params->field = ratio(x * exponential_phi1(-x));
+    params->jerk = ratio(law_gain_or(task, JERK, 1.0));
+    params->load = ratio(law_gain_or(task, LOAD, 1.0));
     params->friction =
         coef_from_double(motor->viscous_friction_Nms_rad * base->speed_rad_s / base->torque_Nm);
     params->stiffness = coef_from_double(stiffness_ohm / base->resistance_ohm);
@@ -134,7 +139,7 @@ static num_t wanted_change(const struct feedback_linearisation_law_params *param
     return num_mul_coef(position_error, params->position) +
            num_mul_coef(speed_error, params->speed) +
            num_mul_coef(motion->reference_acceleration - acceleration, params->acceleration) +
-           num_mul_coef(input->reference_jerk, params->jerk) + input->load_torque_change;
+           num_mul_unit(input->reference_jerk, params->jerk) + input->load_torque_change;
 }
 
 /*
@@ -164,14 +169,14 @@ feedback_linearisation_law_step(struct feedback_linearisation_law_state *state,
                                 const struct voltage_law_input *input)
 {
     const num_t speed = input->motion.speed;
-    const num_t load = num_mul_coef(input->motion.load_torque, params->load);
+    const num_t load = num_mul_unit(input->motion.load_torque, params->load);
     const struct dq disturbance =
         voltage_disturbance_step(&state->disturbance, &params->disturbance, input->innovation);
     const struct dq current = disturbed_current(params, input->undisturbed_current, disturbance);
     const num_t acceleration = current.q - load - num_mul_coef(speed, params->friction);
     const num_t wanted = current.q + wanted_change(params, input, acceleration);
     const num_t target = num_limit(wanted, params->current_limit);
-    const struct dq change = {num_mul_coef(input->current_d_reference - current.d, params->field),
+    const struct dq change = {num_mul_unit(input->current_d_reference - current.d, params->field),
                               target - current.q};
     const struct dq mean = {current.d + num_half(change.d), current.q + num_half(change.q)};
     const struct dq voltage = winding_voltage(params, input, mean, change, acceleration);

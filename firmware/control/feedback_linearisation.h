@@ -31,9 +31,9 @@ struct feedback_linearisation_law_params {
     coef_t position;     /* current per period, per electrical turn */
     coef_t speed;        /* per speed */
     coef_t acceleration; /* per acceleration */
-    coef_t field;        /* 1 - e^(-w_c T) */
-    coef_t jerk;         /* share of the reference's jerk fed forward; 1 */
-    coef_t load;         /* share of the load torque compensated; 1 */
+    unit_t field;        /* 1 - e^(-w_c T) */
+    unit_t jerk;         /* share of the reference's jerk fed forward; 1 */
+    unit_t load;         /* share of the load torque compensated; 1 */
     coef_t friction;     /* Kv: torque per speed */
     coef_t stiffness;    /* L/T: voltage per change of current */
     coef_t reactance;    /* N L: voltage per speed and current */

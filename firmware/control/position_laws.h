@@ -28,8 +28,9 @@
 enum position_law { POSITION_LAWS(POSITION_LAW_ENUMERATE) POSITION_LAW_COUNT };
 #undef POSITION_LAW_ENUMERATE
 
-#define POSITION_LAW_ONE(constant, function, text) +1
-enum { POSITION_LAW_VOLTAGE_FIRST = CURRENT_LAWS(POSITION_LAW_ONE) };
-#undef POSITION_LAW_ONE
+/* Behind the last current law. */
+#define CURRENT_LAW_ENUMERATE(constant, function, text) CURRENT_LAW_##constant,
+enum current_law { CURRENT_LAWS(CURRENT_LAW_ENUMERATE) POSITION_LAW_VOLTAGE_FIRST };
+#undef CURRENT_LAW_ENUMERATE
 
 #endif

@@ -15,6 +15,6 @@ struct voltage_disturbance_params voltage_disturbance_design(const struct motor_
     return (struct voltage_disturbance_params){
         .stiffness = coef_from_double(1.0 / admittance),
         .admittance = coef_from_double(admittance),
-        .smoothing = coef_from_double(x * exponential_phi1(-x)),
+        .smoothing = unit_from_num(num_from_double(x * exponential_phi1(-x))),
     };
 }

@@ -22,7 +22,7 @@
 struct voltage_disturbance_params {
     coef_t stiffness;  /* 1/b: voltage per current */
     coef_t admittance; /* b: current per voltage */
-    coef_t smoothing;  /* 1 - e^(-w_u T); 0: no observer */
+    unit_t smoothing;  /* 1 - e^(-w_u T); 0: no observer */
 };
 
 struct voltage_disturbance {
@@ -41,7 +41,7 @@ static inline num_t voltage_disturbance_axis(num_t voltage, num_t innovation,
     const num_t seen =
         num_limit(num_mul_coef(innovation, params->stiffness), VOLTAGE_DISTURBANCE_MAX);
 
-    return voltage + num_mul_coef(seen - voltage, params->smoothing);
+    return voltage + num_mul_unit(seen - voltage, params->smoothing);
 }
 
 /* One period; the innovation of S(k) in the rotor frame. */

@@ -137,3 +137,18 @@ bool design_require_positive(char error[DESIGN_ERROR_TEXT], const char *quantity
                                                        .unit = unit,
                                                        .reason = "and finite"});
 }
+
+bool design_require_within(char error[DESIGN_ERROR_TEXT], const char *quantity, double value,
+                           double low, double high, const char *unit, const char *reason)
+{
+    if (value >= low && value <= high) {
+        return true;
+    }
+    return design_refuse_limit(error,
+                               (struct refusal){.quantity = quantity,
+                                                .value = value,
+                                                .relation = value > high ? "at most" : "at least",
+                                                .limit = value > high ? high : low,
+                                                .unit = unit,
+                                                .reason = reason});
+}

@@ -30,4 +30,8 @@ bool design_refuse_limit(char error[DESIGN_ERROR_TEXT], struct refusal refusal);
 bool design_require_positive(char error[DESIGN_ERROR_TEXT], const char *quantity, double value,
                              const char *unit);
 
+/* low <= value <= high, which a NaN is not; or a refusal naming the bound that is broken. */
+bool design_require_within(char error[DESIGN_ERROR_TEXT], const char *quantity, double value,
+                           double low, double high, const char *unit, const char *reason);
+
 #endif

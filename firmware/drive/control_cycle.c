@@ -26,28 +26,25 @@ struct prediction {
 };
 
 /* At S(k+1), with the voltage already committed. */
-IN_PLACE struct prediction predict(const struct drive *drive, const struct estimate *estimate)
+IN_PLACE void predict(struct prediction *next, const struct drive *drive,
+                      const struct estimate *estimate)
 {
-    const struct motor_model_params *model = &drive->params.model;
-    struct prediction next = {
-        .current = forced_current(&estimate->winding, estimate->free_current,
-                                  actuation_in_force(&drive->actuation)),
-        .rotor = estimate->rotor,
-        .frame = estimate_end_of_period(estimate),
-        .reference = &drive->reference.next,
-    };
-
-    predict_rotor(model, &next.rotor, park(next.current, estimate->mid_period).q);
-    return next;
+    next->current = forced_current(&estimate->winding, estimate->free_current,
+                                   actuation_in_force(&drive->actuation));
+    next->rotor = estimate->rotor;
+    next->frame = estimate_end_of_period(estimate);
+    next->reference = &drive->reference.next;
+    predict_rotor(&drive->params.model, &next->rotor, park(next->current, estimate->mid_period).q);
 }
 
 /* At S(k): without a delay nothing need be predicted. */
-IN_PLACE struct prediction present(const struct drive *drive, const struct estimate *estimate)
+IN_PLACE void present(struct prediction *next, const struct drive *drive,
+                      const struct estimate *estimate)
 {
-    return (struct prediction){.current = estimate->current,
-                               .rotor = estimate->rotor,
-                               .frame = estimate_begin_of_period(estimate),
-                               .reference = &drive->reference.now};
+    next->current = estimate->current;
+    next->rotor = estimate->rotor;
+    next->frame = estimate_begin_of_period(estimate);
+    next->reference = &drive->reference.now;
 }
 
 IN_PLACE struct position_law_input law_input(const struct drive *drive,
@@ -157,10 +154,12 @@ static void expect_current(struct drive *drive, const struct estimate *estimate,
 static void remember_demand(struct drive *drive, const struct estimate *estimate,
                             const struct prediction *next, struct phases voltage)
 {
-    drive->predicted_current =
-        drive->params.immediate
-            ? forced_current(&estimate->winding, estimate->free_current, voltage)
-            : next->undisturbed_current;
+    struct phases expected = next->undisturbed_current;
+
+    if (drive->params.immediate) {
+        expected = forced_current(&estimate->winding, estimate->free_current, voltage);
+    }
+    drive->predicted_current = expected;
     drive->predicted_frame = estimate->mid_period;
     drive->demanded_voltage = voltage;
 }
@@ -203,11 +202,15 @@ __attribute__((noinline)) static struct hal_outputs control_in_full(struct drive
                                                                     const struct estimate *estimate)
 {
     const struct drive_params *params = &drive->params;
-    struct prediction next =
-        params->immediate ? present(drive, estimate) : predict(drive, estimate);
+    struct prediction next;
     struct phases voltage;
     struct hal_outputs duties;
 
+    if (params->immediate) {
+        present(&next, drive, estimate);
+    } else {
+        predict(&next, drive, estimate);
+    }
     expect_current(drive, estimate, &next);
     if (params->detent_learning) {
         compensate_detent(drive, estimate, &next);
@@ -222,27 +225,29 @@ __attribute__((noinline)) static struct hal_outputs control_in_full(struct drive
     if (params->immediate) {
         actuation_commit_past(&drive->actuation); /* measured at the next S(k) already */
     }
+    standstill_hold_leave(&drive->hold, drive->reference.rest_periods);
     return duties;
 }
 
 /* The path of the sensorless default: a current law or the hold. */
 IN_PLACE struct hal_outputs control_current(struct drive *drive, const struct estimate *estimate)
 {
-    const struct prediction next = predict(drive, estimate);
-    const struct phases voltage = regulate_current(drive, estimate, &next);
+    struct prediction next;
+    struct phases voltage;
+    struct hal_outputs duties;
 
-    return modulate(drive, actuation_compensate(&drive->actuation, voltage));
+    predict(&next, drive, estimate);
+    voltage = regulate_current(drive, estimate, &next);
+    duties = modulate(drive, actuation_compensate(&drive->actuation, voltage));
+    standstill_hold_leave(&drive->hold, drive->reference.rest_periods);
+    return duties;
 }
 
 static struct hal_outputs control(struct drive *drive, const struct estimate *estimate)
 {
-    struct hal_outputs duties;
-
     reference_step(&drive->reference, &drive->params.reference);
-    duties =
-        drive->params.in_full ? control_in_full(drive, estimate) : control_current(drive, estimate);
-    standstill_hold_leave(&drive->hold, drive->reference.rest_periods);
-    return duties;
+    return drive->params.in_full ? control_in_full(drive, estimate)
+                                 : control_current(drive, estimate);
 }
 
 static const struct estimate *observe(struct drive *drive, const struct sample_set *now)

@@ -66,48 +66,49 @@ enum { DRIVE_DETENT_COEFFICIENTS = 6 };
 struct drive_settings {
     struct motor_params motor;
 
+    /* law and feedback */
     enum position_law law;
-    enum drive_feedback feedback; /* sensorless */
-    enum drive_estimator estimator;
+    enum drive_feedback feedback;      /* sensorless */
+    enum drive_estimator estimator;    /* of sensorless feedback; invariant EKF */
+    enum drive_observer observer;      /* on the encoder; model */
+    bool feed_forward;                 /* reference speed and acceleration into the law; true */
+    bool detent_learning;              /* with an encoder only; true for its default law */
+    bool bridge_loss_compensation;     /* dead time and diodes, from measured voltages; true */
+    bool resistance_adaptation;        /* track the series resistance while holding; true */
     double law_bandwidth_rad_s;        /* w0 of the position law, pole pair; 200, of the default law
                                           with an encoder 900 */
+    double current_bandwidth_rad_s;    /* of the loop inside it; 1500, with that law 2000 */
     double law_gains[DRIVE_LAW_GAINS]; /* given to the law instead of what the bandwidths make of
                                           them and not checked against their limits, in the order
-                                          of drive_law_gains; NaN: not given */
-    bool feed_forward;                 /* reference speed and acceleration into the law; true */
-    double current_bandwidth_rad_s;    /* of the loop inside it; 1500, with that law 2000 */
-    double current_limit_A;            /* limit of the current reference; rated current */
-    double overcurrent_trip_A;         /* software trip on a sampled phase current; 1.8 x rated */
-    double speed_limit_rad_s; /* estimates beyond it open the bridge; 1.3 supply/Km, cut to 0.24
-                                 electrical turn per period */
+                                          of firmware_image.law_gain; NaN: not given */
+    double detent_torque_Nm[DRIVE_DETENT_COEFFICIENTS]; /* a_1, b_1, a_2, b_2, a_4, b_4 at harmonics
+                                          of the electrical angle (control/detent_compensation.h):
+                                          where learning begins if nothing is kept; 0 */
 
-    enum drive_observer observer;    /* on the encoder; model */
+    /* limits */
+    double current_limit_A;    /* of the current reference; rated current */
+    double overcurrent_trip_A; /* software trip on a sampled phase current; 1.8 x rated */
+    double speed_limit_rad_s;  /* estimates beyond it open the bridge; 1.3 supply/Km, cut to 0.24
+                                  electrical turn per period */
+
+    /* encoder */
     double observer_bandwidth_rad_s; /* triple pole of the model observer; 1000 */
     double high_gain_epsilon_s;      /* of the high-gain observer; 1e-3 */
-    bool encoder_zero_known; /* absolute encoder or indexed: the rotor's angle follows from the
-                                count; else it is initial_angle_rad at the end of the hold; false */
-    double encoder_zero_rad; /* rotor angle where count 0 begins; 0 */
-    double initial_load_torque_Nm; /* load that the encoder observer begins with; 0 */
+    double encoder_zero_rad;         /* rotor angle where count 0 begins; 0 */
+    double initial_load_torque_Nm;   /* load that the model observer begins with; 0 */
 
-    /* Detent torque a_1, b_1, a_2, b_2, a_4, b_4 at harmonics of the electrical angle, known before
-       or learned and kept (control/detent_compensation.h). */
-    double detent_torque_Nm[DRIVE_DETENT_COEFFICIENTS]; /* where learning begins if nothing
-                                                           is kept from before; 0 */
-    bool detent_learning; /* with an encoder only; true for its default law, else false */
-
-    bool bridge_loss_compensation; /* dead time and diodes, from measured voltages; true */
-
-    bool resistance_adaptation;  /* track the series resistance while holding; true */
+    /* enabling and hold */
+    bool encoder_zero_known;     /* absolute encoder or indexed: the rotor's angle follows from the
+                                    count; else it is initial_angle_rad at the end of the hold; false */
+    bool calibrate_offsets;      /* step of enabling; true */
+    bool hold_on_enable;         /* step of enabling: 150 ms hold before ready; true */
+    bool hold_at_rest;           /* d-axis current at rest; true, with an encoder false */
+    double hold_on_enable_s;     /* 0.150 */
     double hold_current_A;       /* d-axis current at rest; half the rated current */
     double hold_ramp_s;          /* time for the hold current to ramp in or out; 0.010 */
     double hold_delay_s;         /* from the end of a profile to the hold; 0.015 */
-    bool hold_at_rest;           /* d-axis current at rest; true, with an encoder false */
     double hold_bandwidth_rad_s; /* w0 of the state feedback whose damping the hold takes; 200 */
-
-    bool calibrate_offsets;         /* step of enabling; true */
-    bool hold_on_enable;            /* step of enabling: 150 ms hold before ready; true */
-    double hold_on_enable_s;        /* 0.150 */
-    double initial_angle_rad;       /* mechanical rotor angle the drive is told; 0 */
+    double initial_angle_rad;    /* mechanical rotor angle the drive is told; 0 */
     double initial_angle_error_rad; /* added to it, to tell the drive something wrong; an encoder
                                        whose zero is known still measures right; 0 */
 };

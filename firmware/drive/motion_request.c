@@ -40,22 +40,6 @@ static double smaller(double a, double b)
     return a < b ? a : b;
 }
 
-/* low <= value <= high, which a NaN is not. */
-static bool within(const char *quantity, double value, double low, double high, const char *unit,
-                   const char *reason, char error[DRIVE_ERROR_TEXT])
-{
-    if (value >= low && value <= high) {
-        return true;
-    }
-    return design_refuse_limit(error,
-                               (struct refusal){.quantity = quantity,
-                                                .value = value,
-                                                .relation = value > high ? "at most" : "at least",
-                                                .limit = value > high ? high : low,
-                                                .unit = unit,
-                                                .reason = reason});
-}
-
 /* What the drive can follow, rad/s and rad/s^2. */
 static double speed_limit(const struct drive *drive, const struct units *units)
 {
@@ -80,10 +64,10 @@ static bool limits_of(const struct drive *drive, const struct drive_command *com
     const double slowest = 2.0 * speed / (DURATION_MAX * units.period_s);
     const double softest = command->acceleration_rad_s2 / (JERK_TIME_MAX * units.period_s);
 
-    if (!within("acceleration", command->acceleration_rad_s2, slowest, acceleration, "rad/s^2",
-                "limit of the drive", error) ||
-        !within("jerk", command->jerk_rad_s3, softest, 1e30, "rad/s^3",
-                "2^17 control periods to the acceleration", error)) {
+    if (!design_require_within(error, "acceleration", command->acceleration_rad_s2, slowest,
+                               acceleration, "rad/s^2", "limit of the drive") ||
+        !design_require_within(error, "jerk", command->jerk_rad_s3, softest, 1e30, "rad/s^3",
+                               "2^17 control periods to the acceleration")) {
         return false;
     }
     limits->speed = speed / units.speed;
@@ -99,8 +83,8 @@ static bool request_velocity(const struct drive *drive, const struct drive_comma
     const double limit = speed_limit(drive, &units);
 
     request->speed = command->speed_rad_s / units.speed;
-    return within("speed", command->speed_rad_s, -limit, limit, "rad/s", "limit of the drive",
-                  error) &&
+    return design_require_within(error, "speed", command->speed_rad_s, -limit, limit, "rad/s",
+                                 "limit of the drive") &&
            limits_of(drive, command, &request->limits, error);
 }
 
@@ -111,18 +95,19 @@ static bool request_retarget(const struct drive *drive, const struct drive_comma
     const double range = TURNS_MAX * units.turn_rad;
     double distance;
 
-    if (!within("position", command->position_rad, -range, range, "rad", "range of positions",
-                error)) {
+    if (!design_require_within(error, "position", command->position_rad, -range, range, "rad",
+                               "range of positions")) {
         return false;
     }
     request->target = position_from_rad(command->position_rad, drive->settings.motor.rotor_teeth);
     distance = command->position_rad -
                position_to_rad(drive->reference.next.position, drive->settings.motor.rotor_teeth);
     distance = distance < 0.0 ? -distance : distance;
-    if (!within("speed", command->speed_rad_s, distance / (DURATION_MAX * units.period_s),
-                speed_limit(drive, &units), "rad/s", "limit of the drive, 2^30 periods to go",
-                error) ||
-        !within("speed", command->speed_rad_s, 1e-9, 1e9, "rad/s", "a speed above zero", error) ||
+    if (!design_require_within(
+            error, "speed", command->speed_rad_s, distance / (DURATION_MAX * units.period_s),
+            speed_limit(drive, &units), "rad/s", "limit of the drive, 2^30 periods to go") ||
+        !design_require_within(error, "speed", command->speed_rad_s, 1e-9, 1e9, "rad/s",
+                               "a speed above zero") ||
         !limits_of(drive, command, &request->limits, error)) {
         return false;
     }
@@ -136,8 +121,8 @@ static bool request_set_point(const struct drive *drive, const struct drive_comm
     const struct units units = units_of(drive);
     const double intervals = command->interval_s / units.period_s;
 
-    if (!within("interval", intervals, INTERVAL_MIN - 0.5, INTERVAL_MAX, "periods",
-                "3 to 2^16 control periods", error) ||
+    if (!design_require_within(error, "interval", intervals, INTERVAL_MIN - 0.5, INTERVAL_MAX,
+                               "periods", "3 to 2^16 control periods") ||
         !limits_of(drive, command, &request->limits, error)) {
         return false;
     }
@@ -156,22 +141,24 @@ static bool request_sine(const struct drive *drive, const struct drive_command *
     const double stop_s = 0.1;
     struct motion_limits *limits = &request->limits;
 
-    if (!within("amplitude", amplitude, AMPLITUDE_MIN_rad, TURNS_MAX * units.turn_rad, "rad",
-                "range of amplitudes", error) ||
-        !within("frequency", command->frequency_Hz, FREQUENCY_MIN_Hz, 1.0 / (SINE_PERIODS_MIN * T),
-                "Hz", "20 control periods to a cycle", error) ||
-        !within("cycles", command->cycles, 0.0, CYCLES_MAX, "", "range of cycles", error)) {
+    if (!design_require_within(error, "amplitude", amplitude, AMPLITUDE_MIN_rad,
+                               TURNS_MAX * units.turn_rad, "rad", "range of amplitudes") ||
+        !design_require_within(error, "frequency", command->frequency_Hz, FREQUENCY_MIN_Hz,
+                               1.0 / (SINE_PERIODS_MIN * T), "Hz",
+                               "20 control periods to a cycle") ||
+        !design_require_within(error, "cycles", command->cycles, 0.0, CYCLES_MAX, "",
+                               "range of cycles")) {
         return false;
     }
     if (halves != (double)(uint32_t)halves) {
         return design_refuse(error, "cycles: must be a whole number or a half");
     }
-    if (!within("ramp", command->ramp_s, 0.0,
-                command->cycles > 0.0 ? command->cycles / command->frequency_Hz / 2.0
-                                      : DURATION_MAX * T,
-                "s", "half of the cycles", error) ||
-        !within("ramp", command->ramp_s, 0.0, DURATION_MAX * T, "s", "2^30 control periods",
-                error)) {
+    if (!design_require_within(error, "ramp", command->ramp_s, 0.0,
+                               command->cycles > 0.0 ? command->cycles / command->frequency_Hz / 2.0
+                                                     : DURATION_MAX * T,
+                               "s", "half of the cycles") ||
+        !design_require_within(error, "ramp", command->ramp_s, 0.0, DURATION_MAX * T, "s",
+                               "2^30 control periods")) {
         return false;
     }
     request->sine = sine_design(&(struct sine_task){
@@ -182,10 +169,11 @@ static bool request_sine(const struct drive *drive, const struct drive_command *
         .period_s = T,
     });
     *limits = sine_peaks(&request->sine);
-    if (!within("speed of the sine", limits->speed * units.speed, 0.0, speed_limit(drive, &units),
-                "rad/s", "limit of the drive", error) ||
-        !within("acceleration of the sine", limits->acceleration * units.acceleration, 0.0,
-                acceleration_limit(drive, &units), "rad/s^2", "limit of the drive", error)) {
+    if (!design_require_within(error, "speed of the sine", limits->speed * units.speed, 0.0,
+                               speed_limit(drive, &units), "rad/s", "limit of the drive") ||
+        !design_require_within(
+            error, "acceleration of the sine", limits->acceleration * units.acceleration, 0.0,
+            acceleration_limit(drive, &units), "rad/s^2", "limit of the drive")) {
         return false;
     }
     /* a slow sine need not stop as slowly */

@@ -86,16 +86,17 @@ static void adapt_resistance(struct estimate *x, const struct encoder_observer_p
 
 /*
  * Mean of i_q over S(k-1)...S(k) from its two ends, each in the rotor's frame of its own instant: h
- * before and after the middle of the period. (The mean of the phase currents is the chord of the
+ * before and after the middle of the period, so it takes the q part of their sum and the d part of
+ * their difference. (The mean of the phase currents is the chord of the
  * arc that they run through, short by h^2/2: 0.8 % at 50 rad/s, 10 kHz and 50 teeth.)
  */
 static num_t mean_torque_current(const struct estimate *x, struct phases current)
 {
-    const struct dq first = park(x->current, x->mid_period);
-    const struct dq last = park(current, x->mid_period);
+    const struct phases sum = {x->current.a + current.a, x->current.b + current.b};
+    const struct phases difference = {x->current.a - current.a, x->current.b - current.b};
 
-    return num_half(num_mul_unit(first.q + last.q, x->half_turn.cos) +
-                    num_mul_unit(first.d - last.d, x->half_turn.sin));
+    return num_half(num_mul_unit(park(sum, x->mid_period).q, x->half_turn.cos) +
+                    num_mul_unit(park(difference, x->mid_period).d, x->half_turn.sin));
 }
 
 void encoder_observer_step(struct encoder_observer *observer,

@@ -18,32 +18,16 @@ static int64_t in_2_64(double turns)
     return (int64_t)(x < 0.0 ? x - 0.5 : x + 0.5);
 }
 
-/* low <= value <= high, which a NaN is not; or a refusal naming the bound that is broken. */
-static bool require_within(const char *quantity, double value, double low, double high,
-                           const char *unit, const char *reason, char error[DESIGN_ERROR_TEXT])
-{
-    if (value >= low && value <= high) {
-        return true;
-    }
-    return design_refuse_limit(error,
-                               (struct refusal){.quantity = quantity,
-                                                .value = value,
-                                                .relation = value > high ? "at most" : "at least",
-                                                .limit = value > high ? high : low,
-                                                .unit = unit,
-                                                .reason = reason});
-}
-
 /* The magnitude against the limit of the drive and against the range of the reference. */
 static bool require_below(const char *quantity, double value, double limit, double range,
                           const char *unit, char error[DESIGN_ERROR_TEXT])
 {
     double magnitude = value < 0.0 ? -value : value;
 
-    return limit < range
-               ? require_within(quantity, magnitude, 0.0, limit, unit, "limit of the drive", error)
-               : require_within(quantity, magnitude, 0.0, range, unit, "range of the reference",
-                                error);
+    return limit < range ? design_require_within(error, quantity, magnitude, 0.0, limit, unit,
+                                                 "limit of the drive")
+                         : design_require_within(error, quantity, magnitude, 0.0, range, unit,
+                                                 "range of the reference");
 }
 
 /* The time in whole periods, low...high. */
@@ -57,7 +41,8 @@ static bool whole_periods(uint32_t *periods, const char *quantity, double time_s
         *periods = (uint32_t)rounded;
         return true;
     }
-    return require_within(quantity, time_s, low * period_s, high * period_s, "s", reason, error);
+    return design_require_within(error, quantity, time_s, low * period_s, high * period_s, "s",
+                                 reason);
 }
 
 /* Distance in 2^-32 turn, exact. */
@@ -122,8 +107,8 @@ bool profile_plan(struct profile *profile, struct position start, const struct p
     uint32_t ramp = 0;
     uint32_t jerk = 0;
 
-    if (!require_within("position", move->position_rad, -position_max_rad, position_max_rad, "rad",
-                        "range of positions", error)) {
+    if (!design_require_within(error, "position", move->position_rad, -position_max_rad,
+                               position_max_rad, "rad", "range of positions")) {
         return false;
     }
     *profile = (struct profile){

@@ -2,11 +2,31 @@
 
 #if STEADYSTEP_NUM == NUM_FIXED
 
-/* Digit by digit on the mantissa; 16 significant bits, no division. */
+/*
+ * floor(sqrt(n)) for 2^30 <= n < 2^32, without division. With y = n/2^30: a parabola within 2.4 %
+ * of r = 1/sqrt(y), r <- r (3 - y r^2)/2, which leaves 0.09 %, y r and its correction by (n -
+ * root^2) r/2, which is off by one at most.
+ */
+static uint32_t root_of(uint32_t n)
+{
+    const uint32_t y = n >> 16;                                         /* Q14 */
+    uint32_t r = 43759u - ((y * (53828u - ((y * 6712u) >> 14))) >> 16); /* Q15 */
+    uint32_t root;
+    int32_t rest;
+
+    r = (r * ((3u << 14) - ((y * ((r * r) >> 15)) >> 15))) >> 15;
+    root = (y * r) >> 14;
+    rest = (int32_t)(n - root * root);
+    root += (uint32_t)(((rest >> 8) * (int32_t)r) >> 23);
+    rest = (int32_t)(n - root * root);
+    if (rest < 0) {
+        return root - 1u;
+    }
+    return rest > (int32_t)(2u * root) ? root + 1u : root;
+}
+
 num_t num_sqrt(num_t x)
 {
-    uint32_t rest = 0;
-    uint32_t root = 0;
     uint32_t bits;
     unsigned shift = 0;
 
@@ -14,21 +34,14 @@ num_t num_sqrt(num_t x)
         return 0;
     }
     bits = (uint32_t)x;
-    while (bits < (1u << 30)) {
-        bits <<= 2;
-        shift++;
-    }
-    for (int digit = 0; digit < 16; digit++) {
-        rest = (rest << 2) | (bits >> 30);
-        bits <<= 2;
-        root <<= 1;
-        if (rest > 2u * root) {
-            rest -= 2u * root + 1u;
-            root += 1u;
+    for (unsigned half = 8; half > 0u; half >>= 1) {
+        if (bits < (1u << (32u - 2u * half))) {
+            bits <<= 2u * half;
+            shift += half;
         }
     }
     /* sqrt(m 2^-26) = sqrt(m) 2^-13; the root has 16 of the bits of sqrt(m 4^shift). */
-    return (num_t)((root << 13) >> shift);
+    return (num_t)((root_of(bits) << 13) >> shift);
 }
 
 num_t num_from_double(double x)

@@ -60,8 +60,8 @@ replay_samples packed(const hal_samples &samples)
 {
     if (samples.temperature || samples.flags)
         throw std::runtime_error("a sample that replay_samples does not hold is not zero");
-    return {samples.current_a, samples.current_b, samples.bus_voltage, samples.phase_voltage_a,
-            samples.phase_voltage_b, samples.encoder_count};
+    return {samples.current_a,       samples.current_b,       samples.bus_voltage,
+            samples.phase_voltage_a, samples.phase_voltage_b, samples.encoder_count};
 }
 
 Recording record(const replay_case &which)
@@ -74,8 +74,9 @@ Recording record(const replay_case &which)
     TraceHash trace;
     int next_command = 0;
     for (std::uint32_t k = 0; k < REPLAY_PERIODS; ++k) {
-        while (next_command < REPLAY_COMMANDS && replay_commands[next_command].at_period <= k + 1)
-            board.command(replay_command(next_command++));
+        while (next_command < which.command_count &&
+               which.commands[next_command].at_period <= k + 1)
+            board.command(which.commands[next_command++]);
         if (k == REPLAY_LOAD_FROM || k == REPLAY_LOAD_TO)
             board.plant().set_load_torque(k == REPLAY_LOAD_FROM ? 0.1 : 0.0);
         recording.input.push_back(packed(board.samples()));
@@ -114,8 +115,8 @@ void write_header(const replay_case &which, const Recording &recording)
                 facts.dead_time_s, facts.current_A_per_code, unsigned{facts.current_zero_code},
                 facts.bus_V_per_code, facts.phase_voltage_V_per_code,
                 facts.has_phase_voltages ? "true" : "false", facts.encoder_counts_per_turn,
-                facts.actuation_delay_periods, facts.bridge_resistance_ohm, facts.cycle_counter_Hz, facts.parameter_page_bytes,
-                facts.parameter_word_bytes);
+                facts.actuation_delay_periods, facts.bridge_resistance_ohm, facts.cycle_counter_Hz,
+                facts.parameter_page_bytes, facts.parameter_word_bytes);
     std::printf("static const struct replay_samples replay_input[REPLAY_PERIODS] = {\n");
     for (const replay_samples &s : recording.input)
         std::printf("{%d,%d,%d,%d,%d,%" PRId32 "},\n", s.current_a, s.current_b, s.bus_voltage,

@@ -56,19 +56,19 @@ int main(void)
     static struct drive_settings settings;
     static char error[DRIVE_ERROR_TEXT];
     const struct firmware_image *image = &REPLAY_IMAGE;
+    const struct replay_case *which = replay_case_named(replay_case_name);
 
     if (image->drive_bytes > sizeof drive)
         return fail("the drive is larger than its memory");
-    replay_settings(replay_case_named(replay_case_name), &settings);
+    replay_settings(which, &settings);
     if (!image->init(drive, &board, &settings, error))
         return fail(error);
 
     int next_command = 0;
     for (uint32_t k = 0; k < REPLAY_PERIODS; ++k) {
-        while (next_command < REPLAY_COMMANDS && replay_commands[next_command].at_period <= k + 1) {
-            const struct drive_command command = replay_command(next_command++);
-
-            if (!image->command(drive, &command, error))
+        while (next_command < which->command_count &&
+               which->commands[next_command].at_period <= k + 1) {
+            if (!image->command(drive, &which->commands[next_command++], error))
                 return fail(error);
         }
         const struct replay_samples *input = &replay_input[k];

@@ -22,32 +22,11 @@ struct replay_samples {
     int32_t encoder_count;
 };
 
-struct replay_case {
-    const char *name;
-    enum position_law law;
-    enum drive_feedback feedback;
-    enum drive_estimator estimator;
-};
-
 enum { REPLAY_ENCODER_COUNTS = 16384 };
-
-static const struct replay_case replay_cases[] = {
-    {"default-sensorless", POSITION_LAW_STATE_FEEDBACK, DRIVE_FEEDBACK_SENSORLESS,
-     DRIVE_ESTIMATOR_INVARIANT_EKF},
-    {"pid", POSITION_LAW_PID, DRIVE_FEEDBACK_SENSORLESS, DRIVE_ESTIMATOR_INVARIANT_EKF},
-    {"steady-state-ekf", POSITION_LAW_STATE_FEEDBACK, DRIVE_FEEDBACK_SENSORLESS,
-     DRIVE_ESTIMATOR_STEADY_STATE_EKF},
-    {"default-encoder", POSITION_LAW_FEEDBACK_LINEARISATION, DRIVE_FEEDBACK_ENCODER,
-     DRIVE_ESTIMATOR_INVARIANT_EKF},
-    {"microstepping", POSITION_LAW_MICROSTEPPING, DRIVE_FEEDBACK_ENCODER,
-     DRIVE_ESTIMATOR_INVARIANT_EKF},
-};
-
-enum { REPLAY_CASES = sizeof replay_cases / sizeof replay_cases[0] };
 
 /*
  * Every state of the drive and every limit in a short time: offsets and a 30 ms hold when enabled,
- * a move under load, a rest with hold current, a reversal too fast for the supply, a stop.
+ * then 0.4 s of commands.
  */
 enum {
     REPLAY_READY = 900,     /* enabling has ended: 512 periods of offsets, 300 of hold */
@@ -56,38 +35,140 @@ enum {
     REPLAY_PERIODS = 4800
 };
 
-/* What the run uses of a drive_command. */
-struct replay_command {
-    enum drive_command_kind kind;
-    uint32_t at_period;
-    double position_rad, duration_s, ramp_s, jerk_s;
+/* One row of a list of commands: a drive_command of which the run uses a few fields. */
+#define REPLAY_PLAIN(kind, at)                                                                     \
+    {                                                                                              \
+        kind, at, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0                                                  \
+    }
+#define REPLAY_MOVE(kind, at, position_rad, duration_s, ramp_s, jerk_s)                            \
+    {                                                                                              \
+        kind, at, position_rad, duration_s, ramp_s, jerk_s, 0, 0, 0, 0, 0, 0, 0                    \
+    }
+#define REPLAY_SINE(at, amplitude_rad, frequency_Hz, cycles, ramp_s)                               \
+    {                                                                                              \
+        DRIVE_COMMAND_SINE, at, 0, 0, ramp_s, 0, amplitude_rad, frequency_Hz, cycles, 0, 0, 0, 0   \
+    }
+#define REPLAY_SET_POINT(at, position_rad, interval_s, acceleration_rad_s2, jerk_rad_s3)           \
+    {                                                                                              \
+        DRIVE_COMMAND_SET_POINT, at, position_rad, 0, 0, 0, 0, 0, 0, interval_s, 0,                \
+            acceleration_rad_s2, jerk_rad_s3                                                       \
+    }
+#define REPLAY_TOWARDS(kind, at, position_rad, speed_rad_s, acceleration_rad_s2, jerk_rad_s3)      \
+    {                                                                                              \
+        kind, at, position_rad, 0, 0, 0, 0, 0, 0, 0, speed_rad_s, acceleration_rad_s2, jerk_rad_s3 \
+    }
+
+/* A move under load, a rest, a reversal too fast for the supply, a step, a stop. */
+static const struct drive_command replay_moves[] = {
+    REPLAY_PLAIN(DRIVE_COMMAND_ENABLE, 5),
+    REPLAY_MOVE(DRIVE_COMMAND_MOVE_TRAPEZOID, REPLAY_READY, 2.0, 0.120, 0.040, 0),
+    REPLAY_MOVE(DRIVE_COMMAND_MOVE_SMOOTH, 3000, -0.2, 0.070, 0.030, 0.010),
+    REPLAY_MOVE(DRIVE_COMMAND_STEP, 3900, -0.17, 0, 0, 0),
+    REPLAY_MOVE(DRIVE_COMMAND_MOVE_TRAPEZOID, 4100, 4.0, 0.200, 0.060, 0),
+    REPLAY_PLAIN(DRIVE_COMMAND_STOP, 4500),
 };
 
-static const struct replay_command replay_commands[] = {
-    {DRIVE_COMMAND_ENABLE, 5, 0, 0, 0, 0},
-    {DRIVE_COMMAND_MOVE_TRAPEZOID, REPLAY_READY, 2.0, 0.120, 0.040, 0},
-    {DRIVE_COMMAND_MOVE_SMOOTH, 3000, -0.2, 0.070, 0.030, 0.010},
-    {DRIVE_COMMAND_STEP, 3900, -0.17, 0, 0, 0},
-    {DRIVE_COMMAND_MOVE_TRAPEZOID, 4100, 4.0, 0.200, 0.060, 0},
-    {DRIVE_COMMAND_STOP, 4500, 0, 0, 0, 0},
+/* The same below 30 rad/s. */
+static const struct drive_command replay_slow_moves[] = {
+    REPLAY_PLAIN(DRIVE_COMMAND_ENABLE, 5),
+    REPLAY_MOVE(DRIVE_COMMAND_MOVE_TRAPEZOID, REPLAY_READY, 2.0, 0.120, 0.040, 0),
+    REPLAY_MOVE(DRIVE_COMMAND_MOVE_SMOOTH, 3000, 0.9, 0.070, 0.030, 0.010),
+    REPLAY_MOVE(DRIVE_COMMAND_STEP, 3900, 0.93, 0, 0, 0),
+    REPLAY_MOVE(DRIVE_COMMAND_MOVE_TRAPEZOID, 4100, 4.0, 0.200, 0.060, 0),
+    REPLAY_PLAIN(DRIVE_COMMAND_STOP, 4500),
 };
 
-enum { REPLAY_COMMANDS = sizeof replay_commands / sizeof replay_commands[0] };
+/* What the background plans: a sine, set-points that run dry, a velocity, its reversal, a new
+   target on the way, a velocity that is stopped. */
+static const struct drive_command replay_references[] = {
+    REPLAY_PLAIN(DRIVE_COMMAND_ENABLE, 5),
+    REPLAY_SINE(REPLAY_READY, 0.1, 10.0, 1.0, 0.030),
+    REPLAY_SET_POINT(2200, 0.02, 0.010, 2000.0, 4e5),
+    REPLAY_SET_POINT(2300, 0.06, 0.010, 2000.0, 4e5),
+    REPLAY_SET_POINT(2400, 0.12, 0.010, 2000.0, 4e5),
+    REPLAY_TOWARDS(DRIVE_COMMAND_VELOCITY, 3000, 0, 12.0, 2000.0, 4e5),
+    REPLAY_TOWARDS(DRIVE_COMMAND_VELOCITY, 3400, 0, -12.0, 2000.0, 4e5),
+    REPLAY_TOWARDS(DRIVE_COMMAND_RETARGET, 3800, 0.5, 15.0, 2000.0, 4e5),
+    REPLAY_TOWARDS(DRIVE_COMMAND_VELOCITY, 4400, 0, 10.0, 2000.0, 4e5),
+    REPLAY_PLAIN(DRIVE_COMMAND_STOP, 4600),
+};
 
-static inline struct drive_command replay_command(int k)
-{
-    const struct replay_command *from = &replay_commands[k];
-    struct drive_command command;
+#define REPLAY_COUNT(list) ((int)(sizeof(list) / sizeof(list)[0]))
+#define REPLAY_MOVES       replay_moves, REPLAY_COUNT(replay_moves)
+#define REPLAY_SLOW_MOVES  replay_slow_moves, REPLAY_COUNT(replay_slow_moves)
+#define REPLAY_REFERENCES  replay_references, REPLAY_COUNT(replay_references)
 
-    memset(&command, 0, sizeof command);
-    command.kind = from->kind;
-    command.at_period = from->at_period;
-    command.position_rad = from->position_rad;
-    command.duration_s = from->duration_s;
-    command.ramp_s = from->ramp_s;
-    command.jerk_s = from->jerk_s;
-    return command;
-}
+enum { REPLAY_GAINS = 2 };
+
+struct replay_gain {
+    const char *name; /* NULL: none */
+    double value;
+};
+
+struct replay_case {
+    const char *name;
+    enum position_law law;
+    enum drive_feedback feedback;
+    enum drive_estimator estimator;
+    const struct drive_command *commands;
+    int command_count;
+    double speed_limit_rad_s; /* 0: the drive's default */
+    struct replay_gain gain[REPLAY_GAINS];
+};
+
+#define REPLAY_NO_GAINS                                                                            \
+    {                                                                                              \
+        {NULL, 0},                                                                                 \
+        {                                                                                          \
+            NULL, 0                                                                                \
+        }                                                                                          \
+    }
+
+#define REPLAY_SENSORLESS(name, law, estimator, commands)                                          \
+    {                                                                                              \
+        name, law, DRIVE_FEEDBACK_SENSORLESS, estimator, commands, 0, REPLAY_NO_GAINS              \
+    }
+#define REPLAY_ENCODER(name, law)                                                                  \
+    {                                                                                              \
+        name, law, DRIVE_FEEDBACK_ENCODER, DRIVE_ESTIMATOR_INVARIANT_EKF, REPLAY_MOVES, 0,         \
+            REPLAY_NO_GAINS                                                                        \
+    }
+
+static const struct replay_case replay_cases[] = {
+    REPLAY_SENSORLESS("default-sensorless", POSITION_LAW_STATE_FEEDBACK,
+                      DRIVE_ESTIMATOR_INVARIANT_EKF, REPLAY_MOVES),
+    REPLAY_SENSORLESS("references", POSITION_LAW_STATE_FEEDBACK, DRIVE_ESTIMATOR_INVARIANT_EKF,
+                      REPLAY_REFERENCES),
+    REPLAY_SENSORLESS("pid", POSITION_LAW_PID, DRIVE_ESTIMATOR_INVARIANT_EKF, REPLAY_MOVES),
+    REPLAY_SENSORLESS("steady-state-ekf", POSITION_LAW_STATE_FEEDBACK,
+                      DRIVE_ESTIMATOR_STEADY_STATE_EKF, REPLAY_MOVES),
+    REPLAY_ENCODER("feedback-linearisation", POSITION_LAW_FEEDBACK_LINEARISATION),
+    REPLAY_ENCODER("microstepping", POSITION_LAW_MICROSTEPPING),
+    /* What the law accepts with this winding: 4 R/(N L). */
+    {"stmms", POSITION_LAW_STMMS, DRIVE_FEEDBACK_ENCODER, DRIVE_ESTIMATOR_INVARIANT_EKF,
+     REPLAY_SLOW_MOVES, 32.8, REPLAY_NO_GAINS},
+    REPLAY_ENCODER("stmms-plus", POSITION_LAW_STMMS_PLUS),
+    REPLAY_ENCODER("foc", POSITION_LAW_FOC),
+    REPLAY_ENCODER("csmc", POSITION_LAW_CSMC),
+    REPLAY_ENCODER("csmc-equivalent", POSITION_LAW_CSMC_EQUIVALENT),
+    {"csmc-servo",
+     POSITION_LAW_CSMC_SERVO,
+     DRIVE_FEEDBACK_ENCODER,
+     DRIVE_ESTIMATOR_INVARIANT_EKF,
+     REPLAY_MOVES,
+     0,
+     {{"servo_frequency_rad_s", 31.4159}, {NULL, 0}}},
+    /* With the whole supply its chatter, 2.7 A a period, trips the overcurrent protection. */
+    {"smc",
+     POSITION_LAW_SMC,
+     DRIVE_FEEDBACK_ENCODER,
+     DRIVE_ESTIMATOR_INVARIANT_EKF,
+     REPLAY_MOVES,
+     0,
+     {{"M_V", 12.0}, {"M_d_V", 6.0}}},
+};
+
+enum { REPLAY_CASES = sizeof replay_cases / sizeof replay_cases[0] };
 
 static inline const struct replay_case *replay_case_named(const char *name)
 {
@@ -95,6 +176,18 @@ static inline const struct replay_case *replay_case_named(const char *name)
         if (strcmp(replay_cases[k].name, name) == 0)
             return &replay_cases[k];
     return NULL;
+}
+
+/* Gives the law a gain by its name. */
+static inline void replay_set_gain(struct drive_settings *settings, const struct replay_gain *gain)
+{
+    const char *name;
+
+    if (gain->name == NULL)
+        return;
+    for (int k = 0; (name = REPLAY_IMAGE.law_gain(settings->law, (size_t)k)) != NULL; ++k)
+        if (strcmp(name, gain->name) == 0)
+            settings->law_gains[k] = gain->value;
 }
 
 /* Motor: bendjedia-2012. */
@@ -107,6 +200,10 @@ static inline void replay_settings(const struct replay_case *which, struct drive
     drive_settings_select_law(settings, which->law);
     settings->estimator = which->estimator;
     settings->hold_on_enable_s = 0.030;
+    if (which->speed_limit_rad_s > 0.0)
+        settings->speed_limit_rad_s = which->speed_limit_rad_s;
+    for (int k = 0; k < (int)REPLAY_GAINS; ++k)
+        replay_set_gain(settings, &which->gain[k]);
 }
 
 #endif

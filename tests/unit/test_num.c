@@ -392,6 +392,20 @@ static void test_a_square_root_keeps_16_bits(void)
     TEST_ASSERT_TRUE(num_sqrt(NUM(-1.0)) == NUM(0.0));
 }
 
+#if STEADYSTEP_NUM == NUM_FIXED
+static void test_a_square_root_is_exact_to_the_last_of_its_16_bits(void)
+{
+    random_state = 9;
+    for (int i = 0; i < 100000; i++) {
+        const num_t x = (num_t)((random_bits() >> 1) | (1u << 30)); /* 16...32: 2^-13 to a bit */
+        const uint64_t root = (uint64_t)(num_sqrt(x) >> 13);
+
+        TEST_ASSERT_EQUAL_INT32(0, num_sqrt(x) & 0x1fff);
+        TEST_ASSERT_TRUE(root * root <= (uint64_t)x && (uint64_t)x < (root + 1u) * (root + 1u));
+    }
+}
+#endif
+
 static void test_clamps_and_magnitudes(void)
 {
     TEST_ASSERT_TRUE(num_clamp(NUM(1.0), NUM(-2.0), NUM(3.0)) == NUM(1.0));
@@ -481,6 +495,9 @@ int main(void)
     RUN_TEST(test_a_converter_code_becomes_a_number);
     RUN_TEST(test_a_number_becomes_the_nearest_count);
     RUN_TEST(test_a_square_root_keeps_16_bits);
+#if STEADYSTEP_NUM == NUM_FIXED
+    RUN_TEST(test_a_square_root_is_exact_to_the_last_of_its_16_bits);
+#endif
     RUN_TEST(test_clamps_and_magnitudes);
     RUN_TEST(test_a_limit_is_the_same_on_either_side);
     RUN_TEST(test_numbers_survive_the_way_to_double_and_back);

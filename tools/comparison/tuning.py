@@ -35,8 +35,8 @@ NOT_TUNED = {
 # Numbers of one law alone, with their ranges.
 MORE = {
     "feedback-linearisation": {"drive.law_gains.damping": (0.4, 1.0)},
-    "csmc": {"drive.law_gains.k0_q": (10, 1000)},
-    "csmc-equivalent": {"drive.law_gains.k0_q": (10, 1000)},
+    "csmc": {"drive.law_gains.k0_q": (10, 2000), "drive.law_gains.k0_d": (10, 1000)},
+    "csmc-equivalent": {"drive.law_gains.k0_q": (10, 2000), "drive.law_gains.k0_d": (10, 1000)},
 }
 
 
