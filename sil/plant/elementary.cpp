@@ -47,7 +47,8 @@ double falling_exponential(double x)
     constexpr double ln_2_low = 1.90821492927058770002e-10;
     const double least = -700.0;
     const double bounded = x > least ? x : least;
-    const double n = nearest_whole(bounded * 1.44269504088896340736);
+    const bool small = x > -0.34; /* n = 0, without the conversions that find it */
+    const double n = small ? 0.0 : nearest_whole(bounded * 1.44269504088896340736);
     const double r = (bounded - n * ln_2_high) - n * ln_2_low;
 
     /* Taylor series of the even and the odd part in z = r^2, side by side. */
@@ -59,6 +60,9 @@ double falling_exponential(double x)
     sum = sum * z + Phases{1.0 / 24.0, 1.0 / 120.0};
     sum = sum * z + Phases{1.0 / 2.0, 1.0 / 6.0};
     const double exponential = 1.0 + (r + z * (sum[0] + r * sum[1]));
+    if (small) {
+        return exponential;
+    }
     const std::uint64_t bits = static_cast<std::uint64_t>(1023 + static_cast<std::int64_t>(n))
                                << 52;
     double power = 0.0;

@@ -15,14 +15,18 @@ constexpr double pi = 3.14159265358979323846;
 /* (cos, sin) of an angle in rad, |angle| <= 2 pi; error below 4e-16. */
 Phases unit_vector(double angle_rad);
 
-/* A vector turned by an angle in rad; error below (angle / 4)^8. */
-inline Phases turned_by_little(Phases vector, double angle_rad)
+/* A vector turned by an angle in rad; error below (angle / 4)^8, up to order 2 (angle / 2.9)^6. */
+template <int order> inline Phases turned_by_little(Phases vector, double angle_rad)
 {
     const double z = angle_rad * angle_rad;
-    const double cosine =
-        1.0 - z * (1.0 / 2.0 - z * (1.0 / 24.0 - z * (1.0 / 720.0 - z * (1.0 / 40320.0))));
-    const double sine =
-        angle_rad * (1.0 - z * (1.0 / 6.0 - z * (1.0 / 120.0 - z * (1.0 / 5040.0))));
+    double cosine = 1.0 / 24.0;
+    double sine = 1.0 / 120.0;
+    if constexpr (order > 2) {
+        cosine -= z * (1.0 / 720.0 - z * (1.0 / 40320.0));
+        sine -= z * (1.0 / 5040.0);
+    }
+    cosine = 1.0 - z * (1.0 / 2.0 - z * cosine);
+    sine = angle_rad * (1.0 - z * (1.0 / 6.0 - z * sine));
     return cosine * vector + sine * quarter_turn(vector);
 }
 

@@ -158,7 +158,7 @@ static const struct replay_case replay_cases[] = {
      REPLAY_MOVES,
      0,
      {{"servo_frequency_rad_s", 31.4159}, {NULL, 0}}},
-    /* With the whole supply its chatter, 2.7 A a period, trips the overcurrent protection. */
+    /* With the supply on the d axis nothing would be left for the torque (smc.h). */
     {"smc",
      POSITION_LAW_SMC,
      DRIVE_FEEDBACK_ENCODER,

@@ -163,11 +163,20 @@ void test_the_exponential_and_the_small_turn_are_those_of_the_library()
     for (double x = -700.0; x <= 0.0; x += 0.37) {
         TEST_ASSERT_DOUBLE_WITHIN(4e-15 * std::exp(x), std::exp(x), plant::falling_exponential(x));
     }
+    for (double x = -0.7; x <= 0.0; x += 0.01) {
+        TEST_ASSERT_DOUBLE_WITHIN(4e-15, std::exp(x), plant::falling_exponential(x));
+    }
+    const plant::Phases before = {0.6, 0.8};
+    const double before_rad = std::atan2(0.8, 0.6);
     for (int n = -20; n <= 20; n++) {
-        const plant::Phases turned = plant::turned_by_little(plant::Phases{0.6, 0.8}, 0.01 * n);
-        const double angle = std::atan2(0.8, 0.6) + 0.01 * n;
+        const plant::Phases turned = plant::turned_by_little<3>(before, 0.01 * n);
+        const double angle = before_rad + 0.01 * n;
         TEST_ASSERT_DOUBLE_WITHIN(1e-11, std::cos(angle), turned[0]);
         TEST_ASSERT_DOUBLE_WITHIN(1e-11, std::sin(angle), turned[1]);
+        const plant::Phases turned_less = plant::turned_by_little<2>(before, 0.0003 * n);
+        const double lesser_angle = before_rad + 0.0003 * n;
+        TEST_ASSERT_DOUBLE_WITHIN(1e-15, std::cos(lesser_angle), turned_less[0]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-15, std::sin(lesser_angle), turned_less[1]);
     }
 }
 
