@@ -62,16 +62,12 @@ static inline bool position_law_design(enum position_law law, union position_law
     return design_refuse(error, "no such position law");
 }
 
-/* At rest: all zero. */
-static inline void position_law_reset(enum position_law law, union position_law_state *state)
+/* At rest: all zero. In one piece: the interrupt copies nothing of a size that varies. */
+static inline void position_law_reset(union position_law_state *state)
 {
-#define POSITION_LAW_RESET(constant, function, text)                                               \
-    if (law == POSITION_LAW_##constant) {                                                          \
-        static const struct function##_law_state at_rest;                                          \
-        state->function = at_rest;                                                                 \
-    }
-    POSITION_LAWS(POSITION_LAW_RESET)
-#undef POSITION_LAW_RESET
+    static const union position_law_state at_rest;
+
+    *state = at_rest;
 }
 
 /* One period of a current law: the q current, within +-current_limit. */

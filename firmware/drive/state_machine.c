@@ -31,7 +31,7 @@ static void reset_blocks(struct drive *drive)
     estimator_reset(&drive->estimator, &params->estimator, &start);
     reference_reset(&drive->reference, start.position);
     standstill_hold_reset(&drive->hold);
-    position_law_reset(params->position_law, &drive->law);
+    position_law_reset(&drive->law);
     detent_compensation_reset(&drive->detent);
     current_control_reset(&drive->current_control);
     actuation_reset(&drive->actuation);

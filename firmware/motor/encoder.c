@@ -21,9 +21,10 @@ void encoder_set(struct encoder *encoder, struct position position, int32_t coun
 struct position encoder_position(const struct encoder_params *params, struct position zero,
                                  int32_t count)
 {
-    const int64_t high = (int64_t)(params->angle_per_count >> 32);
-    const int64_t low = (int64_t)(params->angle_per_count & 0xffffffffu);
-    const int64_t travel = count * high + ((count * low) >> 32) + (high >> 1);
+    const uint32_t high = (uint32_t)(params->angle_per_count >> 32);
+    const uint32_t low = (uint32_t)params->angle_per_count;
+    const int64_t travel =
+        encoder_product(count, high) + (encoder_product(count, low) >> 32) + (int64_t)(high >> 1);
     const int64_t position = travel + zero.fraction;
 
     return (struct position){zero.turns + (int32_t)(position >> 32), (angle_t)position};

@@ -28,27 +28,33 @@ void encoder_set(struct encoder *encoder, struct position position, int32_t coun
 struct position encoder_position(const struct encoder_params *params, struct position zero,
                                  int32_t count);
 
-/* counts params->angle_per_count, modulo 2^64; without the library's product on a Cortex-M0+. */
-static inline uint64_t encoder_travel(const struct encoder_params *params, int32_t counts)
+/* a b, without the library's product on a Cortex-M0+. */
+static inline int64_t encoder_product(int32_t a, uint32_t b)
 {
 #if defined(__ARM_ARCH_6M__)
-    const uint32_t a = (uint32_t)counts;
-    const uint32_t low = (uint32_t)params->angle_per_count;
-    const uint32_t high = (uint32_t)(params->angle_per_count >> 32);
-    const uint32_t a0 = a & 0xffffu;
-    const uint32_t a1 = a >> 16;
-    const uint32_t b0 = low & 0xffffu;
-    const uint32_t b1 = low >> 16;
+    const uint32_t a0 = (uint32_t)a & 0xffffu;
+    const uint32_t a1 = (uint32_t)a >> 16;
+    const uint32_t b0 = b & 0xffffu;
+    const uint32_t b1 = b >> 16;
     const uint32_t first = a0 * b0;
     const uint32_t second = a1 * b0 + (first >> 16); /* cannot carry, nor can the next */
     const uint32_t third = a0 * b1 + (second & 0xffffu);
-    const uint32_t upper = a1 * b1 + (second >> 16) + (third >> 16) + a * high;
+    const uint32_t upper = a1 * b1 + (second >> 16) + (third >> 16);
 
-    return ((uint64_t)(counts < 0 ? upper - low : upper) << 32) |
-           ((third << 16) | (first & 0xffffu));
+    return (int64_t)(((uint64_t)(a < 0 ? upper - b : upper) << 32) |
+                     ((third << 16) | (first & 0xffffu)));
 #else
-    return (uint64_t)(int64_t)counts * params->angle_per_count;
+    return (int64_t)a * b;
 #endif
+}
+
+/* counts params->angle_per_count, modulo 2^64. */
+static inline uint64_t encoder_travel(const struct encoder_params *params, int32_t counts)
+{
+    const uint32_t high = (uint32_t)(params->angle_per_count >> 32);
+
+    return (uint64_t)encoder_product(counts, (uint32_t)params->angle_per_count) +
+           ((uint64_t)((uint32_t)counts * high) << 32);
 }
 
 /* One period on; less than half an electrical turn. */

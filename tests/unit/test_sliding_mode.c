@@ -100,7 +100,7 @@ void tearDown(void)
 static void design(void)
 {
     TEST_ASSERT_TRUE_MESSAGE(position_law_design(law, &params, &task, error), error);
-    position_law_reset(law, &state);
+    position_law_reset(&state);
 }
 
 static void design_as_published(enum position_law which)
@@ -362,7 +362,7 @@ static void test_the_layers_follow_from_the_current_bandwidth(void)
     asked.i_d_A = 1e-3;
     const double volts_per_A = -step().d / asked.i_d_A;
     TEST_ASSERT_DOUBLE_WITHIN(0.01 * 70.0, 2000.0 * motor.inductance_H, volts_per_A);
-    position_law_reset(law, &state);
+    position_law_reset(&state);
     asked.i_d_A = 0.0;
     asked.i_q_A = 1e-3;
     TEST_ASSERT_DOUBLE_WITHIN(0.01 * 70.0, 2000.0 * motor.inductance_H, -step().q / asked.i_q_A);

@@ -81,7 +81,7 @@ static void design(enum position_law which)
 {
     law = which;
     TEST_ASSERT_TRUE_MESSAGE(position_law_design(law, &params, &task, error), error);
-    position_law_reset(law, &state);
+    position_law_reset(&state);
 }
 
 static void design_as_published(enum position_law which)
