@@ -64,9 +64,9 @@ struct hal_facts {
     double phase_voltage_V_per_code;
     bool has_phase_voltages;
     uint32_t encoder_counts_per_turn; /* 0: no encoder */
-    uint32_t actuation_delay_periods; /* 1 as in the diagram; 0 only in a simulation: the duties of
-                                         S(k) act S(k)...S(k+1) */
-    double bridge_resistance_ohm;     /* both conducting switches in series with a phase */
+    bool acts_at_once; /* only in a simulation: the duties of S(k) act S(k)...S(k+1), without the
+                          period of delay of the diagram */
+    double bridge_resistance_ohm; /* both conducting switches in series with a phase */
     uint32_t cycle_counter_Hz;
     uint32_t parameter_page_bytes; /* unit of erase of the parameter store */
     uint32_t parameter_word_bytes; /* unit of programming */

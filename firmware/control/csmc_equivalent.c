@@ -96,8 +96,8 @@ struct voltage_demand csmc_equivalent_law_step(struct csmc_equivalent_law_state 
     /* F^ in volts. Rotational voltages, and what moves the surface at constant voltage. */
     const num_t speed = input->motion.speed;
     const num_t reactance = num_mul_coef(speed, params->reactance);
-    const num_t rotation_d = num_mul(i.q, reactance);
-    const num_t rotation_q = num_mul(i.d, reactance);
+    const num_t rotation_d = num_mul(reactance, i.q);
+    const num_t rotation_q = num_mul(reactance, i.d);
     const num_t acceleration = e.acceleration + input->motion.reference_acceleration;
     const num_t sliding =
         num_mul_coef(num_headroom(e.speed, params->speed_limit), params->voltage_of_speed) +
@@ -112,8 +112,8 @@ struct voltage_demand csmc_equivalent_law_step(struct csmc_equivalent_law_state 
                          num_mul_coef(num_abs(sliding - rotation_q), params->inductance_tolerance) +
                          params->least_q;
     const struct dq wanted = {
-        .d = num_mul(i.d, input->resistance) - rotation_d - num_mul(beta_d, level_d),
-        .q = num_mul(i.q, input->resistance) + rotation_q + speed - sliding +
+        .d = num_mul(input->resistance, i.d) - rotation_d - num_mul(beta_d, level_d),
+        .q = num_mul(input->resistance, i.q) + rotation_q + speed - sliding +
              num_mul_coef(input->reference_jerk, params->voltage_of_jerk) -
              num_mul(beta_q, level_q),
     };

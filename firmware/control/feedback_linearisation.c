@@ -26,8 +26,8 @@ static const double term_limit = 8.0;
 /* Of the current limit, for braking from a large error; the rest is for load and control. */
 static const double braking_share = 0.6;
 
-/* Electrical turns; a factor of num_mul. */
-#define BRAKING_ERROR_MAX 1.9
+/* Electrical turns; times twice the largest position error it stays inside the number range. */
+#define BRAKING_ERROR_MAX 1.0
 
 static double smaller(double a, double b)
 {
@@ -156,11 +156,11 @@ static struct dq winding_voltage(const struct feedback_linearisation_law_params 
     const num_t reactance = num_mul_coef(turning, params->reactance);
     const num_t along = NUM(1.0) - droop - droop - droop;
     const struct dq drop = {
-        num_mul(mean.d, input->resistance) + num_mul_coef(change.d, params->stiffness),
-        num_mul(mean.q, input->resistance) + num_mul_coef(change.q, params->stiffness)};
+        num_mul(input->resistance, mean.d) + num_mul_coef(change.d, params->stiffness),
+        num_mul(input->resistance, mean.q) + num_mul_coef(change.q, params->stiffness)};
 
-    return (struct dq){num_mul(drop.d, along) - num_mul(mean.q, reactance),
-                       num_mul(drop.q, along) + num_mul(mean.d, reactance) + turning};
+    return (struct dq){num_mul(drop.d, along) - num_mul(reactance, mean.q),
+                       num_mul(drop.q, along) + num_mul(reactance, mean.d) + turning};
 }
 
 struct voltage_demand

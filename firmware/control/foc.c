@@ -52,8 +52,8 @@ struct voltage_demand foc_law_step(struct foc_law_state *state, const struct foc
     const struct dq inductive =
         inductive_voltage(&params->inductive, reference, reference.q - state->current, speed);
     const struct dq wanted = {
-        num_mul(current.d, input->resistance) + inductive.d + track(params, reference.d, current.d),
-        num_mul(current.q, input->resistance) + speed + inductive.q +
+        num_mul(input->resistance, current.d) + inductive.d + track(params, reference.d, current.d),
+        num_mul(input->resistance, current.q) + speed + inductive.q +
             track(params, reference.q, current.q),
     };
     const struct dq voltage = limit_voltage(wanted, input->voltage_limit);

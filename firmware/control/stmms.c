@@ -21,8 +21,8 @@ struct voltage_demand stmms_law_step(struct stmms_law_state *state,
                                      const struct voltage_law_input *input)
 {
     const num_t current = torque_demand_step(&state->demand, &params->demand, &input->motion);
-    const struct dq wanted = {num_mul(input->current_d_reference, input->resistance),
-                              num_mul(current, input->resistance) + input->motion.speed};
+    const struct dq wanted = {num_mul(input->resistance, input->current_d_reference),
+                              num_mul(input->resistance, current) + input->motion.speed};
     const struct dq voltage = limit_voltage(wanted, input->voltage_limit);
 
     state->demand.shortfall = wanted.q - voltage.q;

@@ -28,8 +28,8 @@ struct voltage_demand stmms_plus_law_step(struct stmms_plus_law_state *state,
     const struct dq reference = {input->current_d_reference, current};
     const struct dq inductive =
         inductive_voltage(&params->inductive, reference, current - state->current, speed);
-    const struct dq wanted = {num_mul(reference.d, input->resistance) + inductive.d,
-                              num_mul(current, input->resistance) + speed + inductive.q};
+    const struct dq wanted = {num_mul(input->resistance, reference.d) + inductive.d,
+                              num_mul(input->resistance, current) + speed + inductive.q};
     const struct dq voltage = limit_voltage(wanted, input->voltage_limit);
 
     state->current = current;

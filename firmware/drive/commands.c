@@ -21,16 +21,21 @@ static void update_planned_end(struct drive *drive)
 
     if (queue->read == queue->written && !reference_busy(&drive->reference)) {
         drive->planned_end = drive->reference.next.position;
-        if (!queue->stop.posted) {
+        if (!queue->stop.posted && (drive->end_known != PLANNED_END_AFTER_ENABLING ||
+                                    drive->state == DRIVE_OPERATION_ENABLED)) {
             drive->end_known = PLANNED_END_KNOWN;
         }
     }
 }
 
-/* Nothing that moves is taken between a stop and rest. */
+/* Nothing that moves is taken between a stop and rest, nor before it is known where it starts. */
 static bool require_no_stop(struct drive *drive, char error[DRIVE_ERROR_TEXT])
 {
     update_planned_end(drive);
+    if (drive->end_known == PLANNED_END_AFTER_ENABLING) {
+        return design_refuse(error, "move refused: the drive is not ready and where it starts is "
+                                    "known only then");
+    }
     return drive->end_known != PLANNED_END_AFTER_STOP ||
            design_refuse(error, "move refused: the reference has not come to rest after the stop");
 }
@@ -149,7 +154,9 @@ bool drive_command(struct drive *drive, const struct drive_command *command,
     }
     if (command->kind == DRIVE_COMMAND_STOP) {
         command_queue_put_urgent(&drive->commands, &drive->commands.stop, command->at_period);
-        drive->end_known = PLANNED_END_AFTER_STOP;
+        if (drive->end_known != PLANNED_END_AFTER_ENABLING) {
+            drive->end_known = PLANNED_END_AFTER_STOP;
+        }
         return true;
     }
     if (command->kind == DRIVE_COMMAND_ENABLE) {
@@ -161,7 +168,8 @@ bool drive_command(struct drive *drive, const struct drive_command *command,
         }
         if (drive->state != DRIVE_OPERATION_ENABLED || drive->commands.disable.posted) {
             drive->planned_end = drive->params.initial_position;
-            drive->end_known = PLANNED_END_KNOWN;
+            drive->end_known =
+                drive->params.encoder_zero_known ? PLANNED_END_AFTER_ENABLING : PLANNED_END_KNOWN;
         }
     }
     if (queued_command_is_move(&queued) && !plan(drive, command, &queued.profile, error)) {

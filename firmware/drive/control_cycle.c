@@ -76,8 +76,8 @@ IN_PLACE struct dq wanted_current(struct drive *drive, const struct prediction *
 
     current.d = standstill_hold_step(&drive->hold, &params->hold);
     if (drive->hold.active) {
-        current.q = standstill_hold_torque_current(&params->hold, next->rotor.speed,
-                                                   next->rotor.load_torque);
+        current.q = standstill_hold_torque_current(
+            &params->hold, next->rotor.speed, drive->aligns ? NUM(0.0) : next->rotor.load_torque);
     } else {
         const struct position_law_input input = law_input(drive, next);
 
@@ -193,6 +193,19 @@ compensate_detent(struct drive *drive, const struct estimate *estimate, struct p
     next->rotor.load_torque = estimate->rotor.load_torque + drive->detent.torque;
 }
 
+/* Between hold and voltage law nothing of the past of the one that takes over is left. */
+IN_PLACE void hand_over(struct drive *drive, const struct estimate *estimate, bool held)
+{
+    standstill_hold_leave(&drive->hold, drive->reference.rest_periods);
+    if (drive->hold.active && !held) {
+        drive->current_control.integral.d = num_mul(estimate->winding.resistance, drive->current.d);
+        drive->current_control.integral.q = num_mul(estimate->winding.resistance, drive->current.q);
+    } else if (held && !drive->hold.active &&
+               position_law_gives_voltage(drive->params.position_law)) {
+        position_law_reset(&drive->law);
+    }
+}
+
 /*
  * The path of voltage laws, of the detent compensation and of what only a simulation has: no
  * delay, no loss compensation. Kept out of the interrupt's body, so that the registers and the
@@ -202,6 +215,7 @@ __attribute__((noinline)) static struct hal_outputs control_in_full(struct drive
                                                                     const struct estimate *estimate)
 {
     const struct drive_params *params = &drive->params;
+    const bool held = drive->hold.active;
     struct prediction next;
     struct phases voltage;
     struct hal_outputs duties;
@@ -212,7 +226,7 @@ __attribute__((noinline)) static struct hal_outputs control_in_full(struct drive
         predict(&next, drive, estimate);
     }
     expect_current(drive, estimate, &next);
-    if (params->detent_learning) {
+    if (params->detent_learning && !drive->aligns) {
         compensate_detent(drive, estimate, &next);
     }
     voltage = !drive->hold.active && position_law_gives_voltage(params->position_law)
@@ -225,7 +239,7 @@ __attribute__((noinline)) static struct hal_outputs control_in_full(struct drive
     if (params->immediate) {
         actuation_commit_past(&drive->actuation); /* measured at the next S(k) already */
     }
-    standstill_hold_leave(&drive->hold, drive->reference.rest_periods);
+    hand_over(drive, estimate, held);
     return duties;
 }
 

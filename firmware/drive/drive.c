@@ -115,7 +115,7 @@ static bool design_law(struct drive *drive, const struct drive_settings *setting
         .motor = &settings->motor,
         .base = &drive->base,
         .period_s = period_s,
-        .delay_periods = drive->board->facts->actuation_delay_periods,
+        .delay_periods = drive->board->facts->acts_at_once ? 0u : 1u,
         .bandwidth_rad_s = settings->law_bandwidth_rad_s,
         .current_bandwidth_rad_s = settings->current_bandwidth_rad_s,
         .speed_limit_rad_s = settings->speed_limit_rad_s,
@@ -205,7 +205,7 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
     params->protection = protection_design(&drive->base, facts, &drive->settings);
     params->calibrate_offsets = settings->calibrate_offsets;
     params->feed_forward = settings->feed_forward;
-    params->immediate = facts->actuation_delay_periods == 0u;
+    params->immediate = facts->acts_at_once;
     params->hold_at_rest = settings->hold_at_rest;
     params->bridge_loss_compensation = settings->bridge_loss_compensation;
     params->in_full = position_law_gives_voltage(settings->law) || settings->detent_learning ||
@@ -226,6 +226,6 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
     drive->planned_end = params->initial_position;
     planner_init(drive);
     return design_estimator(drive, &drive->settings, period_s, error) &&
-           design_law(drive, settings, period_s, error) &&
+           design_law(drive, &drive->settings, period_s, error) &&
            design_hold(drive, settings, period_s, error);
 }

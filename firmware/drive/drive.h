@@ -1,5 +1,5 @@
 /*
- * One sensorless position drive. The application owns the instance; a host may hold as many as it
+ * One position drive. The application owns the instance; a host may hold as many as it
  * likes. drive_control_cycle is the control interrupt, everything else is start-up or background.
  */
 #ifndef STEADYSTEP_DRIVE_H
@@ -68,6 +68,8 @@ struct drive {
     uint32_t period;       /* index of the present or last control interrupt; 0 is the first */
     uint32_t state_since;  /* period in which the state was entered */
     int32_t encoder_count; /* of this S(k) */
+    bool aligns;           /* draws the rotor to where it is told to be: what the encoder then knows
+                              of the frame, and with it load and detent, is worth nothing */
 
     struct phases demanded_voltage;  /* of the last S(k) */
     struct phases predicted_current; /* for this S(k), had what was demanded acted */

@@ -92,7 +92,8 @@ struct drive_settings {
                                   electrical turn per period */
 
     /* encoder */
-    double observer_bandwidth_rad_s; /* triple pole of the model observer; 1000 */
+    double observer_bandwidth_rad_s; /* triple pole of the model observer; 1000, of the default law
+                                        with an encoder 1400 */
     double high_gain_epsilon_s;      /* of the high-gain observer; 1e-3 */
     double encoder_zero_rad;         /* rotor angle where count 0 begins; 0 */
     double initial_load_torque_Nm;   /* load that the model observer begins with; 0 */
@@ -137,7 +138,8 @@ enum drive_command_kind {
 /*
  * A command, addressed to a period: it acts in the control interrupt whose index is at_period
  * (0 is the first), or in the next one if that has passed. Moves are absolute and start from the
- * end of the last posted move.
+ * end of the last posted move. A drive whose encoder's zero is known starts where its rotor is: it
+ * refuses all motion between the posting of an enable and operation.
  *
  * Sine, set-points, velocity and retarget are planned by drive_background, DRIVE_LEAD_s ahead: they
  * act in the period they are addressed to if they are posted that much earlier, else that much
@@ -170,9 +172,11 @@ struct drive_command {
     double jerk_rad_s3;         /* largest, above 0 */
 };
 
-/* How far ahead of its begin a motion is planned; at least 3 periods. Doubled when the background
-   has been too late. */
-#define DRIVE_LEAD_s 1e-3
+/* How far ahead of its begin a motion is planned; at least 3 periods. Doubled each time the
+   background has been too late, up to DRIVE_LEAD_MAX_s, and back to DRIVE_LEAD_s once a plan has
+   been in time or the drive is enabled anew. */
+#define DRIVE_LEAD_s     1e-3
+#define DRIVE_LEAD_MAX_s 50e-3
 
 /* What a drive shows each period, valid after the control interrupt k: values at S(k). */
 struct drive_signals {

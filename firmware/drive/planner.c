@@ -6,10 +6,16 @@
 #include "firmware/drive/drive.h"
 
 #define LEAD_PERIODS_MIN 3u
-#define LEAD_PERIODS_MAX 1048576u /* 2^20 */
 
 /* What passes for standing still, electrical turns per period^n: 2^-40, far below an angle_t. */
 static const double still = 9.094947017729282e-13;
+
+static uint32_t lead_periods(const struct drive *drive, double lead_s)
+{
+    const double lead = lead_s / drive->board->facts->control_period_s + 0.5;
+
+    return (uint32_t)lead > LEAD_PERIODS_MIN ? (uint32_t)lead : LEAD_PERIODS_MIN;
+}
 
 static uint32_t period_now(const struct drive *drive)
 {
@@ -62,6 +68,9 @@ void planner_follow(struct drive *drive)
         p->motion = PLANNER_IDLE;
         p->set_points_open = false;
         p->stop_due = true;
+        if (drive->reference.phase != REFERENCE_PLANNED) { /* a reset */
+            p->lead_periods = lead_periods(drive, DRIVE_LEAD_s);
+        }
     }
     if (p->set_points_open && p->motion != PLANNER_SET_POINTS && p->offered == NULL &&
         (int32_t)(queue->read - p->set_points_command) > 0) {
@@ -88,11 +97,14 @@ static void settle_offer(struct drive *drive)
         p->last = p->offered;
         p->motion = p->offered_motion;
         p->stop_due = p->stop_due && !p->offered_is_stop;
+        p->lead_periods = lead_periods(drive, DRIVE_LEAD_s);
     } else {
         const bool wanted = p->offered_is_stop || queue->take_over.command == queue->read;
+        const uint32_t longest = lead_periods(drive, DRIVE_LEAD_MAX_s);
 
-        if (wanted && p->lead_periods < LEAD_PERIODS_MAX) {
+        if (wanted) {
             p->lead_periods *= 2u;
+            p->lead_periods = p->lead_periods < longest ? p->lead_periods : longest;
         }
         if (p->offered_motion == PLANNER_SET_POINTS) {
             set_points_rewind(&p->set_points, motion_position(&p->offered->from));
@@ -315,9 +327,6 @@ void drive_background(struct drive *drive)
 
 void planner_init(struct drive *drive)
 {
-    const double lead = DRIVE_LEAD_s / drive->board->facts->control_period_s + 0.5;
-
     drive->planner.epoch = drive->reference.epoch;
-    drive->planner.lead_periods =
-        (uint32_t)lead > LEAD_PERIODS_MIN ? (uint32_t)lead : LEAD_PERIODS_MIN;
+    drive->planner.lead_periods = lead_periods(drive, DRIVE_LEAD_s);
 }

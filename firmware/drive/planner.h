@@ -21,8 +21,9 @@
 /* Whether it is known where the next move starts. */
 enum planned_end {
     PLANNED_END_KNOWN,
-    PLANNED_END_AFTER_STOP,  /* where the reference comes to rest after a stop */
-    PLANNED_END_AFTER_MOTION /* likewise after sine, set-points or velocity */
+    PLANNED_END_AFTER_STOP,     /* where the reference comes to rest after a stop */
+    PLANNED_END_AFTER_MOTION,   /* likewise after sine, set-points or velocity */
+    PLANNED_END_AFTER_ENABLING, /* where the encoder shows the rotor when the drive is ready */
 };
 
 /* What the plan in force belongs to. */
@@ -42,7 +43,8 @@ struct planner {
     bool offered_is_stop;
     bool stop_due; /* a stop has come: the plan in force has yet to be brought to rest */
     uint32_t epoch;
-    uint32_t lead_periods;
+    uint32_t lead_periods;       /* DRIVE_LEAD_s; doubled by each offer that came too late, up to
+                                    DRIVE_LEAD_MAX_s, until one is accepted or a reset */
     struct motion_limits limits; /* of the motion in force */
     struct sine sine;
     struct set_points set_points;

@@ -40,11 +40,44 @@ static void reset_blocks(struct drive *drive)
     drive->predicted_frame = (struct sincos){UNIT(1.0), UNIT(0.0)};
 }
 
+/* The rotor has been drawn into the d axis: where it is now is where it was told to be. */
+static void end_aligning(struct drive *drive)
+{
+    const struct drive_params *params = &drive->params;
+
+    if (drive->aligns) {
+        estimator_place(&drive->estimator, &params->estimator, drive->reference.next.position);
+    }
+    drive->aligns = false;
+    drive->hold.active = params->hold_at_rest;
+    enter(drive, DRIVE_OPERATION_ENABLED);
+}
+
+/*
+ * Opposite the axis that draws it a rotor feels no torque. So one that may stand anywhere is drawn
+ * a quarter turn beside its place first, and from there home.
+ */
+#define QUARTER_TURN (1u << 30)
+
+static void align(struct drive *drive)
+{
+    const uint32_t periods = drive->period - drive->state_since;
+
+    if (periods > drive->params.hold_on_enable_periods) {
+        end_aligning(drive);
+    } else if (drive->aligns && periods == drive->params.hold_on_enable_periods / 2u) {
+        standstill_hold_enter(&drive->hold, drive->reference.next.position.fraction);
+    }
+}
+
 static void power_up(struct drive *drive)
 {
     reset_blocks(drive);
     if (drive->params.hold_on_enable_periods > 0u) {
-        standstill_hold_enter(&drive->hold, drive->reference.next.position.fraction);
+        drive->aligns =
+            estimator_has_encoder(&drive->params.estimator) && !drive->params.encoder_zero_known;
+        standstill_hold_enter(&drive->hold, drive->reference.next.position.fraction +
+                                                (drive->aligns ? QUARTER_TURN : 0u));
         enter(drive, DRIVE_ALIGNING);
     } else {
         enter(drive, DRIVE_OPERATION_ENABLED);
@@ -61,20 +94,9 @@ static void start_enabling(struct drive *drive)
     }
 }
 
-/* The rotor has been drawn into the d axis: where it is now is where it was told to be. */
-static void end_aligning(struct drive *drive)
-{
-    const struct drive_params *params = &drive->params;
-
-    if (!params->encoder_zero_known) {
-        estimator_place(&drive->estimator, &params->estimator, drive->reference.next.position);
-    }
-    drive->hold.active = params->hold_at_rest;
-    enter(drive, DRIVE_OPERATION_ENABLED);
-}
-
 static void disable(struct drive *drive)
 {
+    drive->aligns = false;
     drive->fault = DRIVE_FAULT_NONE;
     enter(drive, DRIVE_SWITCH_ON_DISABLED);
 }
@@ -179,9 +201,8 @@ bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
     }
     if (drive->state == DRIVE_CALIBRATING_OFFSETS) {
         calibrate_offsets(drive, samples);
-    } else if (drive->state == DRIVE_ALIGNING &&
-               drive->period - drive->state_since > drive->params.hold_on_enable_periods) {
-        end_aligning(drive);
+    } else if (drive->state == DRIVE_ALIGNING) {
+        align(drive);
     }
     if (!state_machine_powered(drive)) {
         return false;

@@ -67,10 +67,14 @@ void encoder_observer_reset(struct encoder_observer *observer,
     observer->known_torque = NUM(0.0);
 }
 
-void encoder_observer_place(struct encoder_observer *observer, struct position position)
+void encoder_observer_place(struct encoder_observer *observer,
+                            const struct encoder_observer_params *params, struct position position)
 {
     encoder_set(&observer->encoder, position, observer->encoder.count);
     observer->estimate.rotor.position = position;
+    observer->estimate.rotor.speed = NUM(0.0);
+    observer->estimate.rotor.load_torque = NUM(0.0);
+    estimate_look_ahead(&observer->estimate, &params->model);
 }
 
 static void adapt_resistance(struct estimate *x, const struct encoder_observer_params *params,

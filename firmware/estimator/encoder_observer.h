@@ -56,8 +56,9 @@ void encoder_observer_reset(struct encoder_observer *observer,
                             const struct encoder_observer_params *params, struct position position,
                             num_t load_torque, num_t resistance, int32_t count);
 
-/* The rotor is where the encoder now is: at `position`. */
-void encoder_observer_place(struct encoder_observer *observer, struct position position);
+/* The rotor rests where the encoder now is: at `position`. Forgets the load. */
+void encoder_observer_place(struct encoder_observer *observer,
+                            const struct encoder_observer_params *params, struct position position);
 
 /* From S(k-1) to S(k). Not inlined: its registers cost the sensorless interrupt nothing. */
 __attribute__((noinline)) void encoder_observer_step(struct encoder_observer *observer,

@@ -85,6 +85,12 @@ static inline void estimator_reset(struct estimator *estimator,
     }
 }
 
+static inline bool estimator_has_encoder(const struct estimator_params *params)
+{
+    return params->kind == ESTIMATOR_ENCODER_OBSERVER ||
+           params->kind == ESTIMATOR_HIGH_GAIN_OBSERVER;
+}
+
 /* Torque that the next prediction takes into account besides the load; the model observer's. */
 static inline void estimator_tell_torque(struct estimator *estimator,
                                          const struct estimator_params *params, num_t torque)
@@ -99,7 +105,7 @@ static inline void estimator_place(struct estimator *estimator,
                                    const struct estimator_params *params, struct position position)
 {
     if (params->kind == ESTIMATOR_ENCODER_OBSERVER) {
-        encoder_observer_place(&estimator->encoder, position);
+        encoder_observer_place(&estimator->encoder, &params->encoder, position);
     } else if (params->kind == ESTIMATOR_HIGH_GAIN_OBSERVER) {
         high_gain_observer_place(&estimator->high_gain, position);
     }

@@ -31,7 +31,10 @@ bool set_points_put(struct set_points *points, struct position position,
     const double step = turns_between(position, points->posted[0]);
     const double step_before = turns_between(points->posted[0], points->posted[1]);
 
-    if (set_points_waiting(points) == SET_POINTS_LENGTH - 1u) {
+    /* while the first plan may still be refused and made again, its set-point is needed */
+    const uint32_t oldest = points->read == 1u ? 0u : points->read;
+
+    if (points->written - oldest >= SET_POINTS_LENGTH - 1u) {
         return design_refuse(error, "set-point refused: 15 set-points are waiting already");
     }
     if (magnitude(step) > points->limits.speed * n) {

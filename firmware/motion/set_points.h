@@ -29,9 +29,9 @@ void set_points_begin(struct set_points *points, struct position start, uint32_t
                       const struct motion_limits *limits);
 
 /*
- * Appends a set-point. Refused, with the reason in `error`, if SET_POINTS_LENGTH - 1 wait, or if
- * speed or acceleration, as the differences of the last set-points give them, are beyond the
- * limits.
+ * Appends a set-point. Refused, with the reason in `error`, if SET_POINTS_LENGTH - 1 wait (the
+ * first counts until the second has been planned: set_points_rewind may bring it back), or if speed
+ * or acceleration, as the differences of the last set-points give them, are beyond the limits.
  */
 bool set_points_put(struct set_points *points, struct position position,
                     char error[DESIGN_ERROR_TEXT]);

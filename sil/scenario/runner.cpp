@@ -236,7 +236,9 @@ void post_commands(sil::Board &board, const Scenario &scenario)
         } catch (const std::invalid_argument &refusal) {
             throw InputError(event.location.text() + ": " + refusal.what());
         }
-        if (kind == DRIVE_COMMAND_SINE || kind == DRIVE_COMMAND_VELOCITY ||
+        const bool starts_at_encoder =
+            kind == DRIVE_COMMAND_ENABLE && scenario.drive.encoder_zero_known;
+        if (starts_at_encoder || kind == DRIVE_COMMAND_SINE || kind == DRIVE_COMMAND_VELOCITY ||
             kind == DRIVE_COMMAND_SET_POINT) {
             return; /* likewise */
         }

@@ -109,14 +109,14 @@ void write_header(const replay_case &which, const Recording &recording)
                 recording.drive_hash);
     std::printf("static const struct hal_facts replay_facts = {\n"
                 "    \"%s\", %a, %" PRIu32 "u, %a,\n    %a, %uu, %a, %a,\n    %s, %" PRIu32
-                "u, %" PRIu32 "u, %a, %" PRIu32 "u,\n"
+                "u, %s, %a, %" PRIu32 "u,\n"
                 "    %" PRIu32 "u, %" PRIu32 "u};\n",
                 facts.board_name, facts.control_period_s, facts.pwm_half_period_counts,
                 facts.dead_time_s, facts.current_A_per_code, unsigned{facts.current_zero_code},
                 facts.bus_V_per_code, facts.phase_voltage_V_per_code,
                 facts.has_phase_voltages ? "true" : "false", facts.encoder_counts_per_turn,
-                facts.actuation_delay_periods, facts.bridge_resistance_ohm, facts.cycle_counter_Hz,
-                facts.parameter_page_bytes, facts.parameter_word_bytes);
+                facts.acts_at_once ? "true" : "false", facts.bridge_resistance_ohm,
+                facts.cycle_counter_Hz, facts.parameter_page_bytes, facts.parameter_word_bytes);
     std::printf("static const struct replay_samples replay_input[REPLAY_PERIODS] = {\n");
     for (const replay_samples &s : recording.input)
         std::printf("{%d,%d,%d,%d,%d,%" PRId32 "},\n", s.current_a, s.current_b, s.bus_voltage,

@@ -37,7 +37,6 @@ static const struct hal_facts bench_facts = {
     .bus_V_per_code = 31.2 / 4096.0,
     .phase_voltage_V_per_code = 62.4 / 4096.0,
     .has_phase_voltages = true,
-    .actuation_delay_periods = 1,
     .cycle_counter_Hz = 170000000,
 };
 

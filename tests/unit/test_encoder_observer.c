@@ -153,7 +153,7 @@ static void test_the_load_that_is_told_is_where_it_begins(void)
 static void test_placing_moves_the_estimate_and_what_follows_from_it(void)
 {
     design(16384);
-    encoder_observer_place(&observer, position_from_rad(2.0, bench_params.rotor_teeth));
+    encoder_observer_place(&observer, &params, position_from_rad(2.0, bench_params.rotor_teeth));
     for (int k = 0; k < 50; k++) {
         run_period(0.0, 0.0);
     }

@@ -27,7 +27,7 @@ void setUp(void)
 {
     base = per_unit_base(&bench_params, PERIOD_S);
     for (int i = 0; i < LAW_GAINS_MAX; i++) {
-        given[i] = NAN;
+        given[i] = __builtin_nan("");
     }
     task = (struct position_law_task){
         .motor = &bench_params,

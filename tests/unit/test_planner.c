@@ -249,6 +249,46 @@ static void test_a_background_that_is_late_plans_further_ahead(void)
     nothing_jerked();
 }
 
+/* In motion: offers a plan whose period has gone by before it comes; the interrupt refuses it. */
+static void be_late(void)
+{
+    drive_background(&drive);
+    TEST_ASSERT_NOT_NULL(drive.planner.offered);
+    drive.commands.take_over.at_period = drive.period - 1u;
+    run(2);
+}
+
+static void test_the_lead_grows_to_50_ms_and_is_the_nominal_one_again_after_a_plan_in_time(void)
+{
+    must_post(velocity(2.0));
+    run(250);
+    must_post(velocity(-2.0));
+    for (int k = 0; k < 8; k++) {
+        be_late();
+    }
+    TEST_ASSERT_EQUAL_UINT32(500, drive.planner.lead_periods);
+    run(502);
+    TEST_ASSERT_EQUAL_UINT32(LEAD_PERIODS, drive.planner.lead_periods);
+    run(250);
+    the_speed_is(-2.0);
+    nothing_jerked();
+}
+
+static void test_a_drive_enabled_anew_plans_with_the_nominal_lead(void)
+{
+    must_post(velocity(2.0));
+    run(250);
+    must_post(velocity(-2.0));
+    be_late();
+    be_late();
+    TEST_ASSERT_EQUAL_UINT32(4u * LEAD_PERIODS, drive.planner.lead_periods);
+    must_post((struct drive_command){.kind = DRIVE_COMMAND_DISABLE});
+    run(3);
+    must_post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE});
+    run(3);
+    TEST_ASSERT_EQUAL_UINT32(LEAD_PERIODS, drive.planner.lead_periods);
+}
+
 /* ---- retarget ---- */
 
 static void test_a_new_target_in_mid_move_is_reached_without_a_kink(void)
@@ -381,6 +421,31 @@ static void test_too_many_set_points_are_refused(void)
     must_refuse(set_point(wanted(16)), "15 set-points are waiting already");
 }
 
+/* The set-point of a plan on offer is still needed: the plan is made anew if it is refused. */
+static void test_set_points_posted_while_the_first_plan_is_on_offer_overwrite_none(void)
+{
+    must_post(set_point(wanted(1)));
+    must_post(set_point(wanted(2)));
+    drive_background(&drive);
+    TEST_ASSERT_NOT_NULL(drive.planner.offered);
+    for (int i = 3; i <= 15; i++) {
+        must_post(set_point(wanted(i)));
+    }
+    must_refuse(set_point(wanted(16)), "15 set-points are waiting already");
+    command_queue_withdraw_take_over(&drive.commands); /* what a refusal leaves */
+    drive_background(&drive);
+    must_refuse(set_point(wanted(16)), "15 set-points are waiting already");
+    run(2u * LEAD_PERIODS + 2u); /* taken over: there is room again */
+    must_post(set_point(wanted(16)));
+    for (int i = 17; i <= 34; i++) {
+        run(10);
+        must_post(set_point(wanted(i)));
+    }
+    run_to_rest();
+    the_reference_is_at(0.02);
+    TEST_ASSERT_EQUAL_UINT32(0, signals().reference_underruns);
+}
+
 static void test_a_stop_ends_the_stream_of_set_points(void)
 {
     for (int i = 1; i <= 10; i++) {
@@ -429,6 +494,45 @@ static void test_what_is_out_of_range_is_refused_with_its_bound(void)
     TEST_ASSERT_FALSE(signals().reference_moving);
 }
 
+/* ---- a drive that starts where its encoder shows the rotor ---- */
+
+static void test_with_a_known_encoder_zero_motion_is_refused_until_the_drive_is_ready(void)
+{
+    static const char refusal[] = "the drive is not ready and where it starts is known only then";
+    const double rotor_rad = 6.283185307179586 * 1000.0 / 16384.0;
+    struct hal_facts facts = bench_facts;
+    struct hal hal = fake_hal;
+
+    facts.encoder_counts_per_turn = 16384;
+    hal.facts = &facts;
+    samples.encoder_count = 1000;
+    settings.feedback = DRIVE_FEEDBACK_ENCODER;
+    settings.encoder_zero_known = true;
+    settings.calibrate_offsets = true;
+    settings.hold_on_enable = true;
+    TEST_ASSERT_TRUE_MESSAGE(drive_init(&drive, &hal, &settings, error), error);
+    must_post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE});
+    must_refuse(move_to(0.1), refusal);
+    must_refuse(set_point(0.0), refusal);
+    run(1);
+    must_refuse(move_to(0.1), refusal);
+    stop_now();
+    must_refuse(move_to(0.1), refusal);
+    while (signals().state != DRIVE_OPERATION_ENABLED) {
+        must_refuse(retarget(0.1), refusal);
+        run(1);
+        TEST_ASSERT_TRUE(drive.period < 10000u);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, rotor_rad, signals().theta_ref_rad);
+    must_post(move_to(rotor_rad + 0.1));
+    run_to_rest();
+    the_reference_is_at(rotor_rad + 0.1);
+
+    must_post((struct drive_command){.kind = DRIVE_COMMAND_DISABLE});
+    must_post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE});
+    must_refuse(move_to(0.1), refusal); /* the state is still that before the disable */
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -438,6 +542,8 @@ int main(void)
     RUN_TEST(test_a_stop_flushes_a_speed_that_has_not_begun);
     RUN_TEST(test_disabling_and_enabling_leaves_nothing_of_a_speed);
     RUN_TEST(test_a_background_that_is_late_plans_further_ahead);
+    RUN_TEST(test_the_lead_grows_to_50_ms_and_is_the_nominal_one_again_after_a_plan_in_time);
+    RUN_TEST(test_a_drive_enabled_anew_plans_with_the_nominal_lead);
     RUN_TEST(test_a_new_target_in_mid_move_is_reached_without_a_kink);
     RUN_TEST(test_a_new_target_ends_a_speed_and_a_sine);
     RUN_TEST(test_a_sine_swings_about_where_the_reference_rests_and_ends_there);
@@ -446,7 +552,9 @@ int main(void)
     RUN_TEST(test_set_points_are_reached_two_intervals_and_the_lead_after_they_came);
     RUN_TEST(test_set_points_that_run_dry_come_to_rest_and_count_an_underrun);
     RUN_TEST(test_too_many_set_points_are_refused);
+    RUN_TEST(test_set_points_posted_while_the_first_plan_is_on_offer_overwrite_none);
     RUN_TEST(test_a_stop_ends_the_stream_of_set_points);
     RUN_TEST(test_what_is_out_of_range_is_refused_with_its_bound);
+    RUN_TEST(test_with_a_known_encoder_zero_motion_is_refused_until_the_drive_is_ready);
     return UNITY_END();
 }
