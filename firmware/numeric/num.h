@@ -246,10 +246,13 @@ static inline int32_t num_to_2_32(num_t a)
 static inline num_t num_from_2_32(int32_t a)
 {
 #if defined(__ARM_FP) && STEADYSTEP_NUM == NUM_FLOAT
-    num_t x;
+    union {
+        int32_t whole;
+        num_t number;
+    } x = {.whole = a};
 
-    __asm__("vcvt.f32.s32 %0, %0, #32" : "=t"(x) : "0"(a));
-    return x;
+    __asm__("vcvt.f32.s32 %0, %0, #32" : "+t"(x.number));
+    return x.number;
 #else
     return (num_t)a * NUM(1.0 / 4294967296.0);
 #endif
