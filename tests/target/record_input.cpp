@@ -61,7 +61,7 @@ replay_samples packed(const hal_samples &samples)
     if (samples.temperature || samples.flags)
         throw std::runtime_error("a sample that replay_samples does not hold is not zero");
     return {samples.current_a,       samples.current_b,       samples.bus_voltage,
-            samples.phase_voltage_a, samples.phase_voltage_b, samples.encoder_count};
+            samples.phase_voltage_a, samples.phase_voltage_b, 0, samples.encoder_count};
 }
 
 Recording record(const replay_case &which)
@@ -119,7 +119,7 @@ void write_header(const replay_case &which, const Recording &recording)
                 facts.cycle_counter_Hz, facts.parameter_page_bytes, facts.parameter_word_bytes);
     std::printf("static const struct replay_samples replay_input[REPLAY_PERIODS] = {\n");
     for (const replay_samples &s : recording.input)
-        std::printf("{%d,%d,%d,%d,%d,%" PRId32 "},\n", s.current_a, s.current_b, s.bus_voltage,
+        std::printf("{%d,%d,%d,%d,%d,0,%" PRId32 "},\n", s.current_a, s.current_b, s.bus_voltage,
                     s.phase_voltage_a, s.phase_voltage_b, s.encoder_count);
     std::printf("};\n");
 }

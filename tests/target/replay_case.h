@@ -19,6 +19,7 @@
 struct replay_samples {
     uint16_t current_a, current_b, bus_voltage;
     int16_t phase_voltage_a, phase_voltage_b;
+    uint16_t zero; /* no gap: the bytes are hashed */
     int32_t encoder_count;
 };
 
