@@ -61,7 +61,8 @@ replay_samples packed(const hal_samples &samples)
     if (samples.temperature || samples.flags)
         throw std::runtime_error("a sample that replay_samples does not hold is not zero");
     return {samples.current_a,       samples.current_b,       samples.bus_voltage,
-            samples.phase_voltage_a, samples.phase_voltage_b, 0, samples.encoder_count};
+            samples.phase_voltage_a, samples.phase_voltage_b, 0,
+            samples.encoder_count};
 }
 
 Recording record(const replay_case &which)
