@@ -14,9 +14,7 @@
 #include "firmware/control/sliding_mode.h"
 
 struct csmc_law_params {
-    struct sliding_surface_params surface;
-    struct boundary_layer_params layer_d;
-    struct boundary_layer_params layer_q;
+    struct sliding_mode_params mode;
     struct conditional_integrator_params integrator_d;
     struct conditional_integrator_params integrator_q;
     coef_t voltage; /* M */

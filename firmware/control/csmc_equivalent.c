@@ -2,13 +2,10 @@
 
 #include "firmware/control/voltage_limit.h"
 
-enum { K1, K2, MU_D, MU_Q, K0_D, K0_Q, RESISTANCE, INDUCTANCE, Q_D, Q_Q, GAINS };
+enum { K0_D = SLIDING_MODE_GAINS, K0_Q, RESISTANCE, INDUCTANCE, Q_D, Q_Q, GAINS };
 
 static const struct law_gain gains[GAINS] = {
-    [K1] = SLIDING_MODE_GAIN_K1,
-    [K2] = SLIDING_MODE_GAIN_K2,
-    [MU_D] = SLIDING_MODE_GAIN_MU_D,
-    [MU_Q] = SLIDING_MODE_GAIN_MU_Q,
+    SLIDING_MODE_GAIN_LIST,
     [K0_D] = SLIDING_MODE_GAIN_K0_D,
     [K0_Q] = SLIDING_MODE_GAIN_K0_Q,
     [RESISTANCE] = {"resistance_tolerance_ohm", 0.0, 1e3},
@@ -35,48 +32,39 @@ bool csmc_equivalent_law_design(struct csmc_equivalent_law_params *params,
 {
     const struct motor_params *motor = task->motor;
     const struct per_unit *base = task->base;
-    const struct sliding_mode_task bandwidths = sliding_mode_task_of(task);
-    const struct sliding_mode_gains derived = sliding_mode_gains_of(&bandwidths);
-    const double k1 = law_gain_or(task, K1, derived.k1_1_s2);
-    const double k2 = law_gain_or(task, K2, derived.k2_1_s);
-    const double k0_d = law_gain_or(task, K0_D, derived.k0_d_1_s);
-    const double k0_q = law_gain_or(task, K0_Q, derived.k0_q_1_s);
-    const double mu_d = law_gain_or(task, MU_D, derived.mu_d_A);
-    const double mu_q = law_gain_or(task, MU_Q, derived.mu_q_rad_s2);
-    const double resistance_tolerance_ohm =
-        law_gain_or(task, RESISTANCE, RESISTANCE_TOLERANCE * motor->resistance_ohm);
-    const double inductance_tolerance_H =
-        law_gain_or(task, INDUCTANCE, INDUCTANCE_TOLERANCE * motor->inductance_H);
-    const bool layers_given = law_gain_is_given(task, MU_D) && law_gain_is_given(task, MU_Q);
-    const bool surface_given = law_gain_is_given(task, K1) && law_gain_is_given(task, K2);
     const double k3 = motor->torque_constant_Nm_A / motor->inertia_kgm2;
     const double k4 = motor->viscous_friction_Nms_rad / motor->inertia_kgm2;
     /* L/k3, from an acceleration per second to a voltage */
     const double jerk = motor->inductance_H / k3 * base->acceleration_rad_s2 / base->voltage_V;
-    const double speed = k1 * jerk * base->speed_rad_s / base->acceleration_rad_s2;
+    const double resistance_tolerance_ohm =
+        law_gain_or(task, RESISTANCE, RESISTANCE_TOLERANCE * motor->resistance_ohm);
+    const double inductance_tolerance_H =
+        law_gain_or(task, INDUCTANCE, INDUCTANCE_TOLERANCE * motor->inductance_H);
+    struct sliding_mode_gains in_force;
 
-    if ((!layers_given && !sliding_mode_current_bandwidth_check(&bandwidths, error)) ||
-        (!surface_given && !sliding_mode_bandwidth_check(&bandwidths, error))) {
+    if (!sliding_mode_design(&params->mode, &in_force, task, error)) {
         return false;
     }
-    params->surface = sliding_surface_design(task, k1, k2);
-    params->layer_d = boundary_layer_design(mu_d / base->current_A);
-    params->layer_q = boundary_layer_design(mu_q / base->acceleration_rad_s2);
-    params->integrator_d = conditional_integrator_design(k0_d, task->period_s);
-    params->integrator_q = conditional_integrator_design(k0_q, task->period_s);
-    params->reactance = coef_from_double((double)motor->rotor_teeth * base->speed_rad_s *
-                                         motor->inductance_H / base->resistance_ohm);
+
+    const double speed = in_force.k1_1_s2 * jerk * base->speed_rad_s / base->acceleration_rad_s2;
+    const double acceleration = in_force.k2_1_s * jerk;
+
+    params->integrator_d =
+        conditional_integrator_design(law_gain_or(task, K0_D, in_force.k0_d_1_s), task->period_s);
+    params->integrator_q =
+        conditional_integrator_design(law_gain_or(task, K0_Q, in_force.k0_q_1_s), task->period_s);
+    params->reactance = coef_from_double(per_unit_reactance(base, motor));
     params->voltage_of_speed = coef_from_double(speed);
-    params->voltage_of_acceleration = coef_from_double(k2 * jerk);
+    params->voltage_of_acceleration = coef_from_double(acceleration);
     params->voltage_of_friction = coef_from_double(k4 * jerk);
     params->voltage_of_jerk = coef_from_double(jerk / task->period_s);
     params->speed_limit = error_limit(speed);
-    params->acceleration_limit = error_limit(k2 * jerk);
+    params->acceleration_limit = error_limit(acceleration);
     params->resistance_tolerance =
         coef_from_double(resistance_tolerance_ohm / base->resistance_ohm);
     params->inductance_tolerance = coef_from_double(inductance_tolerance_H / motor->inductance_H);
-    params->least_d = num_from_double(law_gain_or(task, Q_D, derived.voltage_V) / base->voltage_V);
-    params->least_q = num_from_double(law_gain_or(task, Q_Q, derived.voltage_V) / base->voltage_V);
+    params->least_d = num_from_double(law_gain_or(task, Q_D, in_force.voltage_V) / base->voltage_V);
+    params->least_q = num_from_double(law_gain_or(task, Q_Q, in_force.voltage_V) / base->voltage_V);
     return true;
 }
 
@@ -85,13 +73,10 @@ struct voltage_demand csmc_equivalent_law_step(struct csmc_equivalent_law_state 
                                                const struct voltage_law_input *input)
 {
     const struct dq i = input->current;
-    const struct tracking_error e = tracking_error_of(&params->surface, input);
-    const num_t level_d = conditional_integrator_step(
-        &state->d, &params->integrator_d,
-        boundary_layer_levels(&params->layer_d, i.d - input->current_d_reference));
-    const num_t level_q = conditional_integrator_step(
-        &state->q, &params->integrator_q,
-        boundary_layer_levels(&params->layer_q, sliding_surface(&params->surface, &e)));
+    const struct tracking_error e = tracking_error_of(&params->mode.surface, input);
+    const struct dq levels = sliding_mode_levels(&params->mode, input, &e);
+    const num_t level_d = conditional_integrator_step(&state->d, &params->integrator_d, levels.d);
+    const num_t level_q = conditional_integrator_step(&state->q, &params->integrator_q, levels.q);
 
     /* F^ in volts. Rotational voltages, and what moves the surface at constant voltage. */
     const num_t speed = input->motion.speed;

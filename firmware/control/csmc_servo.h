@@ -26,9 +26,7 @@ struct servo_mode {
 };
 
 struct csmc_servo_law_params {
-    struct sliding_surface_params surface;
-    struct boundary_layer_params layer_d;
-    struct boundary_layer_params layer_q;
+    struct sliding_mode_params mode;
     coef_t voltage; /* M */
     coef_t constant_d;
     coef_t constant_q;

@@ -12,8 +12,7 @@ struct current_control_params current_control_design(const struct motor_params *
     params.proportional = coef_from_double(proportional);
     params.integral = coef_from_double(integral);
     params.unwind = coef_from_double(integral / proportional);
-    params.reactance = coef_from_double((double)motor->rotor_teeth * base->speed_rad_s *
-                                        motor->inductance_H / base->resistance_ohm);
+    params.reactance = coef_from_double(per_unit_reactance(base, motor));
     return params;
 }
 

@@ -88,8 +88,7 @@ bool feedback_linearisation_law_design(struct feedback_linearisation_law_params 
     params->friction =
         coef_from_double(motor->viscous_friction_Nms_rad * base->speed_rad_s / base->torque_Nm);
     params->stiffness = coef_from_double(stiffness_ohm / base->resistance_ohm);
-    params->reactance = coef_from_double((double)motor->rotor_teeth * base->speed_rad_s *
-                                         motor->inductance_H / base->resistance_ohm);
+    params->reactance = coef_from_double(per_unit_reactance(base, motor));
     params->droop = coef_from_double(turn * turn / 24.0);
     params->half_speed =
         coef_from_double(0.5 * period_s * base->acceleration_rad_s2 / base->speed_rad_s);

@@ -25,8 +25,7 @@ inductive_voltage_design(const struct position_law_task *task, double share)
     const double per_step = share * inductance / task->period_s;
     const double step_max = 10.0; /* per-unit voltage, a third of the number range */
     const struct inductive_voltage_params params = {
-        .reactance =
-            coef_from_double((double)task->motor->rotor_teeth * base->speed_rad_s * inductance),
+        .reactance = coef_from_double(per_unit_reactance(base, task->motor)),
         .per_step = coef_from_double(per_step),
         .step_limit = num_from_double(per_step > 1.0 ? step_max / per_step : step_max),
     };

@@ -39,12 +39,37 @@ struct sliding_surface_params sliding_surface_design(const struct position_law_t
     };
 }
 
-struct boundary_layer_params boundary_layer_design(double mu_pu)
+/* mu_pu: of a current or an acceleration in per-unit. */
+static struct boundary_layer_params boundary_layer_design(double mu_pu)
 {
     return (struct boundary_layer_params){
         .levels = coef_from_double(1.0 / mu_pu),
         .limit = num_from_double(SURFACE_LEVELS_MAX * mu_pu),
     };
+}
+
+bool sliding_mode_design(struct sliding_mode_params *params, struct sliding_mode_gains *gains,
+                         const struct position_law_task *task, char error[DESIGN_ERROR_TEXT])
+{
+    const struct sliding_mode_task bandwidths = sliding_mode_task_of(task);
+    const bool layers_given =
+        law_gain_is_given(task, SLIDING_MODE_MU_D) && law_gain_is_given(task, SLIDING_MODE_MU_Q);
+    const bool surface_given =
+        law_gain_is_given(task, SLIDING_MODE_K1) && law_gain_is_given(task, SLIDING_MODE_K2);
+
+    if ((!layers_given && !sliding_mode_current_bandwidth_check(&bandwidths, error)) ||
+        (!surface_given && !sliding_mode_bandwidth_check(&bandwidths, error))) {
+        return false;
+    }
+    *gains = sliding_mode_gains_of(&bandwidths);
+    gains->k1_1_s2 = law_gain_or(task, SLIDING_MODE_K1, gains->k1_1_s2);
+    gains->k2_1_s = law_gain_or(task, SLIDING_MODE_K2, gains->k2_1_s);
+    gains->mu_d_A = law_gain_or(task, SLIDING_MODE_MU_D, gains->mu_d_A);
+    gains->mu_q_rad_s2 = law_gain_or(task, SLIDING_MODE_MU_Q, gains->mu_q_rad_s2);
+    params->surface = sliding_surface_design(task, gains->k1_1_s2, gains->k2_1_s);
+    params->layer_d = boundary_layer_design(gains->mu_d_A / task->base->current_A);
+    params->layer_q = boundary_layer_design(gains->mu_q_rad_s2 / task->base->acceleration_rad_s2);
+    return true;
 }
 
 struct conditional_integrator_params conditional_integrator_design(double k0_1_s, double period_s)

@@ -20,12 +20,17 @@
 #include "firmware/control/position_law.h"
 #include "firmware/design/sliding_mode_design.h"
 
-/* Gains that can be given by name; the paper's units: A, rad/s^2, V, and powers of 1/s. */
+/* Gains that can be given by name; the paper's units: A, rad/s^2, V, and powers of 1/s. A law with
+   boundary layers has the first four in front of its own, in this order. */
+enum { SLIDING_MODE_K1, SLIDING_MODE_K2, SLIDING_MODE_MU_D, SLIDING_MODE_MU_Q, SLIDING_MODE_GAINS };
+
 /* clang-format off */
 #define SLIDING_MODE_GAIN_K1   {"k1", 0.0, 1e9}
 #define SLIDING_MODE_GAIN_K2   {"k2", 0.0, 1e5}
 #define SLIDING_MODE_GAIN_MU_D {"mu_d", 1e-4, 1e3}
 #define SLIDING_MODE_GAIN_MU_Q {"mu_q", 1e-2, 1e7}
+#define SLIDING_MODE_GAIN_LIST                                                                     \
+    SLIDING_MODE_GAIN_K1, SLIDING_MODE_GAIN_K2, SLIDING_MODE_GAIN_MU_D, SLIDING_MODE_GAIN_MU_Q
 #define SLIDING_MODE_GAIN_K0_D {"k0_d", 0.0, 1e5}
 #define SLIDING_MODE_GAIN_K0_Q {"k0_q", 0.0, 1e5}
 #define SLIDING_MODE_GAIN_M    {"M_V", 1e-2, 1e3}
@@ -56,6 +61,13 @@ struct boundary_layer_params {
     num_t limit;   /* SURFACE_LEVELS_MAX mu */
 };
 
+/* Surfaces and layers of both axes. */
+struct sliding_mode_params {
+    struct sliding_surface_params surface;
+    struct boundary_layer_params layer_d;
+    struct boundary_layer_params layer_q;
+};
+
 struct conditional_integrator_params {
     coef_t rate; /* k0 T */
 };
@@ -74,8 +86,13 @@ struct sliding_mode_task sliding_mode_task_of(const struct position_law_task *ta
 struct sliding_surface_params sliding_surface_design(const struct position_law_task *task,
                                                      double k1_1_s2, double k2_1_s);
 
-/* mu_pu: of a current or an acceleration in per-unit. */
-struct boundary_layer_params boundary_layer_design(double mu_pu);
+/*
+ * With boundary layers. `gains` receives what is in force: given, or else what follows from the
+ * bandwidths. false: the sampled loop cannot bear a bandwidth that a gain follows from, the limit
+ * in error.
+ */
+bool sliding_mode_design(struct sliding_mode_params *params, struct sliding_mode_gains *gains,
+                         const struct position_law_task *task, char error[DESIGN_ERROR_TEXT]);
 
 struct conditional_integrator_params conditional_integrator_design(double k0_1_s, double period_s);
 
@@ -110,6 +127,17 @@ static inline num_t sliding_surface(const struct sliding_surface_params *params,
 static inline num_t boundary_layer_levels(const struct boundary_layer_params *params, num_t s)
 {
     return num_mul_coef(num_limit(s, params->limit), params->levels);
+}
+
+/* Both surfaces in levels. */
+static inline struct dq sliding_mode_levels(const struct sliding_mode_params *params,
+                                            const struct voltage_law_input *input,
+                                            const struct tracking_error *e)
+{
+    return (struct dq){
+        boundary_layer_levels(&params->layer_d, input->current.d - input->current_d_reference),
+        boundary_layer_levels(&params->layer_q, sliding_surface(&params->surface, e)),
+    };
 }
 
 /* sat(s/mu) of the surface with its integral; the integral moves on by a period. */

@@ -15,3 +15,9 @@ struct per_unit per_unit_base(const struct motor_params *motor, double period_s)
     base.turns_per_period = base.speed_rad_s * period_s / base.rad_per_turn;
     return base;
 }
+
+double per_unit_reactance(const struct per_unit *base, const struct motor_params *motor)
+{
+    return (double)motor->rotor_teeth * base->speed_rad_s * motor->inductance_H /
+           base->resistance_ohm;
+}

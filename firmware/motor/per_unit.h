@@ -21,4 +21,7 @@ struct per_unit {
 
 struct per_unit per_unit_base(const struct motor_params *motor, double period_s);
 
+/* N L: reactance of a phase over the speed, both in per-unit. */
+double per_unit_reactance(const struct per_unit *base, const struct motor_params *motor);
+
 #endif
