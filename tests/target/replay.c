@@ -12,7 +12,7 @@
 
 /* The host has memory for a drive in double too. */
 #ifdef __arm__
-enum { DRIVE_BYTES_LIMIT = 6144 };
+enum { DRIVE_BYTES_LIMIT = 8192 };
 #else
 enum { DRIVE_BYTES_LIMIT = 16384 };
 #endif
@@ -38,9 +38,37 @@ static bool unreadable(void *context, uint32_t offset, void *data, size_t count)
     return false;
 }
 
+/* A line on which nothing comes and which takes everything. */
+static size_t nothing_read(void *context, uint8_t *bytes, size_t capacity, uint32_t *line_period)
+{
+    (void)context;
+    (void)bytes;
+    (void)capacity;
+    (void)line_period;
+    return 0;
+}
+
+static size_t all_written(void *context, const uint8_t *bytes, size_t count)
+{
+    (void)context;
+    (void)bytes;
+    return count;
+}
+
+static const char *replayed(void *context)
+{
+    (void)context;
+    return "replay";
+}
+
 static const struct hal board = {.facts = &replay_facts,
+                                 .version = "replay",
                                  .bridge_enable = always,
                                  .bridge_disable = nothing,
+                                 .watchdog_feed = nothing,
+                                 .start_cause = replayed,
+                                 .stream_read = nothing_read,
+                                 .stream_write = all_written,
                                  .parameters_read = unreadable};
 
 static int fail(const char *reason)

@@ -44,8 +44,10 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
   # Their reference is minutes of double in software; on the core the replays `feedback-linearisation`
   # and `references` run the same code.
   list(FILTER unit_tests EXCLUDE REGEX "test_(detent_compensation|motion_plan)\\.c$")
+  # An application, its test's board and the stack of the design take more than 16 KB.
+  set(large_tests application console)
   if(STEADYSTEP_CORE STREQUAL m0plus) # half a minute each; the M4F core runs them in fixed point, too
-    list(FILTER unit_tests EXCLUDE REGEX "test_(motion|sliding_mode)\\.c$")
+    list(FILTER unit_tests EXCLUDE REGEX "test_(motion|sliding_mode|application|console)\\.c$")
   endif()
   foreach(source IN LISTS unit_tests)
     cmake_path(GET source STEM stem)
@@ -53,6 +55,12 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
     set(target unit_${name}_${numeric})
     add_executable(${target} ${source})
     target_link_libraries(${target} PRIVATE target_startup firmware_${numeric} unity m)
+    if(name IN_LIST large_tests)
+      target_link_options(${target} PRIVATE -Wl,--defsym=ram_bytes=65536)
+    endif()
+    # Linked in no time; the replays below are the firmware optimised as a whole.
+    target_compile_options(${target} PRIVATE -fno-lto)
+    target_link_options(${target} PRIVATE -fno-lto)
     add_test(NAME target.unit.${name}.${numeric} COMMAND ${target})
     set_tests_properties(target.unit.${name}.${numeric} PROPERTIES LABELS target TIMEOUT 120)
   endforeach()
@@ -68,6 +76,15 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
     set_tests_properties(target.replay.${case}.${numeric} PROPERTIES LABELS target TIMEOUT 120)
   endforeach()
 
+  # One case of each path through the interrupt, and one that no case leaves anything out of.
+  foreach(case IN ITEMS default-sensorless feedback-linearisation references)
+    add_test(NAME target.longest-path.${case}.${numeric}
+      COMMAND ${PROJECT_SOURCE_DIR}/tools/longest_path --executed
+              $<TARGET_FILE:replay_${case}_${numeric}>)
+    set_tests_properties(target.longest-path.${case}.${numeric}
+      PROPERTIES LABELS target TIMEOUT 120)
+  endforeach()
+
   add_test(NAME target.interrupt-is-clean.${numeric}
     COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/interrupt_is_clean.py
             $<TARGET_FILE:replay_default-sensorless_${numeric}>)
@@ -79,3 +96,6 @@ add_test(NAME target.interrupt-is-clean.self-test
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/interrupt_is_clean.py
           --self-test ${CMAKE_C_COMPILER} ${core_flags})
 set_tests_properties(target.interrupt-is-clean.self-test PROPERTIES LABELS target)
+add_test(NAME target.arm-image-is-read-right
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/arm_image_is_read_right.py ${CMAKE_C_COMPILER} ${core_flags})
+set_tests_properties(target.arm-image-is-read-right PROPERTIES LABELS target)

@@ -53,31 +53,36 @@ class SourceLines:
         return self._places[k] if k >= 0 else "?"
 
 
-def members(path, struct, member):
-    """(address of the object, offset of the member) of every object of type `struct`."""
+def members(path, wanted):
+    """Addresses of the wanted members, [(struct, member)], of every object of such a type."""
+    structs = {struct for struct, _ in wanted}
     found = []
     for _, unit in _units(path):
         for die in unit.iter_DIEs():
             if die.tag != "DW_TAG_variable" or "DW_AT_location" not in die.attributes:
                 continue
             location = die.attributes["DW_AT_location"].value
-            kind = _struct_of(die)
-            if kind is None or _name(kind) != struct or not isinstance(location, list):
+            if not isinstance(location, list) or location[:1] != [DW_OP_ADDR]:
                 continue
-            if location and location[0] == DW_OP_ADDR:
-                address = int.from_bytes(bytes(location[1:5]), "little")
-                offset = next(
-                    child.attributes["DW_AT_data_member_location"].value
-                    for child in kind.iter_children()
-                    if _name(child) == member
-                )
-                found.append((address, offset))
+            kind = _struct_of(die)
+            if kind is None or _name(kind) not in structs:
+                continue
+            address = int.from_bytes(bytes(location[1:5]), "little")
+            offsets = {
+                _name(child): child.attributes["DW_AT_data_member_location"].value
+                for child in kind.iter_children()
+                if "DW_AT_data_member_location" in child.attributes
+            }
+            found += [
+                address + offsets[member] for struct, member in wanted if struct == _name(kind)
+            ]
     return found
 
 
 def flash_of(path, root, folder):
     """Bytes of the code that comes from a folder of sources: sizes of its functions with their
-    constants. Tables and texts, some hundred bytes, are not told apart from the test's and left out."""
+    constants. Tables and texts, some hundred bytes, are not told apart from the test's and left out.
+    """
     source = SourceLines(path, root)
     with open(path, "rb") as file:
         symbols = ELFFile(file).get_section_by_name(".symtab").iter_symbols()
@@ -93,9 +98,13 @@ def _name(die):
 
 def _struct_of(variable):
     """The structure type of a variable, behind const and volatile; None of other types."""
-    if "DW_AT_specification" in variable.attributes:
-        variable = variable.get_DIE_from_attribute("DW_AT_specification")
     die = variable
+    while "DW_AT_type" not in die.attributes:  # stands where it is declared
+        links = ("DW_AT_specification", "DW_AT_abstract_origin")
+        link = next((a for a in links if a in die.attributes), None)
+        if link is None:
+            return None
+        die = die.get_DIE_from_attribute(link)
     while "DW_AT_type" in die.attributes:
         die = die.get_DIE_from_attribute("DW_AT_type")
         if die.tag == "DW_TAG_structure_type":

@@ -100,6 +100,7 @@ class Image:
                 for s in elf.iter_sections()
                 if s["sh_flags"] & SHF_ALLOC
             ]
+            code = {k for k, s in enumerate(elf.iter_sections()) if s["sh_flags"] & SHF_EXECINSTR}
             symbols = list(elf.get_section_by_name(".symtab").iter_symbols())
         self.symbols = {
             s.name: s["st_value"] for s in symbols if s.name and not s.name.startswith("$")
@@ -114,8 +115,12 @@ class Image:
         self.functions = sorted(functions.values())
         self._starts = [f[0] for f in self.functions]
         marks = sorted(
-            (s["st_value"], s.name[1]) for s in symbols if re.fullmatch(r"\$[tda](\..*)?", s.name)
+            (s["st_value"], s.name[1])
+            for s in symbols
+            if s["st_shndx"] in code and re.fullmatch(r"\$[tda](\..*)?", s.name)
         )
+        self.called = None  # what call_graph.indirect_targets has found
+        self.undecoded = []  # addresses marked as code that hold no instruction
         self.instructions = self._decode(marks)
 
     def _decode(self, marks):
@@ -132,6 +137,8 @@ class Image:
                     instruction = self._decode_one(data[at - start : min(at + 4, end) - start], at)
                     if instruction:
                         instructions[at] = instruction
+                    else:
+                        self.undecoded.append(at)
                     at += instruction.size if instruction else 2
         return instructions
 
@@ -159,6 +166,19 @@ class Image:
             return (address, 0, "?")
         return self.functions[k]
 
+    def function_from(self, address):
+        """(start, size, name) of the function from an address on. Library code in assembly is
+        entered in the middle, too, and goes on behind the end that its symbol tells."""
+        start, size, name = self.function_at(address)
+        if start == address:
+            return start, size, name
+        if address not in self.instructions:
+            raise ValueError(f"{self.path}: {address:#x} is called, but no function begins there")
+        k = bisect.bisect_right(self._starts, address)
+        end = self._starts[k] if k < len(self._starts) else address + 2
+        end = min(end, start + size) if address < start + size else end
+        return address, end - address, f"{name}+{address - start:#x}"
+
     def name_at(self, address):
         """Name of the symbol at exactly this address."""
         return next(
@@ -171,8 +191,13 @@ class Image:
             self.instructions[a] for a in range(start, start + size, 2) if a in self.instructions
         ]
 
-    def word(self, address):
-        for _, start, size, _, data in self.sections:
-            if start <= address and address + 4 <= start + len(data):
-                return int.from_bytes(data[address - start : address - start + 4], "little")
+    def bytes(self, address, count):
+        """What the image holds from an address on, None if it holds less than that."""
+        for _, start, _, _, data in self.sections:
+            if start <= address and address + count <= start + len(data):
+                return data[address - start : address - start + count]
         return None
+
+    def word(self, address):
+        data = self.bytes(address, 4)
+        return None if data is None else int.from_bytes(data, "little")

@@ -7,8 +7,7 @@ Cortex-M0+: Arm Cortex-M0+ Technical Reference Manual (DDI 0484C), table 3-1, wi
 single-cycle multiplier (as on the STM32G0) and no single-cycle I/O port.
 
 An instruction in an IT block is charged whether its condition holds or not. Interrupt entry and
-exit are no instructions and not in here: 12 + 12 cycles on the M4 (with 17 more if the frame of
-the FPU is stacked), 15 + 15 on the M0+.
+exit are no instructions: EXCEPTION.
 """
 
 import re
@@ -41,7 +40,7 @@ class CortexM4:
         ):
             cost += 1  # the result of FP arithmetic is consumed by the following instruction
         if pessimistic:
-            if base in ("ldr", "vldr", "ldrd") and "[pc" in operands:
+            if loads_literal(instruction):
                 cost += 1  # contention of a literal load with the fetch unit
             if instruction.size == 4 and instruction.address & 3:
                 cost += 1  # unaligned fetch of a wide instruction
@@ -181,6 +180,27 @@ def _reads(instruction, register):
         ("vstr", "vstm", "vpush", "vcmp", "vmla", "vmls", "vnml", "vfm", "vfnm")
     )
     return register in (registers if first_is_source else registers[1:])
+
+
+def loads_literal(instruction):
+    return instruction.base in ("ldr", "vldr", "ldrd") and "[pc" in instruction.operands
+
+
+# Cycles to enter and to leave an interrupt, and for either of them more with the frame of the FPU.
+# Columns nominal, worst in CCM (a bus that is busy), worst in flash (vector and first line from
+# there).
+EXCEPTION = {
+    "m4f": {"enter": [12, 14, 22], "leave": [12, 14, 22], "fpu": [17, 17, 17]},
+    "m0plus": {"enter": [15, 17, 25], "leave": [15, 17, 25], "fpu": [0, 0, 0]},
+}
+
+# An access to a peripheral takes this much more than one to memory: the bridges between the buses.
+# Assumed, not measured on silicon.
+PERIPHERAL = [2, 5, 5]
+
+# Flash without credit for prefetch and caches: wait states for each line of 64 bits. STM32G4 at
+# 170 MHz (RM0440, embedded flash memory, read access latency), STM32G0 at 64 MHz (RM0444, the same).
+FLASH = {"m4f": {"wait": 4, "line_bytes": 8}, "m0plus": {"wait": 2, "line_bytes": 8}}
 
 
 CORES = {core.name: core for core in (CortexM4, CortexM0plus)}
