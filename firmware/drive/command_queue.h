@@ -71,6 +71,7 @@ struct command_queue {
     volatile bool attention; /* something may wait: spares the interrupt to look at all of it */
     struct urgent_command disable;
     struct urgent_command stop;
+    uint32_t stop_acted_in; /* period of the last stop; the interrupt's */
     struct take_over take_over;
 };
 

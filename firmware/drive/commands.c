@@ -82,6 +82,9 @@ static bool put_set_point(struct drive *drive, const struct drive_command *comma
     if (!(command->position_rad >= -range && command->position_rad <= range)) {
         return design_refuse(error, "set-point refused: the position is out of range");
     }
+    if (set_points_waiting(&drive->planner.set_points) <= 1u) {
+        drive->planner.set_points_at = command->at_period;
+    }
     return set_points_put(&drive->planner.set_points,
                           position_from_rad(command->position_rad, teeth), error);
 }
@@ -138,6 +141,12 @@ static bool save(const struct drive *drive, char error[DRIVE_ERROR_TEXT])
     detent_compensation_get(&drive->detent, &drive->base, learned.detent_torque_Nm);
     return parameter_store_write(drive->board, &learned) ||
            design_refuse(error, "save refused: the board's parameter store cannot be written");
+}
+
+double drive_planned_end_rad(struct drive *drive)
+{
+    update_planned_end(drive);
+    return position_to_rad(drive->planned_end, drive->settings.motor.rotor_teeth);
 }
 
 bool drive_command(struct drive *drive, const struct drive_command *command,

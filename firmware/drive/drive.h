@@ -108,6 +108,10 @@ __attribute__((noinline)) struct hal_outputs drive_control_cycle(struct drive *d
 bool drive_command(struct drive *drive, const struct drive_command *command,
                    char error[DRIVE_ERROR_TEXT]);
 
+/* Background: where the reference rests when all posted moves are done; the last place it was known
+   to rest, while a stop, sine, set-points or a speed leave that open. */
+double drive_planned_end_rad(struct drive *drive);
+
 /*
  * Background: plans sines, set-points, speed changes, new targets and the stops of these, and keeps
  * those that go on supplied. To be called all the time, from the context that calls drive_command,

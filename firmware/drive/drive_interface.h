@@ -172,6 +172,10 @@ struct drive_command {
     double jerk_rad_s3;         /* largest, above 0 */
 };
 
+/* A command that is typed acts this many control periods after the one in which the last byte of
+   its line has arrived; one that is planned DRIVE_LEAD_s after that. */
+#define DRIVE_TYPED_DELAY_PERIODS 10
+
 /* How far ahead of its begin a motion is planned; at least 3 periods. Doubled each time the
    background has been too late, up to DRIVE_LEAD_MAX_s, and back to DRIVE_LEAD_s once a plan has
    been in time or the drive is enabled anew. */

@@ -17,6 +17,11 @@ static uint32_t lead_periods(const struct drive *drive, double lead_s)
     return (uint32_t)lead > LEAD_PERIODS_MIN ? (uint32_t)lead : LEAD_PERIODS_MIN;
 }
 
+uint32_t planner_lead_periods(const struct drive *drive)
+{
+    return lead_periods(drive, DRIVE_LEAD_s);
+}
+
 static uint32_t period_now(const struct drive *drive)
 {
     return *(const volatile uint32_t *)&drive->period;
@@ -213,10 +218,23 @@ static bool begin_plan(struct drive *drive, struct motion_plan *plan, uint32_t a
     return true;
 }
 
+/*
+ * A lead after the period in which the stop acted, so that it does not matter how soon the
+ * background comes to it; if that is later than half a lead, a lead from now.
+ */
+static uint32_t stop_period(const struct drive *drive)
+{
+    const uint32_t lead = drive->planner.lead_periods;
+    const uint32_t now = period_now(drive);
+    const uint32_t acted = drive->commands.stop_acted_in;
+
+    return (now - acted <= lead / 2u ? acted : now) + lead;
+}
+
 static void stop(struct drive *drive)
 {
     struct planner *p = &drive->planner;
-    const uint32_t at_period = period_now(drive) + p->lead_periods;
+    const uint32_t at_period = stop_period(drive);
     struct motion_plan *plan;
 
     if (drive->reference.phase != REFERENCE_PLANNED) {
@@ -277,6 +295,15 @@ static bool may_begin(const struct drive *drive, const struct queued_command *co
             set_points_waiting(&drive->planner.set_points) >= 2u);
 }
 
+/* The period a command is addressed to; set-points begin with the second one. */
+static uint32_t addressed_to(const struct planner *p, const struct queued_command *command)
+{
+    return command->kind == DRIVE_COMMAND_SET_POINT &&
+                   (int32_t)(p->set_points_at - command->at_period) > 0
+               ? p->set_points_at
+               : command->at_period;
+}
+
 /* The oldest command, if it is one to be planned and its period is near. */
 static void take_command(struct drive *drive)
 {
@@ -285,8 +312,9 @@ static void take_command(struct drive *drive)
     const uint32_t entry = queue->read;
     const struct queued_command *command = &queue->entry[entry % COMMAND_QUEUE_LENGTH];
     const uint32_t earliest = period_now(drive) + p->lead_periods;
-    const int32_t wait = (int32_t)(command->at_period - earliest);
-    const uint32_t at_period = wait > 0 ? command->at_period : earliest;
+    const uint32_t addressed = addressed_to(p, command);
+    const int32_t wait = (int32_t)(addressed - earliest);
+    const uint32_t at_period = wait > 0 ? addressed : earliest;
     struct motion_plan *plan;
 
     if (entry == queue->written || !queued_command_is_planned(command) ||

@@ -50,6 +50,7 @@ struct planner {
     struct set_points set_points;
     bool set_points_open;
     uint32_t set_points_command; /* queue entry that begins them */
+    uint32_t set_points_at;      /* period to which the second one was addressed, or the first */
     uint32_t underruns;
 };
 
@@ -61,6 +62,9 @@ struct drive;
  */
 bool planner_request(const struct drive *drive, const struct drive_command *command,
                      struct motion_request *request, char error[DRIVE_ERROR_TEXT]);
+
+/* DRIVE_LEAD_s in control periods. */
+uint32_t planner_lead_periods(const struct drive *drive);
 
 /* Start-up, when drive and reference are set up. */
 void planner_init(struct drive *drive);

@@ -155,6 +155,7 @@ static void take_commands(struct drive *drive)
     }
     if (command_queue_take_urgent(queue, &queue->stop, drive->period)) {
         reference_stop(&drive->reference);
+        queue->stop_acted_in = drive->period;
         /* here, because the next interrupt cuts the ramp */
         queue->attention = queue->disable.posted || queue->written != queue->read;
         return;

@@ -1,7 +1,7 @@
 /*
- * A firmware image as the simulated board holds it: the entry points of one drive, built for one
- * number format. The image is the only part of the simulator that is compiled with the firmware;
- * it carries no behaviour of its own.
+ * A firmware image as the simulated board holds it: the entry points of one application with its
+ * drive, built for one number format. The image is the only part of the simulator that is compiled
+ * with the firmware; it carries no behaviour of its own.
  */
 #ifndef STEADYSTEP_FIRMWARE_IMAGE_H
 #define STEADYSTEP_FIRMWARE_IMAGE_H
@@ -15,7 +15,7 @@ extern "C" {
 
 struct firmware_image {
     const char *numeric; /* "float", "fixed" or "double" */
-    size_t drive_bytes;  /* size of one drive; allocate with alignment of max_align_t */
+    size_t drive_bytes;  /* size of one application; allocate with alignment of max_align_t */
 
     /* Start-up: designs all gains. false: settings refused, reason in error. */
     bool (*init)(void *drive, const struct hal *board, const struct drive_settings *settings,
@@ -25,9 +25,9 @@ struct firmware_image {
     /* The gains that a law can be given by name, in the order of drive_settings.law_gains: the name
        of number `gain`, or NULL behind the last. */
     const char *(*law_gain)(enum position_law law, size_t gain);
-    /* Posts a command (background). false: refused, reason in error. */
+    /* Posts a command (background), past the typed lines. false: refused, reason in error. */
     bool (*command)(void *drive, const struct drive_command *command, char error[DRIVE_ERROR_TEXT]);
-    /* What the application's loop does (background); once after each control interrupt. */
+    /* The application's background; once after each control interrupt. */
     void (*background)(void *drive);
     void (*signals)(const void *drive, struct drive_signals *signals);
     /* drive_hash so far: gains once, then duties and signals of every period (FNV-1a, 64 bit). */

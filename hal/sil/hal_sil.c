@@ -37,37 +37,53 @@ static void watchdog_feed(void *context)
     sil->watchdog_fed_us = time_us(sil);
 }
 
-static size_t put(struct hal_sil_stream *stream, const uint8_t *bytes, size_t count)
+static const char *start_cause(void *context)
+{
+    const struct hal_sil *sil = context;
+    return sil->restarted ? "power-on after a power cycle" : "power-on";
+}
+
+static size_t put(struct hal_sil_stream *stream, const uint8_t *bytes, size_t count,
+                  uint32_t period)
 {
     size_t moved = 0;
     for (; moved < count && stream->count < HAL_SIL_STREAM_BYTES; moved++) {
-        stream->bytes[(stream->first + stream->count) % HAL_SIL_STREAM_BYTES] = bytes[moved];
+        const size_t at = (stream->first + stream->count) % HAL_SIL_STREAM_BYTES;
+        stream->bytes[at] = bytes[moved];
+        stream->arrived_in[at] = period;
         stream->count++;
     }
     return moved;
 }
 
-static size_t take(struct hal_sil_stream *stream, uint8_t *bytes, size_t capacity)
+/* `until`: stops behind this byte, and tells when it arrived; -1: none. */
+static size_t take(struct hal_sil_stream *stream, uint8_t *bytes, size_t capacity, int until,
+                   uint32_t *period)
 {
     size_t moved = 0;
-    for (; moved < capacity && stream->count > 0; moved++) {
-        bytes[moved] = stream->bytes[stream->first];
-        stream->first = (stream->first + 1) % HAL_SIL_STREAM_BYTES;
+    while (moved < capacity && stream->count > 0) {
+        const size_t at = stream->first;
+        bytes[moved++] = stream->bytes[at];
+        stream->first = (at + 1) % HAL_SIL_STREAM_BYTES;
         stream->count--;
+        if (stream->bytes[at] == until) {
+            *period = stream->arrived_in[at];
+            break;
+        }
     }
     return moved;
 }
 
-static size_t stream_read(void *context, uint8_t *bytes, size_t capacity)
+static size_t stream_read(void *context, uint8_t *bytes, size_t capacity, uint32_t *line_period)
 {
     struct hal_sil *sil = context;
-    return take(&sil->to_drive, bytes, capacity);
+    return take(&sil->to_drive, bytes, capacity, '\n', line_period);
 }
 
 static size_t stream_write(void *context, const uint8_t *bytes, size_t count)
 {
     struct hal_sil *sil = context;
-    return put(&sil->to_host, bytes, count);
+    return put(&sil->to_host, bytes, count, 0);
 }
 
 static bool parameters_erase(void *context, uint32_t page)
@@ -117,6 +133,7 @@ void hal_sil_init(struct hal_sil *sil, const struct hal_facts *facts)
 {
     memset(sil, 0, sizeof *sil);
     memset(sil->parameters, 0xff, sizeof sil->parameters);
+    sil->control_period = UINT32_MAX;
     sil->facts = *facts;
     sil->facts.parameter_page_bytes = HAL_SIL_PAGE_BYTES;
     sil->facts.parameter_word_bytes = HAL_SIL_WORD_BYTES;
@@ -126,16 +143,40 @@ void hal_sil_init(struct hal_sil *sil, const struct hal_facts *facts)
 
     sil->board.context = sil;
     sil->board.facts = &sil->facts;
+    sil->board.version = "steadystep " STEADYSTEP_VERSION " simulated";
     sil->board.bridge_enable = bridge_enable;
     sil->board.bridge_disable = bridge_disable;
     sil->board.cycle_count = cycle_count;
     sil->board.time_us = time_us;
     sil->board.watchdog_feed = watchdog_feed;
+    sil->board.start_cause = start_cause;
     sil->board.stream_read = stream_read;
     sil->board.stream_write = stream_write;
     sil->board.parameters_erase = parameters_erase;
     sil->board.parameters_program = parameters_program;
     sil->board.parameters_read = parameters_read;
+}
+
+static void empty(struct hal_sil_stream *stream)
+{
+    stream->first = 0;
+    stream->count = 0;
+}
+
+void hal_sil_restart(struct hal_sil *sil)
+{
+    sil->restarted = true;
+    sil->control_period = UINT32_MAX;
+    sil->bridge_allowed = false;
+    sil->trip_latched = false;
+    sil->watchdog_running = false;
+    empty(&sil->to_drive);
+    empty(&sil->to_host);
+}
+
+void hal_sil_control_begins(struct hal_sil *sil)
+{
+    sil->control_period++;
 }
 
 void hal_sil_next_period(struct hal_sil *sil)
@@ -156,12 +197,12 @@ bool hal_sil_bridge_on(const struct hal_sil *sil)
 
 size_t hal_sil_host_write(struct hal_sil *sil, const uint8_t *bytes, size_t count)
 {
-    return put(&sil->to_drive, bytes, count);
+    return put(&sil->to_drive, bytes, count, sil->control_period);
 }
 
 size_t hal_sil_host_read(struct hal_sil *sil, uint8_t *bytes, size_t capacity)
 {
-    return take(&sil->to_host, bytes, capacity);
+    return take(&sil->to_host, bytes, capacity, -1, NULL);
 }
 
 bool hal_sil_watchdog_expired(const struct hal_sil *sil)

@@ -19,12 +19,13 @@ enum {
     HAL_SIL_PAGE_BYTES = 2048,
     HAL_SIL_WORD_BYTES = 8,
     HAL_SIL_PAGES = 4,
-    HAL_SIL_STREAM_BYTES = 1024, /* capacity of the byte stream in each direction */
+    HAL_SIL_STREAM_BYTES = 2048, /* capacity of the byte stream in each direction */
     HAL_SIL_WATCHDOG_US = 50000, /* runs from the first feeding on */
 };
 
 struct hal_sil_stream {
     uint8_t bytes[HAL_SIL_STREAM_BYTES];
+    uint32_t arrived_in[HAL_SIL_STREAM_BYTES]; /* control period of each byte */
     size_t first, count;
 };
 
@@ -32,9 +33,12 @@ struct hal_sil {
     struct hal board; /* what the firmware is given */
     struct hal_facts facts;
 
-    uint64_t period;     /* index k of the present S(k) */
-    bool bridge_allowed; /* between bridge_enable and bridge_disable */
-    bool trip_latched;   /* by hal_sil_trip, until bridge_disable */
+    uint64_t period;         /* index k of the present S(k), since the first start */
+    uint32_t control_period; /* of the last control interrupt that has begun, since the last start;
+                                UINT32_MAX: none has */
+    bool bridge_allowed;     /* between bridge_enable and bridge_disable */
+    bool trip_latched;       /* by hal_sil_trip, until bridge_disable */
+    bool restarted;          /* by hal_sil_restart */
     bool watchdog_running;
     uint64_t watchdog_fed_us;
     struct hal_sil_stream to_drive, to_host;
@@ -47,6 +51,13 @@ struct hal_sil {
  */
 void hal_sil_init(struct hal_sil *sil, const struct hal_facts *facts);
 
+/* The supply has failed and returned: bridge off, no byte on its way, watchdog not running; the
+   parameter store and the time go on. */
+void hal_sil_restart(struct hal_sil *sil);
+
+/* The control interrupt of the present S(k) begins. */
+void hal_sil_control_begins(struct hal_sil *sil);
+
 /* One PWM period passes. */
 void hal_sil_next_period(struct hal_sil *sil);
 
@@ -56,7 +67,7 @@ void hal_sil_trip(struct hal_sil *sil);
 /* Whether the gates may follow the outputs. */
 bool hal_sil_bridge_on(const struct hal_sil *sil);
 
-/* The host's end of the byte stream: number of bytes moved. */
+/* The host's end of the byte stream: number of bytes moved. They arrive in control_period. */
 size_t hal_sil_host_write(struct hal_sil *sil, const uint8_t *bytes, size_t count);
 size_t hal_sil_host_read(struct hal_sil *sil, uint8_t *bytes, size_t capacity);
 

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "hal/sil/hal_sil.h"
@@ -42,6 +44,9 @@ struct Board::Impl {
     {
     }
 
+    void receive();
+    void send();
+
     plant::Plant plant;
     const firmware_image &image;
     const drive_settings settings;
@@ -52,6 +57,9 @@ struct Board::Impl {
     hal_sil hal;
     hal_samples samples = {};
     hal_outputs outputs = {};
+    std::string typed; /* arrives in the coming control() */
+    bool shorted = false, stalled = false, deadline_missed = false; /* in the present period */
+    std::string output;
     drive_signals signals = {};
 };
 
@@ -76,8 +84,10 @@ Board::~Board() = default;
 void Board::power_cycle()
 {
     Impl &board = *impl_;
-    board.hash_before += drive_hash();
-    board.hal.board.bridge_disable(board.hal.board.context);
+    board.hash_before = drive_hash();
+    hal_sil_restart(&board.hal);
+    board.typed.clear();
+    board.shorted = board.stalled = board.deadline_missed = false;
     char error[DRIVE_ERROR_TEXT] = "";
     if (!board.image.init(board.drive, &board.hal.board, &board.settings, error)) {
         throw std::invalid_argument(error);
@@ -115,27 +125,79 @@ void Board::sample()
     }
     board.samples.flags =
         board.hal.trip_latched ? std::uint32_t{HAL_FLAG_OVERCURRENT_TRIP} : std::uint32_t{0};
+    if (board.deadline_missed) {
+        board.samples.flags |= HAL_FLAG_DEADLINE_MISSED;
+    }
+}
+
+void Board::short_circuit(int, double current_A)
+{
+    impl_->shorted = current_A > comparator_trip_A;
+}
+
+void Board::stall_control_interrupt(double duration_s)
+{
+    impl_->stalled = duration_s > control_deadline_s;
+}
+
+void Board::type(const std::string &line)
+{
+    impl_->typed += line + '\n';
+}
+
+void Board::Impl::receive()
+{
+    const auto *bytes = reinterpret_cast<const std::uint8_t *>(typed.data());
+    if (hal_sil_host_write(&hal, bytes, typed.size()) != typed.size()) {
+        throw std::runtime_error("more lines are typed than the board takes in a period");
+    }
+    typed.clear();
+}
+
+void Board::Impl::send()
+{
+    std::uint8_t bytes[HAL_SIL_STREAM_BYTES];
+    const std::size_t count = hal_sil_host_read(&hal, bytes, sizeof bytes);
+    output.append(reinterpret_cast<const char *>(bytes), count);
 }
 
 void Board::control()
 {
     Impl &board = *impl_;
+    hal_sil_control_begins(&board.hal);
+    if (!board.typed.empty()) {
+        board.receive();
+    }
     board.outputs = board.image.control_cycle(board.drive, &board.samples);
     board.image.background(board.drive);
+    board.send();
     board.image.signals(board.drive, &board.signals);
 }
 
 void Board::advance()
 {
     Impl &board = *impl_;
+    if (std::exchange(board.shorted, false)) {
+        hal_sil_trip(&board.hal);
+    }
+    board.deadline_missed = std::exchange(board.stalled, false);
     plant::Duties duties;
     for (int leg = 0; leg < HAL_LEGS; leg++) {
         duties.high_counts[leg] = board.outputs.high_counts[leg];
     }
-    duties.bridge_on = board.outputs.bridge_on && hal_sil_bridge_on(&board.hal);
+    duties.bridge_on =
+        board.outputs.bridge_on && hal_sil_bridge_on(&board.hal) && !board.deadline_missed;
     board.plant.step(duties);
     hal_sil_next_period(&board.hal);
+    if (hal_sil_watchdog_expired(&board.hal)) {
+        throw std::logic_error("the watchdog has not been fed: a real board would have been reset");
+    }
     sample();
+}
+
+std::string Board::take_output()
+{
+    return std::exchange(impl_->output, {});
 }
 
 const drive_signals &Board::signals() const

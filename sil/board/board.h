@@ -1,7 +1,8 @@
 /*
  * The simulated drive board: a firmware image and a plant in lock-step, joined by the same HAL
- * contract, converter scales and timer resolution as the STM32G474 board. Single-threaded,
- * deterministic, knows no wall clock.
+ * contract, converter scales and timer resolution as the STM32G474 board. Its background runs once
+ * after each control interrupt, infinitely fast. Single-threaded, deterministic, knows no wall
+ * clock.
  */
 #ifndef STEADYSTEP_BOARD_H
 #define STEADYSTEP_BOARD_H
@@ -10,12 +11,13 @@
 #include <memory>
 
 #include "hal/sil/firmware_image.h"
+#include "sil/board/drive_board.h"
 #include "sil/plant/plant.h"
 
 namespace sil
 {
 
-class Board
+class Board : public DriveBoard
 {
   public:
     /* Powers the board up: the image designs its gains. Throws std::invalid_argument with the
@@ -23,28 +25,28 @@ class Board
        opens the bridge at an S(k) where a phase current is beyond it; 0: not fitted. */
     Board(const plant::Config &plant, const firmware_image &image, const drive_settings &settings,
           double hardware_trip_A = 0.0);
-    ~Board();
+    ~Board() override;
     Board(const Board &) = delete;
     Board &operator=(const Board &) = delete;
 
-    /* Posts a command to the drive; throws std::invalid_argument with the drive's text. */
+    /* Posts a command to the drive, past the typed lines; throws std::invalid_argument with the
+       drive's text. */
     void command(const drive_command &command);
 
-    /* The supply fails and returns: the drive starts again, bridge off, with the parameter store as
-       it was, while rotor and encoder go on. */
-    void power_cycle();
+    void type(const std::string &line) override;
+    void power_cycle() override;
+    void short_circuit(int leg, double current_A) override;
+    void stall_control_interrupt(double duration_s) override;
+    void control() override;
+    void advance() override;
+    const drive_signals &signals() const override;
+    std::uint64_t drive_hash() const override;
+    plant::Plant &plant() override;
+    const hal_facts &facts() const override;
+    std::string take_output() override;
 
-    /* One PWM period: the control interrupt with the samples of the present S(k); signals() and
-       plant().state() then both belong to S(k) until advance() takes the plant to S(k+1). */
-    void control();
-    void advance();
-
-    const drive_signals &signals() const; /* after control(): of S(k) */
-    std::uint64_t drive_hash() const;
-    plant::Plant &plant();
     const hal_samples &samples() const;
     const hal_outputs &outputs() const;
-    const hal_facts &facts() const;
 
   private:
     void sample();

@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 
 #include "sil/scenario/batch.h"
+#include "sil/scenario/image_run.h"
 #include "sil/scenario/output.h"
 #include "sil/scenario/report.h"
 #include "sil/scenario/runner.h"
@@ -83,11 +84,15 @@ void write_run(const Options &options, const Result &result, const Record &recor
     const fs::path folder = folder_of(options, result);
     write_file(folder / "trace.csv", trace_csv(record));
     write_file(folder / "summary.json", summary_json(result));
+    write_file(folder / "serial.txt", result.serial);
 }
 
-/* The format asked for, or else the first that the scenario names. */
+/* The format asked for, or else that of the image, or the first that the scenario names. */
 const firmware_image &image(const Options &options, const Scenario &scenario)
 {
+    if (options.numeric.empty() && !options.given.image.empty()) {
+        return *image_of(virtual_board::VirtualBoard::numeric_of(options.given.image));
+    }
     return *image_of(options.numeric.empty() ? scenario.numerics.front() : options.numeric);
 }
 
@@ -102,6 +107,9 @@ std::vector<Scenario> read_scenarios(const Options &options)
             throw InputError("run: " + name + ": given twice");
         }
         check(scenarios.back(), image(options, scenarios.back()));
+        if (!options.given.image.empty()) {
+            check_image(scenarios.back(), image(options, scenarios.back()).numeric);
+        }
     }
     return scenarios;
 }
@@ -307,6 +315,12 @@ int run_program(int argc, char **argv)
         ->allow_extra_args(false);
     run->add_option("--parameters", options.given.parameters,
                     "parameter set, on top of every file and below --set");
+    run->add_flag("--typed", options.given.typed,
+                  "commands go to the drive as typed lines; time zero is 21 periods later");
+    run->add_option("--image", options.given.image,
+                    "image of the STM32G474 board, an .elf with its .map.json beside it: runs on "
+                    "the virtual board, with typed lines")
+        ->check(CLI::ExistingFile);
     run->add_flag("--json", options.json, "one array of summaries on standard output, no report");
     add_run_options(*run, options);
     CLI::App *sweep = app.add_subcommand("sweep", "run a table of plant parameters");

@@ -104,6 +104,47 @@ void write_file(const fs::path &file, const std::string &content)
 namespace
 {
 
+Json figures_json(const virtual_board::CycleFigures &figures)
+{
+    Json json;
+    const auto column = [&](const char *name, const virtual_board::Figures &cycles) {
+        json[name]["mean"] = cycles.mean;
+        json[name]["p999"] = cycles.p999;
+        json[name]["worst"] = cycles.worst;
+    };
+    column("nominal", figures.nominal);
+    column("worst_ccm", figures.worst);
+    column("worst_flash", figures.flash);
+    return json;
+}
+
+/* The control interrupt on the virtual board; all cycles are the core's. */
+Json interrupt_json(const Result &result)
+{
+    const virtual_board::InterruptAccount::Summary &interrupt = result.board->interrupt;
+    Json json;
+    json["image"] = result.scenario->given.image;
+    json["interrupts"] = interrupt.interrupts;
+    json["budget_cycles"] = virtual_board::control_interrupt_budget;
+    json["total_cycles"] = figures_json(interrupt.total);
+    for (std::size_t i = 0; i < interrupt.stages.size(); ++i) {
+        json["stage_cycles"][interrupt.stage_names[i]] = figures_json(interrupt.stages[i]);
+    }
+    json["start_latency_cycles"]["least"] = interrupt.latency.least;
+    json["start_latency_cycles"]["mean"] = interrupt.latency.mean;
+    json["start_latency_cycles"]["worst"] = interrupt.latency.worst;
+    json["start_jitter_cycles"] = interrupt.latency.worst - interrupt.latency.least;
+    json["preemptions"] = interrupt.preemptions;
+    json["preempting_cycles"] = interrupt.preempting_cycles;
+    json["instructions_outside_ccm"] = interrupt.outside_fast_code;
+    json["stack_used_bytes"] =
+        result.board->stack_used_bytes ? Json(*result.board->stack_used_bytes) : Json();
+    json["resets"] = result.board->resets;
+    json["times_real_time"] =
+        result.cpu_s > 0 ? Json(result.board->simulated_s / result.cpu_s) : Json();
+    return json;
+}
+
 Json summary(const Result &result)
 {
     const Scenario &scenario = *result.scenario;
@@ -131,6 +172,9 @@ Json summary(const Result &result)
     for (std::size_t i = 0; i < scenario.expectations.size(); ++i) {
         json["expectations"].push_back(
             expectation_json(scenario.expectations[i], result.observations[i]));
+    }
+    if (result.board) {
+        json["interrupt"] = interrupt_json(result);
     }
     json["reports"] = Json::array();
     for (std::size_t i = 0; i < scenario.reports.size(); ++i) {
@@ -190,6 +234,11 @@ std::string reproduce_command(const Scenario &scenario, const std::string &numer
                           " --seed " + std::to_string(seed);
     if (!scenario.given.parameters.empty()) {
         command += " --parameters " + quoted(scenario.given.parameters);
+    }
+    if (!scenario.given.image.empty()) {
+        command += " --image " + quoted(scenario.given.image);
+    } else if (scenario.given.typed) {
+        command += " --typed";
     }
     for (const std::string &setting : scenario.given.settings) {
         command += " --set " + quoted(setting);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sil/scenario/image_run.h"
 #include "sil/scenario/output.h"
 #include "sil/scenario/text.h"
 
@@ -110,6 +111,9 @@ Report report(const std::vector<Result> &results)
             format("  figures of seed %llu:\n", static_cast<unsigned long long>(first.seed));
     }
     report.text += figures("move", first.move) + figures("rest", first.rest);
+    if (first.board) {
+        report.text += interrupt_table(*first.board, first.cpu_s);
+    }
     report.text += "  trace " + hexadecimal(first.trace_hash) + "  drive " +
                    hexadecimal(first.drive_hash) + "\n";
     if (!report.passed) {

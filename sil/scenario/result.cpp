@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <ctime>
 #include <numeric>
+#include <utility>
+
+#include "sil/scenario/image_run.h"
 
 namespace scenario
 {
@@ -90,11 +93,19 @@ Result execute(const Scenario &scenario, const firmware_image &image, std::uint6
     result.seed = seed;
 
     const double start_s = cpu_seconds();
-    Run run = scenario::run(scenario, image, seed);
+    Run run{Record(1), 0, 0, "", ""};
+    if (scenario.given.image.empty()) {
+        run = scenario::run(scenario, image, seed);
+    } else {
+        ImageRun on_board = run_image(scenario, result.numeric, seed);
+        run = std::move(on_board.run);
+        result.board = std::move(on_board.board);
+    }
     result.cpu_s = cpu_seconds() - start_s;
 
     record = std::move(run.record);
     result.failure = run.failure;
+    result.serial = run.serial;
     result.trace_hash = record.hash();
     result.drive_hash = run.drive_hash;
     result.simulated_s =

@@ -3,12 +3,14 @@
 #define STEADYSTEP_SCENARIO_RESULT_H
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sil/scenario/metrics.h"
 #include "sil/scenario/runner.h"
 #include "sil/scenario/scenario_file.h"
+#include "sil/virtual_board/virtual_board.h"
 
 namespace scenario
 {
@@ -35,6 +37,8 @@ struct Result {
     std::vector<Observation> reported;     /* one per report */
     std::uint64_t trace_hash = 0, drive_hash = 0;
     double simulated_s = 0, cpu_s = 0;
+    std::string serial;                              /* transcript of the serial line */
+    std::optional<virtual_board::BoardReport> board; /* of an image on the virtual board */
 
     bool passed() const;
 };

@@ -5,6 +5,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "sil/board/typed_line.h"
+#include "sil/scenario/serial_line.h"
+#include "sil/scenario/tape.h"
 #include "sil/scenario/text.h"
 
 namespace scenario
@@ -24,11 +27,14 @@ std::uint32_t periods(double time_s, double period_s)
 class Runner
 {
   public:
-    Runner(const Scenario &scenario, const plant::Config &config, const firmware_image &image)
-        : scenario_(scenario), board_(config, image, scenario.drive),
-          period_s_(config.bridge.period_s), scales_(scenario.scales),
+    /* `direct`: the same board, to which commands are posted past the serial line; nullptr: they
+       are typed. */
+    Runner(const Scenario &scenario, sil::DriveBoard &board, sil::Board *direct)
+        : scenario_(scenario), board_(board), direct_(direct),
+          period_s_(scenario.plant.bridge.period_s), scales_(scenario.scales),
           motor_(scaled(scenario.motor.params, scenario.scales)),
-          result_{Record(period_s_ * scenario.record_every), 0, 0, ""}
+          result_{Record(period_s_ * scenario.record_every), 0, 0, "", ""}, line_(board),
+          tape_(scenario.events, period_s_)
     {
     }
 
@@ -42,26 +48,42 @@ class Runner
             }
         } catch (const std::invalid_argument &refusal) {
             result_.failure = refusal.what();
+        } catch (const std::runtime_error &failure) { /* of a board that the firmware misuses */
+            result_.failure = failure.what();
         }
         result_.drive_hash = board_.drive_hash();
+        result_.serial = line_.transcript();
         return std::move(result_);
     }
 
   private:
-    /* Leaves the board at S(k0), the control interrupt done: the first period it is ready. */
-    bool enable()
+    void control()
+    {
+        board_.control();
+        line_.listen();
+    }
+
+    void ask_for_enabling()
     {
         drive_command command{};
         command.kind = DRIVE_COMMAND_ENABLE;
-        board_.command(command);
+        if (direct_ != nullptr) {
+            direct_->command(command);
+        } else {
+            line_.type_command(sil::typed_line(command), "enabling");
+        }
+    }
+
+    /* Leaves the board at S(k0), the control interrupt done: the first period it is ready. */
+    bool enable()
+    {
+        ask_for_enabling();
         const std::uint32_t last = periods(longest_enabling_s, period_s_);
         for (std::uint32_t k = 0;; ++k) {
-            board_.control();
+            control();
             const drive_state state = board_.signals().state;
             if (state == DRIVE_OPERATION_ENABLED) {
-                time_zero_ = board_.signals().period;
-                result_.enabling_time_s = k * period_s_;
-                return true;
+                return wait_for_time_zero(k);
             }
             if (state == DRIVE_FAULT || k == last) {
                 result_.failure = format("the drive did not become ready: %s after %g s, fault %s",
@@ -69,11 +91,32 @@ class Runner
                                          drive_fault_name(board_.signals().fault));
                 return false;
             }
-            if (scenario_.record_enabling) {
-                record(k);
-            }
-            board_.advance();
+            pass_enabling(k);
         }
+    }
+
+    void pass_enabling(std::uint32_t k)
+    {
+        if (scenario_.record_enabling) {
+            record(k);
+        }
+        board_.advance();
+    }
+
+    /* Commands are posted in their own period, but typed before it. */
+    bool wait_for_time_zero(std::uint32_t k)
+    {
+        const std::uint32_t shift = direct_ != nullptr ? 0 : typed_shift(period_s_);
+        time_zero_ = board_.signals().period + shift;
+        for (std::uint32_t n = 1; n <= shift; ++n) {
+            pass_enabling(k + n - 1);
+            tape_.type(std::int64_t{n} - shift, time_zero_, line_);
+            if (n < shift) {
+                control();
+            }
+        }
+        result_.enabling_time_s = (k + shift) * period_s_;
+        return true;
     }
 
     void follow_timeline(std::uint32_t last)
@@ -81,8 +124,8 @@ class Runner
         result_.record.start_time_here();
         for (std::uint32_t n = 0;; ++n) {
             act(n);
-            if (n > 0) {
-                board_.control();
+            if (n > 0 || direct_ == nullptr) {
+                control();
             }
             record(n);
             if (n == last) {
@@ -92,8 +135,8 @@ class Runner
         }
     }
 
-    /* Events of period n. A command of period 0 acts in the next interrupt: the one of S(k0) has
-       found the drive ready only now. */
+    /* Events of period n. A command of period 0 that is posted acts in the next interrupt: the one
+       of S(k0) has found the drive ready only now. */
     void act(std::uint32_t n)
     {
         for (; next_ < scenario_.events.size() &&
@@ -101,16 +144,19 @@ class Runner
              ++next_) {
             const Event &event = scenario_.events[next_];
             if (event.command) {
-                drive_command command = *event.command;
-                command.at_period = time_zero_ + n;
-                board_.command(command);
-                if (!event.set_points_rad.empty()) {
-                    streams_.push_back({command, &event.set_points_rad, 1, n,
-                                        std::max(1u, periods(command.interval_s, period_s_))});
-                }
+                post(event, n);
             } else if (event.power_cycle) {
                 board_.power_cycle();
+                line_.forget();
                 time_zero_ = 0u - n; /* the drive counts its periods from 0 again */
+            } else if (event.type) {
+                line_.type(*event.type);
+            } else if (event.expects) {
+                expect(event);
+            } else if (event.shorted_leg) {
+                board_.short_circuit(*event.shorted_leg, event.short_circuit_A);
+            } else if (event.stall_us) {
+                board_.stall_control_interrupt(*event.stall_us * 1e-6);
             } else if (event.load_torque_Nm) {
                 board_.plant().set_load_torque(*event.load_torque_Nm);
             } else {
@@ -118,8 +164,33 @@ class Runner
                                    std::max(1u, periods(event.drift_ramp_s, period_s_))});
             }
         }
+        if (direct_ == nullptr) {
+            tape_.type(n, time_zero_, line_);
+        }
         stream(n);
         drift(n);
+    }
+
+    void post(const Event &event, std::uint32_t n)
+    {
+        if (direct_ == nullptr) {
+            return; /* the tape has it */
+        }
+        drive_command command = *event.command;
+        command.at_period = time_zero_ + n;
+        direct_->command(command);
+        if (!event.set_points_rad.empty()) {
+            streams_.push_back({command, &event.set_points_rad, 1, n,
+                                std::max(1u, periods(command.interval_s, period_s_))});
+        }
+    }
+
+    void expect(const Event &event)
+    {
+        if (!line_.expect(*event.expects)) {
+            throw std::invalid_argument(event.location.text() + ": expected the drive to write \"" +
+                                        *event.expects + "...\", it has written " + line_.unread());
+        }
     }
 
     struct Stream {
@@ -136,7 +207,7 @@ class Runner
             if (stream.next < stream.positions_rad->size() &&
                 n == stream.start + stream.next * stream.interval) {
                 stream.command.position_rad = (*stream.positions_rad)[stream.next++];
-                board_.command(stream.command);
+                direct_->command(stream.command);
             }
         }
     }
@@ -203,11 +274,14 @@ class Runner
     }
 
     const Scenario &scenario_;
-    sil::Board board_;
+    sil::DriveBoard &board_;
+    sil::Board *direct_;
     double period_s_;
     PlantScales scales_;
     plant::MotorConfig motor_;
     Run result_;
+    SerialLine line_;
+    Tape tape_;
     std::uint32_t time_zero_ = 0;
     std::size_t next_ = 0; /* first event that has not acted */
     std::vector<Drift> drifts_;
@@ -269,11 +343,27 @@ void check(const Scenario &scenario, const firmware_image &image)
     }
 }
 
-Run run(const Scenario &scenario, const firmware_image &image, std::uint64_t seed)
+plant::Config plant_of(const Scenario &scenario, std::uint64_t seed)
 {
     plant::Config config = scenario.plant;
     config.seed = seed;
-    return Runner(scenario, config, image).run();
+    return config;
+}
+
+std::uint32_t typed_shift(double control_period_s)
+{
+    return sil::typed_delay(DRIVE_COMMAND_SINE, control_period_s) + 1;
+}
+
+Run run(const Scenario &scenario, const firmware_image &image, std::uint64_t seed)
+{
+    sil::Board board(plant_of(scenario, seed), image, scenario.drive);
+    return Runner(scenario, board, scenario.given.typed ? nullptr : &board).run();
+}
+
+Run run_typed(const Scenario &scenario, sil::DriveBoard &board)
+{
+    return Runner(scenario, board, nullptr).run();
 }
 
 } // namespace scenario

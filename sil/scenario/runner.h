@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sil/board/board.h"
+#include "sil/board/drive_board.h"
 #include "sil/scenario/record.h"
 #include "sil/scenario/scenario_file.h"
 
@@ -24,9 +25,25 @@ struct Run {
     double enabling_time_s = 0;
     std::uint64_t drive_hash = 0;
     std::string failure; /* why the run ended early; "" if it did not */
+    std::string serial;  /* transcript of the drive's serial line */
 };
 
+/* The plant of one run. */
+plant::Config plant_of(const Scenario &scenario, std::uint64_t seed);
+
+/* On the simulated board; with --typed as run_typed does. */
 Run run(const Scenario &scenario, const firmware_image &image, std::uint64_t seed);
+
+/*
+ * On any board, just powered up: every command, the first enable included, goes to the drive as a
+ * typed line, early enough that it acts at its own time. Time zero is `typed_shift` periods after
+ * the drive is ready, so that commands of time zero can be typed before it. After a power cycle, a
+ * command that cannot be typed early enough acts as soon as it can.
+ */
+Run run_typed(const Scenario &scenario, sil::DriveBoard &board);
+
+/* A line for a planned command of time zero arrives in the first period after the ready one. */
+std::uint32_t typed_shift(double control_period_s);
 
 } // namespace scenario
 

@@ -22,6 +22,8 @@ namespace scenario
 struct CommandLine {
     std::string parameters;            /* of --parameters; "" */
     std::vector<std::string> settings; /* of --set: "table.key=value" */
+    bool typed = false;                /* of --typed: commands go to the drive as typed lines */
+    std::string image{};               /* of --image: runs on the virtual board; "": on the SIL's */
 };
 
 struct Scenario {

@@ -17,6 +17,8 @@ namespace
 constexpr double longest_ramp_s = 600;
 constexpr double largest_bound = 1e12; /* of an expectation; any finite number in practice */
 constexpr double largest_position_rad = 1e7;
+constexpr double largest_short_circuit_A = 100;
+constexpr double longest_stall_us = 120; /* the next control interrupt still gets its samples */
 
 /* A number of a command: what it is called, where it goes, its range. */
 struct CommandField {
@@ -194,6 +196,15 @@ void read_drift(TableReader &reader, const Value &table, const std::string &path
     reader.number("ramp_s", event.drift_ramp_s, 0, longest_ramp_s);
 }
 
+void read_short_circuit(TableReader &reader, Event &event)
+{
+    std::size_t leg = 0;
+    reader.choice("short_circuit", leg, {"A+", "A-", "B+", "B-"});
+    event.shorted_leg = static_cast<int>(leg);
+    reader.require("short_circuit_A");
+    reader.number("short_circuit_A", event.short_circuit_A, 0, largest_short_circuit_A);
+}
+
 Event read_event(const Value &table, const std::string &path, double duration_s)
 {
     TableReader reader(table, path);
@@ -204,8 +215,23 @@ Event read_event(const Value &table, const std::string &path, double duration_s)
     const Value *command = reader.any("command");
     const Value *plant = reader.table("plant");
     const bool has_load = reader.any("load_torque_Nm") != nullptr;
-    if ((command != nullptr) + (plant != nullptr) + has_load != 1) {
-        reader.fail("command", "expected exactly one of command, load_torque_Nm, plant.<scale>");
+    const bool has_short_circuit = reader.any("short_circuit") != nullptr;
+    double stall_us = 0;
+    if (reader.number("stall_us", stall_us, 1, longest_stall_us)) {
+        event.stall_us = stall_us;
+    }
+    std::string typed, expected;
+    if (reader.text("type", typed)) {
+        event.type = typed;
+    }
+    if (reader.text("expect", expected)) {
+        event.expects = expected;
+    }
+    if ((command != nullptr) + (plant != nullptr) + has_load + event.type.has_value() +
+            event.expects.has_value() + has_short_circuit + event.stall_us.has_value() !=
+        1) {
+        reader.fail("command", "expected exactly one of command, type, expect, load_torque_Nm, "
+                               "plant.<scale>, short_circuit, stall_us");
     }
     if (command != nullptr && command->kind == Value::Kind::text && command->text == power_cycle) {
         event.power_cycle = true;
@@ -215,6 +241,11 @@ Event read_event(const Value &table, const std::string &path, double duration_s)
             event.set_points_rad = read_set_points(reader, event.location);
             event.command->position_rad = event.set_points_rad.front();
         }
+    } else if (event.type || event.expects || event.stall_us) {
+        reader.finish();
+        return event;
+    } else if (has_short_circuit) {
+        read_short_circuit(reader, event);
     } else if (plant != nullptr) {
         read_drift(reader, *plant, path, event);
     } else {

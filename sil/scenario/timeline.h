@@ -29,14 +29,19 @@ struct PlantScaleField {
 
 const std::vector<PlantScaleField> &plant_scale_fields();
 
-/* Something that happens at a time; exactly one of the four. */
+/* Something that happens at a time; exactly one of the eight. */
 struct Event {
     double time_s = 0; /* 0 is the first S(k) with the drive ready */
     std::optional<drive_command> command;
     std::vector<double> set_points_rad; /* of set-points: the first goes with the command, the
                                            others follow at its interval */
     bool power_cycle = false;           /* the board restarts, with its parameter store as it was */
+    std::optional<std::string> type;    /* a line for the drive's console */
+    std::optional<std::string> expects; /* the drive has written a line that begins so */
     std::optional<double> load_torque_Nm;
+    std::optional<int> shorted_leg; /* A+, A-, B+, B- */
+    double short_circuit_A = 0;
+    std::optional<double> stall_us;
     double PlantScales::*drift = nullptr; /* this scale goes to drift_to within drift_ramp_s */
     double drift_to = 1;
     double drift_ramp_s = 0;

@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace virtual_board
 {
@@ -80,6 +82,40 @@ class Peripheral
                        Master master) = 0;
     /* As after a system reset. */
     virtual void reset() = 0;
+};
+
+/* Where a peripheral's registers lie on the bus. */
+struct Mapping {
+    const char *name;
+    std::uint32_t base, bytes;
+    Peripheral *peripheral;
+};
+
+/* A flash memory behind its controller; addresses are absolute. */
+class FlashMemory
+{
+  public:
+    virtual ~FlashMemory() = default;
+
+    /* The whole of it; keeps its place and size. Whoever flashes an image writes here. */
+    virtual std::vector<std::uint8_t> &memory() = 0;
+    /* A write of the core or a DMA channel into the memory. */
+    virtual void store(std::uint32_t address, unsigned size, std::uint32_t value) = 0;
+    /* End of the operation that a read of this address has to wait for; now or earlier: none. */
+    virtual Ticks busy_until(std::uint32_t address) const = 0;
+};
+
+/* All peripherals of a chip around its core. */
+class Device
+{
+  public:
+    virtual ~Device() = default;
+
+    virtual std::vector<Mapping> mappings() = 0;
+    virtual FlashMemory &flash() = 0;
+    /* After power-on ("power-on") and after any other reset, with its cause. Calls
+       Chip::set_core_cycle for the clock the chip wakes with. */
+    virtual void reset(const std::string &cause) = 0;
 };
 
 } // namespace virtual_board

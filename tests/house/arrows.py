@@ -25,12 +25,24 @@ ROOMS = {
     "firmware/motion/": ["firmware/motion/", *DESIGN],
     "firmware/drive/": ["firmware/drive/", "firmware/estimator/", "firmware/control/",
                         "firmware/motion/", *DESIGN, "hal/hal.h"],
+    "firmware/application/": ["firmware/application/", "firmware/drive/", "firmware/estimator/",
+                              "firmware/control/", "firmware/motion/", *DESIGN, "hal/hal.h"],
     "hal/hal.h": [],
     "hal/sil/": ["hal/sil/", "hal/hal.h"],
-    "hal/sil/firmware_image.": ["hal/hal.h", "hal/sil/firmware_image.h", "firmware/drive/"],
+    "hal/sil/firmware_image.": ["hal/hal.h", "hal/sil/firmware_image.h", "firmware/drive/",
+                                "firmware/application/"],
+    "hal/stm32g474/": ["hal/stm32g474/", "hal/hal.h", "firmware/application/application.h",
+                       "firmware/motor/motor_params.h"],
+    "hal/stm32g071/": ["hal/stm32g071/", "hal/hal.h", "firmware/application/application.h",
+                       "firmware/motor/motor_params.h"],
     "sil/plant/": ["sil/plant/"],
-    "sil/board/": ["sil/board/", "sil/plant/", "hal/"],
-    "sil/scenario/": ["sil/scenario/", "board.h's"],
+    "sil/board/": ["sil/board/", "sil/plant/", "hal/", "firmware/drive/drive_interface.h"],
+    "sil/virtual_board/": ["sil/virtual_board/", "sil/board/drive_board.h", "sil/plant/",
+                           "hal/hal.h", "firmware/drive/drive_interface.h",
+                           "firmware/drive/drive_hash.h",
+                           "firmware/application/settings_record.h"],
+    "sil/scenario/": ["sil/scenario/", "sil/board/typed_line.h", "board.h's",
+                      "sil/virtual_board/virtual_board.h", "sil/virtual_board/board_facts.h"],
 }
 EXPOSED_BY = "sil/board/board.h"
 
@@ -81,7 +93,7 @@ def check_file(root, name, board_exposes):
         yield 1, "belongs to no room that tests/house/arrows.py knows"
         return
     firmware = name.startswith("firmware/")
-    simulation = (name.startswith(("sil/plant/", "sil/board/", "hal/sil/"))
+    simulation = (name.startswith(("sil/plant/", "sil/board/", "sil/virtual_board/", "hal/sil/"))
                   and not name.startswith("sil/plant/bench_"))  # those measure time
     allowed = ROOMS[room]
     for number, ours, target in includes(root / name):
@@ -125,10 +137,13 @@ PLANTED = [
     ("firmware/control/planted.c", "#include <stdlib.h>"),
     ("firmware/control/planted.c", "#if STEADYSTEP_NUM == NUM_FIXED"),
     ("firmware/drive/planted.c", '#include "hal/sil/firmware_image.h"'),
+    ("firmware/drive/planted.c", '#include "firmware/application/application.h"'),
     ("hal/sil/planted.c", '#include "firmware/drive/drive_interface.h"'),
     ("sil/plant/planted.cpp", '#include "hal/hal.h"'),
     ("sil/plant/planted.cpp", "#include <random>"),
     ("sil/board/planted.cpp", '#include "firmware/numeric/num.h"'),
+    ("sil/virtual_board/planted.cpp", '#include "sil/scenario/runner.h"'),
+    ("sil/virtual_board/planted.cpp", "#include <chrono>"),
     ("sil/scenario/planted.cpp", '#include "firmware/numeric/num.h"'),
     ("firmware/attic/planted.c", "int planted;"),
 ]

@@ -16,6 +16,7 @@ ESTIMATOR = "firmware/estimator/"
 CONTROL = "firmware/control/"
 MOTION = "firmware/motion/"
 DRIVE = "firmware/drive/"
+APPLICATION = "firmware/application/"
 
 MUTANTS = [
     # ---- motor ----
@@ -214,13 +215,18 @@ MUTANTS = [
            "at_rest_nothing_is_learned_from_a_load",
            "const num_t travel = num_clamp(num_mul_coef(pace, params->travel), NUM(0.0), TRAVEL_MAX);",
            "const num_t travel = NUM(0.02);"),
-    Mutant(DRIVE + "parameter_store.c", "parameter_store",
+    Mutant(DRIVE + "planner.c", "console",
+           "a_stop_of_a_plan_does_not_depend_on_the_background",
+           "(now - acted <= lead / 2u ? acted : now) + lead", "now + lead"),
+    Mutant(DRIVE + "planner.c", "console", "set_points_are_a_stream",
+           "(int32_t)(p->set_points_at - command->at_period) > 0", "false"),
+    Mutant(DRIVE + "record_log.c", "parameter_store",
            "the_supply_may_fail_at_any_byte_of_any_saving",
-           "page = (page + 1u) % PAGES;", ""),
-    Mutant(DRIVE + "parameter_store.c", "parameter_store", "the_last_of_many_savings_counts",
+           "page = (page + 1u) % RECORD_LOG_PAGES;", ""),
+    Mutant(DRIVE + "record_log.c", "parameter_store", "the_last_of_many_savings_counts",
            "newer(sequence, newest.sequence)", "newer(newest.sequence, sequence)"),
-    Mutant(DRIVE + "parameter_store.c", "parameter_store", "a_flipped_bit_makes_a_record_void",
-           "== crc32(slot->byte, AT_CHECK)", "!= 0u"),
+    Mutant(DRIVE + "record_log.c", "parameter_store", "a_flipped_bit_makes_a_record_void",
+           "record_get(piece, RECORD_CHECK_BYTES) == crc", "crc != 0u"),
     Mutant(CONTROL + "sliding_mode.h", "sliding_mode", "csmc_is_equations_3_and_7",
            "motion->reference_acceleration;", "num_half(motion->reference_acceleration);"),
     Mutant(CONTROL + "sliding_mode.h", "sliding_mode", "the_current_is_limited",
@@ -338,4 +344,33 @@ MUTANTS = [
     Mutant("firmware/design/loop_bandwidth.h", "drive",
            "bandwidths_too_fast_are_refused_with_their_limit",
            "#define CURRENT_BANDWIDTH_PERIOD_MAX 0.3", "#define CURRENT_BANDWIDTH_PERIOD_MAX 0.31"),
+
+    # ---- application ----
+    Mutant(APPLICATION + "application.c", "application",
+           "the_watchdog_is_fed_only_while_control_interrupts_come",
+           "period != application->fed_in", "true"),
+    Mutant(APPLICATION + "application.c", "application",
+           "stored_settings_apply_with_their_encoder",
+           "stored.encoder_counts_per_turn != 0u", "false"),
+    Mutant(APPLICATION + "console.c", "console", "a_slow_background_changes_nothing",
+           "line_period + DRIVE_TYPED_DELAY_PERIODS",
+           "period_now(application) + DRIVE_TYPED_DELAY_PERIODS"),
+    Mutant(APPLICATION + "console.c", "console", "what_the_drive_would_drop_is_refused",
+           "needs_operation(&line->command) && state", "false && state"),
+    Mutant(APPLICATION + "console.c", "console",
+           "a_later_period_can_be_asked_for_and_an_earlier_one_not",
+           "(int32_t)(line->command.at_period - earliest) >= 0", "true"),
+    Mutant(APPLICATION + "console.c", "console",
+           "long_and_damaged_lines_are_refused_as_a_whole",
+           "console->bytes_lost = true;", ""),
+    Mutant(APPLICATION + "number_text.c", "number_text",
+           "a_decimal_number_is_the_nearest_double",
+           "(double)mantissa / power", "(double)mantissa * (1.0 / power)"),
+    Mutant(APPLICATION + "number_text.c", "number_text",
+           "what_one_rounding_cannot_give_is_refused",
+           "longer > mantissa_max", "longer > 2u * mantissa_max"),
+    Mutant(APPLICATION + "settings_record.c", "settings_record", "an_unknown_law_is_no_record",
+           "payload[AT_CHOICES + 3] < DRIVE_OBSERVERS", "true"),
+    Mutant(APPLICATION + "settings_record.c", "settings_record", "the_layout_stays",
+           "&s->hold_ramp_s, &s->hold_delay_s", "&s->hold_delay_s, &s->hold_ramp_s"),
 ]

@@ -39,7 +39,8 @@ def run_small(folder, text, *arguments):
 def files_are_complete(folder):
     run_small(folder, SMALL)
     names = sorted(path.name for path in (folder / "out/small").iterdir())
-    CHECKS.that(names == ["summary.json", "trace.csv"], f"two files, nothing aside: {names}")
+    CHECKS.that(names == ["serial.txt", "summary.json", "trace.csv"],
+                f"three files, nothing aside: {names}")
     summary = summary_of(folder)
     for key in SUMMARY:
         CHECKS.that(key in summary, f"summary has {key}")

@@ -1,0 +1,76 @@
+/*
+ * The application around a drive: what a board runs besides its own peripherals. A thin layer,
+ * the same on every board, the simulated one included: settings at start-up, the control interrupt,
+ * and a background loop with the console on the serial line.
+ *
+ * A board calls
+ *
+ *     application_init                 once, then starts its timer
+ *     application_control_interrupt    in the control interrupt, with the samples of S(k)
+ *     application_count_cycles         at the end of the same interrupt, if it can measure
+ *     application_background           all the time, from its main loop
+ */
+#ifndef STEADYSTEP_APPLICATION_H
+#define STEADYSTEP_APPLICATION_H
+
+#include "firmware/application/console.h"
+#include "firmware/application/control_cycles.h"
+#include "firmware/drive/drive.h"
+#include "hal/hal.h"
+
+/* Where the settings in force come from. */
+enum application_settings {
+    APPLICATION_SETTINGS_GIVEN,  /* to application_init_with */
+    APPLICATION_SETTINGS_STORED, /* the newest record in the board's parameter store */
+    APPLICATION_SETTINGS_DEFAULT /* of the motor that is compiled in */
+};
+
+/* One instance, which stays where it was initialised. */
+struct application {
+    struct drive drive;
+    struct hal_outputs outputs; /* of the last control interrupt */
+    uint64_t gains_hash;        /* drive_hash_gains of this start */
+    struct control_cycles cycles;
+
+    /* background */
+    struct hal board;       /* as given, with the facts below */
+    struct hal_facts facts; /* as given, with the encoder of the stored settings */
+    enum application_settings settings_from;
+    bool stored_refused;                   /* by the drive: the defaults are in force */
+    char stored_refusal[DRIVE_ERROR_TEXT]; /* why */
+    uint32_t fed_in;                       /* period in which the watchdog was fed */
+    struct console console;
+};
+
+/*
+ * Start-up with the newest valid settings in pages 2 and 3 of the parameter store, or, without any,
+ * with the defaults for `motor_default`. Settings that the drive refuses are announced on the
+ * console, and the defaults apply. false: these are refused, too; reason in error. Takes as long
+ * as drive_init.
+ */
+bool application_init(struct application *application, const struct hal *board,
+                      const struct motor_params *motor_default, char error[DRIVE_ERROR_TEXT]);
+
+/* Start-up with these settings, whatever is stored. false: refused, reason in error. */
+bool application_init_with(struct application *application, const struct hal *board,
+                           const struct drive_settings *settings, char error[DRIVE_ERROR_TEXT]);
+
+/*
+ * The control interrupt: drive_control_cycle. What it returns acts over S(k+1)...S(k+2); a bridge
+ * that is to be off is switched off at once.
+ */
+struct hal_outputs application_control_interrupt(struct application *application,
+                                                 const struct hal_samples *samples);
+
+/* The control interrupt, at its end: what this one has taken. */
+void application_count_cycles(struct application *application,
+                              const struct control_cycles_of_period *cycles);
+
+/*
+ * The main loop calls it all the time, at least once in 3 ms. One call takes at most one typed line
+ * (1 ms on a Cortex-M4F) and lets the planner plan once (1 ms); a line that writes the parameter
+ * store takes up to 35 ms. The watchdog is fed only if control interrupts have come since.
+ */
+void application_background(struct application *application);
+
+#endif

@@ -1,0 +1,257 @@
+#include "firmware/application/command_line.h"
+
+#include "firmware/application/number_text.h"
+
+#define BIT(parameter) (1u << LINE_##parameter)
+#define PROFILE_TIMES  (BIT(DURATION) | BIT(RAMP))
+#define LIMITS         (BIT(ACCELERATION) | BIT(JERK_LIMIT))
+
+static const struct line_form forms[] = {
+    {"help", LINE_HELP, DRIVE_COMMANDS, 0, 0, false, "lists commands; help <command> explains one"},
+    {"state", LINE_STATE, DRIVE_COMMANDS, 0, 0, false, "what the drive does and measures"},
+    {"cycles", LINE_CYCLES, DRIVE_COMMANDS, 0, 0, false,
+     "last/mean/most cycles of the control interrupt by stage; cycles reset begins anew"},
+    {"enable", LINE_COMMAND, DRIVE_COMMAND_ENABLE, 0, 0, true,
+     "offset calibration, then the hold that aligns the rotor, then ready"},
+    {"disable", LINE_COMMAND, DRIVE_COMMAND_DISABLE, 0, 0, true,
+     "opens the bridge; clears a fault"},
+    {"move", LINE_MOVE, DRIVE_COMMAND_MOVE_SMOOTH, BIT(POSITION), PROFILE_TIMES | BIT(JERK), true,
+     "jerk-limited move to a position, with times that suit the motor if none are given"},
+    {"stop", LINE_COMMAND, DRIVE_COMMAND_STOP, 0, 0, true, "brings the reference to rest"},
+    {"hold", LINE_COMMAND, DRIVE_COMMAND_HOLD, 0, 0, true, "ramps the hold current in"},
+    {"move-smooth", LINE_COMMAND, DRIVE_COMMAND_MOVE_SMOOTH,
+     BIT(POSITION) | PROFILE_TIMES | BIT(JERK), 0, true,
+     "jerk-limited: ramps of speed with jerk_s of constant jerk at each end"},
+    {"move-trapezoid", LINE_COMMAND, DRIVE_COMMAND_MOVE_TRAPEZOID, BIT(POSITION) | PROFILE_TIMES, 0,
+     true, "trapezoid of speed"},
+    {"step", LINE_COMMAND, DRIVE_COMMAND_STEP, BIT(POSITION), 0, true,
+     "the reference jumps to a position"},
+    {"sine", LINE_COMMAND, DRIVE_COMMAND_SINE, BIT(AMPLITUDE) | BIT(FREQUENCY),
+     BIT(CYCLES_OF_SINE) | BIT(RAMP), true,
+     "about where the reference rests; cycles=0: until a stop"},
+    {"set-point", LINE_COMMAND, DRIVE_COMMAND_SET_POINT, BIT(POSITION), BIT(INTERVAL) | LIMITS,
+     true, "the first begins a stream and needs all; the last position three times ends it"},
+    {"velocity", LINE_COMMAND, DRIVE_COMMAND_VELOCITY, BIT(SPEED) | LIMITS, 0, true,
+     "a speed for ever, from whatever motion"},
+    {"retarget", LINE_COMMAND, DRIVE_COMMAND_RETARGET, BIT(POSITION) | BIT(SPEED) | LIMITS, 0, true,
+     "to a position from whatever motion"},
+    {"save", LINE_COMMAND, DRIVE_COMMAND_SAVE, 0, 0, false,
+     "keeps what has been learned across power cycles"},
+};
+
+static const struct {
+    const char *name;
+    size_t offset; /* in struct drive_command */
+} parameters[LINE_PARAMETERS] = {
+    [LINE_POSITION] = {"position_rad", offsetof(struct drive_command, position_rad)},
+    [LINE_DURATION] = {"duration_s", offsetof(struct drive_command, duration_s)},
+    [LINE_RAMP] = {"ramp_s", offsetof(struct drive_command, ramp_s)},
+    [LINE_JERK] = {"jerk_s", offsetof(struct drive_command, jerk_s)},
+    [LINE_AMPLITUDE] = {"amplitude_rad", offsetof(struct drive_command, amplitude_rad)},
+    [LINE_FREQUENCY] = {"frequency_Hz", offsetof(struct drive_command, frequency_Hz)},
+    [LINE_CYCLES_OF_SINE] = {"cycles", offsetof(struct drive_command, cycles)},
+    [LINE_INTERVAL] = {"interval_s", offsetof(struct drive_command, interval_s)},
+    [LINE_SPEED] = {"speed_rad_s", offsetof(struct drive_command, speed_rad_s)},
+    [LINE_ACCELERATION] = {"acceleration_rad_s2",
+                           offsetof(struct drive_command, acceleration_rad_s2)},
+    [LINE_JERK_LIMIT] = {"jerk_rad_s3", offsetof(struct drive_command, jerk_rad_s3)},
+};
+
+/* A part of the typed line. */
+struct word {
+    const char *at;
+    size_t length;
+};
+
+const struct line_form *line_form_number(size_t number)
+{
+    return number < sizeof forms / sizeof forms[0] ? &forms[number] : NULL;
+}
+
+static struct word next_word(const char **typed)
+{
+    const char *at = *typed;
+
+    while (*at == ' ' || *at == '\t') {
+        at++;
+    }
+    const char *end = at;
+
+    while (*end != '\0' && *end != ' ' && *end != '\t') {
+        end++;
+    }
+    *typed = end;
+    return (struct word){at, (size_t)(end - at)};
+}
+
+static bool is(struct word word, const char *name)
+{
+    size_t i = 0;
+
+    while (i < word.length && name[i] == word.at[i]) {
+        i++;
+    }
+    return i == word.length && name[i] == '\0';
+}
+
+/* As typed, in quotes; what a terminal would not show as itself, as '?'. */
+static void quote(struct text *text, struct word word)
+{
+    enum { SHOWN = 40 };
+
+    text_put(text, "\"");
+    for (size_t i = 0; i < word.length && i < SHOWN; i++) {
+        const char shown[2] = {word.at[i] >= ' ' && word.at[i] <= '~' ? word.at[i] : '?', '\0'};
+
+        text_put(text, shown);
+    }
+    text_put(text, word.length > SHOWN ? "...\"" : "\"");
+}
+
+static const struct line_form *form_of(struct word word)
+{
+    for (size_t i = 0; line_form_number(i) != NULL; i++) {
+        if (is(word, forms[i].name)) {
+            return &forms[i];
+        }
+    }
+    return NULL;
+}
+
+static void put_names(struct text *text, uint32_t set)
+{
+    for (int i = 0; i < LINE_PARAMETERS; i++) {
+        if ((set >> i & 1u) != 0u) {
+            text_put(text, " ");
+            text_put(text, parameters[i].name);
+            text_put(text, "=");
+        }
+    }
+}
+
+void line_form_usage(struct text *text, const struct line_form *form)
+{
+    text_put(text, form->name);
+    put_names(text, form->required);
+    if (form->optional != 0u || form->may_wait) {
+        text_put(text, " [");
+        put_names(text, form->optional);
+        text_put(text, form->may_wait ? " at= ]" : " ]");
+    }
+}
+
+static bool refuse_word(struct text *answer, struct word word, const char *expected)
+{
+    quote(answer, word);
+    text_put(answer, ": expected ");
+    text_put(answer, expected);
+    return false;
+}
+
+static bool refuse_parameter(const struct command_line *line, struct word word, struct text *answer)
+{
+    quote(answer, word);
+    text_put(answer, ": expected ");
+    line_form_usage(answer, line->form);
+    return false;
+}
+
+static bool read_number(struct command_line *line, int parameter, struct word value,
+                        struct text *answer)
+{
+    double *target = (double *)(void *)((char *)&line->command + parameters[parameter].offset);
+
+    if ((line->given >> parameter & 1u) != 0u) {
+        text_put(answer, parameters[parameter].name);
+        text_put(answer, ": given twice");
+        return false;
+    }
+    line->given = (uint16_t)(line->given | 1u << parameter);
+    switch (number_from_text(value.at, value.length, target)) {
+    case NUMBER_TEXT_READ:
+        return true;
+    case NUMBER_TEXT_TOO_LONG:
+        return refuse_word(answer, value,
+                           "a number of at most 15 digits, or hexadecimal with at most 53 bits");
+    case NUMBER_TEXT_OUT_OF_RANGE:
+        return refuse_word(answer, value, "a number within 1e-22...1e37, or hexadecimal");
+    default:
+        return refuse_word(answer, value, "a number, as -1.5, 2e-3 or 0x1.8p+0");
+    }
+}
+
+/* name=value, or a value alone for the first required parameter. */
+static bool read_parameter(struct command_line *line, struct word word, struct text *answer)
+{
+    const uint32_t known = line->form->required | line->form->optional;
+    struct word name = {word.at, 0};
+    struct word value = word;
+
+    while (name.length < word.length && word.at[name.length] != '=') {
+        name.length++;
+    }
+    if (name.length == word.length) {
+        int first = 0;
+
+        while (first < LINE_PARAMETERS && (line->form->required >> first & 1u) == 0u) {
+            first++;
+        }
+        return first < LINE_PARAMETERS && line->given == 0u ? read_number(line, first, word, answer)
+                                                            : refuse_parameter(line, word, answer);
+    }
+    value.at += name.length + 1u;
+    value.length -= name.length + 1u;
+    if (line->form->may_wait && is(name, "at")) {
+        line->at_given = true;
+        return unsigned_from_text(value.at, value.length, &line->at_period) ||
+               refuse_word(answer, value, "a control period, 0...4294967295");
+    }
+    for (int i = 0; i < LINE_PARAMETERS; i++) {
+        if ((known >> i & 1u) != 0u && is(name, parameters[i].name)) {
+            return read_number(line, i, value, answer);
+        }
+    }
+    return refuse_parameter(line, name, answer);
+}
+
+static bool read_word(struct command_line *line, struct word word, struct text *answer)
+{
+    switch (line->form->action) {
+    case LINE_HELP:
+        line->topic = form_of(word);
+        return line->topic != NULL || refuse_word(answer, word, "a command; help lists them");
+    case LINE_CYCLES:
+        line->resets = is(word, "reset");
+        return line->resets || refuse_word(answer, word, "cycles or cycles reset");
+    default:
+        return read_parameter(line, word, answer);
+    }
+}
+
+bool command_line_read(struct command_line *line, const char *typed, struct text *answer)
+{
+    struct word word = next_word(&typed);
+
+    *line = (struct command_line){.form = form_of(word)};
+    if (word.length == 0u) {
+        return true;
+    }
+    if (line->form == NULL) {
+        return refuse_word(answer, word, "a command; help lists them");
+    }
+    line->command.kind = line->form->kind;
+    for (word = next_word(&typed); word.length > 0u; word = next_word(&typed)) {
+        if (!read_word(line, word, answer)) {
+            return false;
+        }
+    }
+    const uint32_t missing = line->form->required & ~(uint32_t)line->given;
+
+    if (missing != 0u) {
+        text_put(answer, line->form->name);
+        text_put(answer, ": missing");
+        put_names(answer, missing);
+        return false;
+    }
+    return true;
+}

@@ -1,0 +1,65 @@
+/*
+ * One typed line, taken apart: a command of the list below, its parameters as numbers. Knows no
+ * drive; what may be done now is the console's to say.
+ */
+#ifndef STEADYSTEP_COMMAND_LINE_H
+#define STEADYSTEP_COMMAND_LINE_H
+
+#include "firmware/design/text.h"
+#include "firmware/drive/drive_interface.h"
+
+/* What a line asks for. */
+enum line_action {
+    LINE_COMMAND, /* what drive_command takes */
+    LINE_MOVE,    /* the same, of kind DRIVE_COMMAND_MOVE_SMOOTH; times not given are chosen */
+    LINE_HELP,
+    LINE_STATE,
+    LINE_CYCLES
+};
+
+/* Numbers of a drive_command; bit n of a set of parameters is number n. */
+enum line_parameter {
+    LINE_POSITION,
+    LINE_DURATION,
+    LINE_RAMP,
+    LINE_JERK,
+    LINE_AMPLITUDE,
+    LINE_FREQUENCY,
+    LINE_CYCLES_OF_SINE,
+    LINE_INTERVAL,
+    LINE_SPEED,
+    LINE_ACCELERATION,
+    LINE_JERK_LIMIT,
+    LINE_PARAMETERS
+};
+
+struct line_form {
+    const char *name;
+    enum line_action action;
+    enum drive_command_kind kind;
+    uint16_t required; /* parameters */
+    uint16_t optional;
+    bool may_wait;     /* takes at=<period> */
+    const char *about; /* what it does, in a few words */
+};
+
+/* NULL behind the last. */
+const struct line_form *line_form_number(size_t number);
+
+/* "move position_rad= [duration_s= ramp_s= jerk_s= at=]" */
+void line_form_usage(struct text *text, const struct line_form *form);
+
+struct command_line {
+    const struct line_form *form;
+    const struct line_form *topic; /* of help; NULL: all */
+    struct drive_command command;  /* at_period is the console's */
+    uint16_t given;                /* parameters */
+    bool at_given;
+    uint32_t at_period;
+    bool resets; /* of cycles */
+};
+
+/* false: not understood; `answer` says what was expected. An empty line has no form. */
+bool command_line_read(struct command_line *line, const char *typed, struct text *answer);
+
+#endif

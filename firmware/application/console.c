@@ -1,0 +1,334 @@
+#include "firmware/application/console.h"
+
+#include "firmware/application/application.h"
+#include "firmware/application/command_line.h"
+#include "firmware/application/default_move.h"
+#include "firmware/application/report.h"
+
+static uint32_t period_now(const struct application *application)
+{
+    return *(const volatile uint32_t *)&application->drive.period;
+}
+
+/* ---- answers ---- */
+
+static struct text begin_answer(struct console *console)
+{
+    return text_in(console->answer, sizeof console->answer - 1u); /* and the end of the line */
+}
+
+static void end_answer(struct console *console, const struct text *answer)
+{
+    console->answer[answer->length] = '\n';
+    console->answer_length = answer->length + 1u;
+    console->answer_sent = 0;
+}
+
+/* false: some of the last line still waits for room. */
+static bool send(struct application *application)
+{
+    struct console *console = &application->console;
+    const struct hal *board = &application->board;
+    const size_t left = console->answer_length - console->answer_sent;
+
+    if (left > 0u) {
+        const uint8_t *bytes = (const uint8_t *)&console->answer[console->answer_sent];
+
+        console->answer_sent += board->stream_write(board->context, bytes, left);
+    }
+    return console->answer_sent == console->answer_length;
+}
+
+/* ---- announcements ---- */
+
+/* A new state that somebody should hear of. */
+static bool announce_state(const struct application *application,
+                           struct console_announced *announced, struct text *text)
+{
+    const struct drive *drive = &application->drive;
+    const enum drive_state state = *(const volatile enum drive_state *)&drive->state;
+    const uint32_t since = *(const volatile uint32_t *)&drive->state_since;
+
+    if (state == announced->state && since == announced->state_since) {
+        return false;
+    }
+    announced->state = state;
+    announced->state_since = since;
+    if (state == DRIVE_FAULT) {
+        report_fault(text, application);
+    } else if (state == DRIVE_OPERATION_ENABLED) {
+        report_ready(text, application);
+    }
+    return text->length > 0u;
+}
+
+static bool announce(struct application *application)
+{
+    struct console *console = &application->console;
+    struct console_announced *announced = &console->announced;
+    struct text text = begin_answer(console);
+
+    if (!announced->start) {
+        announced->start = true;
+        report_start(&text, application);
+    } else if (application->stored_refused && !announced->refused_settings) {
+        announced->refused_settings = true;
+        report_refused_settings(&text, application);
+    } else if (application->drive.planner.underruns != announced->underruns) {
+        announced->underruns = application->drive.planner.underruns;
+        text_put(&text, "warning: the reference came to rest: what continues it came too late");
+    } else if (!announce_state(application, announced, &text)) {
+        return false;
+    }
+    end_answer(console, &text);
+    return true;
+}
+
+/* ---- commands ---- */
+
+static bool is_planned(const struct drive_command *command)
+{
+    return command->kind >= DRIVE_COMMAND_SINE && command->kind <= DRIVE_COMMAND_RETARGET;
+}
+
+static bool needs_operation(const struct drive_command *command)
+{
+    return command->kind != DRIVE_COMMAND_ENABLE && command->kind != DRIVE_COMMAND_DISABLE &&
+           command->kind != DRIVE_COMMAND_SAVE;
+}
+
+/* What the drive would drop without a word. */
+static bool fits_state(const struct application *application, const struct command_line *line,
+                       struct text *answer)
+{
+    const struct drive *drive = &application->drive;
+    const enum drive_state state =
+        drive->commands.disable.posted ? DRIVE_SWITCH_ON_DISABLED : drive->state;
+
+    if (line->command.kind == DRIVE_COMMAND_ENABLE && state == DRIVE_FAULT) {
+        text_put(answer, "enable refused: fault ");
+        report_fault_reason(answer, application);
+        text_put(answer, "; disable clears it");
+        return false;
+    }
+    if (needs_operation(&line->command) && state != DRIVE_OPERATION_ENABLED) {
+        text_put(answer, line->form->name);
+        text_put(answer, " refused: the drive is ");
+        text_put(answer, drive_state_name(state));
+        text_put(answer, state == DRIVE_SWITCH_ON_DISABLED ? ", enable it first"
+                         : state == DRIVE_FAULT            ? ", disable clears it"
+                                                           : ", wait until it is ready");
+        return false;
+    }
+    if (line->command.kind == DRIVE_COMMAND_SAVE && drive->planner.motion != PLANNER_IDLE) {
+        text_put(answer, "save refused: writing takes longer than sine and set-points can wait for "
+                         "their continuation; stop first");
+        return false;
+    }
+    return true;
+}
+
+/* The period a line that came in `line_period` acts in. */
+static bool address(const struct application *application, struct command_line *line,
+                    uint32_t line_period, struct text *answer)
+{
+    const uint32_t lead =
+        is_planned(&line->command) ? planner_lead_periods(&application->drive) : 0u;
+    const uint32_t earliest = line_period + DRIVE_TYPED_DELAY_PERIODS + lead;
+
+    line->command.at_period = line->at_given ? line->at_period : earliest;
+    if ((int32_t)(line->command.at_period - earliest) >= 0) {
+        return true;
+    }
+    text_put(answer, "at=");
+    text_unsigned(answer, line->at_period);
+    text_put(answer, ": must be at least ");
+    text_unsigned(answer, earliest);
+    text_put(answer, ", the first period in which this line can act");
+    return false;
+}
+
+static void choose_times(struct application *application, struct command_line *line)
+{
+    struct drive *drive = &application->drive;
+    const double here = drive_planned_end_rad(drive);
+    const struct default_move_task task = {
+        .settings = &drive->settings,
+        .period_s = application->facts.control_period_s,
+        .distance_rad = line->command.position_rad - here,
+        .duration_given = (line->given >> LINE_DURATION & 1u) != 0u,
+        .ramp_given = (line->given >> LINE_RAMP & 1u) != 0u,
+        .jerk_given = (line->given >> LINE_JERK & 1u) != 0u,
+    };
+
+    default_move_times(&line->command, &task);
+}
+
+static void confirm(const struct application *application, const struct command_line *line,
+                    struct text *answer)
+{
+    const struct drive_command *command = &line->command;
+    static const struct {
+        const char *name;
+        size_t offset;
+    } times[] = {{" duration_s=", offsetof(struct drive_command, duration_s)},
+                 {" ramp_s=", offsetof(struct drive_command, ramp_s)},
+                 {" jerk_s=", offsetof(struct drive_command, jerk_s)}};
+
+    text_put(answer, line->form->name);
+    if (command->kind == DRIVE_COMMAND_SAVE) {
+        return;
+    }
+    text_put(answer, " at=");
+    text_unsigned(answer, command->at_period);
+    for (size_t i = 0; line->form->action == LINE_MOVE && i < sizeof times / sizeof times[0]; i++) {
+        text_put(answer, times[i].name);
+        text_number(answer,
+                    *(const double *)(const void *)((const char *)command + times[i].offset),
+                    TEXT_DIGITS_MAX);
+    }
+    if ((int32_t)(period_now(application) - command->at_period) >= 0) {
+        text_put(answer, " late: that period had passed");
+    }
+}
+
+static bool obey_command(struct application *application, struct command_line *line,
+                         uint32_t line_period, struct text *answer)
+{
+    char refusal[DRIVE_ERROR_TEXT];
+
+    if (!fits_state(application, line, answer) ||
+        !address(application, line, line_period, answer)) {
+        return false;
+    }
+    if (line->form->action == LINE_MOVE) {
+        choose_times(application, line);
+    }
+    if (!drive_command(&application->drive, &line->command, refusal)) {
+        text_put(answer, refusal);
+        return false;
+    }
+    return true;
+}
+
+/* ---- lines ---- */
+
+static void report(struct application *application, const struct command_line *line,
+                   struct text *answer)
+{
+    switch (line->form->action) {
+    case LINE_HELP:
+        report_help(answer, line->topic);
+        break;
+    case LINE_STATE:
+        report_state(answer, application);
+        break;
+    case LINE_CYCLES:
+        text_put(answer, "cycles");
+        report_cycles(answer, application);
+        application->cycles.restart = line->resets;
+        break;
+    default:
+        confirm(application, line, answer);
+        break;
+    }
+}
+
+static bool is_command(const struct command_line *line)
+{
+    return line->form->action == LINE_COMMAND || line->form->action == LINE_MOVE;
+}
+
+/* false: an empty line, which has no answer. */
+static bool obey_line(struct application *application, uint32_t line_period)
+{
+    struct console *console = &application->console;
+    const bool too_long = console->line_length > CONSOLE_LINE_BYTES;
+    struct text answer = begin_answer(console);
+    struct command_line line;
+
+    console->line[too_long ? CONSOLE_LINE_BYTES : console->line_length] = '\0';
+    console->line_length = 0;
+    text_put(&answer, "error: ");
+    if (console->bytes_lost) {
+        text_put(&answer, "bytes of the line were lost, it came faster than it is read");
+    } else if (too_long) {
+        text_put(&answer, "the line is longer than 200 characters");
+    } else if (command_line_read(&line, console->line, &answer)) {
+        if (line.form == NULL) {
+            return false;
+        }
+        if (!is_command(&line) || obey_command(application, &line, line_period, &answer)) {
+            answer = begin_answer(console);
+            text_put(&answer, "ok ");
+            report(application, &line, &answer);
+        }
+    }
+    console->bytes_lost = false;
+    end_answer(console, &answer);
+    return true;
+}
+
+static void take_character(struct application *application, char character)
+{
+    struct console *console = &application->console;
+
+    console->returned = character == '\r';
+    if (character == '\r') {
+        console->returned_in = period_now(application);
+    } else if (character == (char)HAL_STREAM_LOST) {
+        console->bytes_lost = true;
+    } else if (character == '\b' || character == '\x7f') {
+        console->line_length -= console->line_length > 0u ? 1u : 0u;
+    } else {
+        if (console->line_length < CONSOLE_LINE_BYTES) {
+            console->line[console->line_length] = character;
+        }
+        console->line_length += console->line_length <= CONSOLE_LINE_BYTES ? 1u : 0u;
+    }
+}
+
+/* A terminal that ends its lines with '\r' alone. */
+static bool line_returned(struct application *application)
+{
+    struct console *console = &application->console;
+    const uint32_t now = period_now(application);
+
+    if (!console->returned || now - console->returned_in < CONSOLE_RETURN_PERIODS) {
+        return false;
+    }
+    console->returned = false;
+    return obey_line(application, now);
+}
+
+/* true: an answer is to be sent. */
+static bool read_line(struct application *application)
+{
+    enum { PIECE = 64 };
+    struct console *console = &application->console;
+    const struct hal *board = &application->board;
+    uint8_t bytes[PIECE];
+    uint32_t line_period = 0;
+    const size_t count = board->stream_read(board->context, bytes, PIECE, &line_period);
+
+    for (size_t i = 0; i < count; i++) {
+        if (bytes[i] == '\n') {
+            console->returned = false;
+            return obey_line(application, line_period);
+        }
+        take_character(application, (char)bytes[i]);
+    }
+    return line_returned(application);
+}
+
+void console_init(struct console *console)
+{
+    *console = (struct console){.announced = {.state = DRIVE_SWITCH_ON_DISABLED}};
+}
+
+void console_background(struct application *application)
+{
+    if (send(application) && (announce(application) || read_line(application))) {
+        (void)send(application);
+    }
+}

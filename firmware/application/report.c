@@ -1,0 +1,232 @@
+#include "firmware/application/report.h"
+
+#include <stdatomic.h>
+
+#include "firmware/application/application.h"
+#include "firmware/application/command_line.h"
+
+enum { DIGITS = 6 };
+
+#define TEXT_OF(token) #token
+#define NUMERIC(token) TEXT_OF(token) /* of NUM_FORMAT: float, fixed or double */
+
+static void put_number(struct text *text, const char *name, double value)
+{
+    text_put(text, " ");
+    text_put(text, name);
+    text_put(text, "=");
+    text_number(text, value, DIGITS);
+}
+
+static void put_word(struct text *text, const char *name, const char *value)
+{
+    text_put(text, " ");
+    text_put(text, name);
+    text_put(text, "=");
+    text_put(text, value);
+}
+
+static void put_count(struct text *text, const char *name, uint32_t value)
+{
+    text_put(text, " ");
+    text_put(text, name);
+    text_put(text, "=");
+    text_unsigned(text, value);
+}
+
+/* All of one period: read again if a control interrupt has come in between. */
+static void read_signals(const struct drive *drive, struct drive_signals *signals)
+{
+    const volatile uint32_t *period = &drive->period;
+    uint32_t before;
+    int tries = 3;
+
+    do {
+        before = *period;
+        atomic_signal_fence(memory_order_seq_cst);
+        drive_signals_read(drive, signals);
+        atomic_signal_fence(memory_order_seq_cst);
+    } while (before != *period && --tries > 0);
+}
+
+void report_start(struct text *text, const struct application *application)
+{
+    static const char *const from[] = {
+        [APPLICATION_SETTINGS_GIVEN] = "given",
+        [APPLICATION_SETTINGS_STORED] = "stored",
+        [APPLICATION_SETTINGS_DEFAULT] = "default",
+    };
+    const struct drive_settings *settings = &application->drive.settings;
+    const struct hal *board = &application->board;
+
+    text_put(text, board->version);
+    text_put(text, ", " NUMERIC(NUM_FORMAT) ", on ");
+    text_put(text, board->facts->board_name);
+    text_put(text, "; settings: ");
+    text_put(text, from[application->settings_from]);
+    put_number(text, "resistance_ohm", settings->motor.resistance_ohm);
+    put_number(text, "inductance_H", settings->motor.inductance_H);
+    put_number(text, "torque_constant_Nm_A", settings->motor.torque_constant_Nm_A);
+    put_count(text, "rotor_teeth", (uint32_t)settings->motor.rotor_teeth);
+    put_number(text, "rated_current_A", settings->motor.rated_current_A);
+    put_number(text, "supply_V", settings->motor.supply_V);
+    put_word(text, "law", drive_law_name(settings->law));
+    put_word(text, "feedback", drive_feedback_name(settings->feedback));
+    text_put(text, "; started by: ");
+    text_put(text, board->start_cause(board->context));
+}
+
+void report_refused_settings(struct text *text, const struct application *application)
+{
+    text_put(text, "warning: the stored settings are not in force: ");
+    text_put(text, application->stored_refusal);
+}
+
+void report_fault_reason(struct text *text, const struct application *application)
+{
+    const struct drive *drive = &application->drive;
+    const enum drive_fault fault = drive->fault;
+
+    text_put(text, drive_fault_name(fault));
+    switch (fault) {
+    case DRIVE_FAULT_OVERCURRENT:
+        text_put(text, ": a phase current beyond ");
+        text_number(text, drive->settings.overcurrent_trip_A, DIGITS);
+        text_put(text, " A");
+        break;
+    case DRIVE_FAULT_HARDWARE_OVERCURRENT:
+        text_put(text, ": the board's comparator has tripped");
+        break;
+    case DRIVE_FAULT_DEADLINE_MISSED:
+        text_put(text, ": a control interrupt has ended too late");
+        break;
+    case DRIVE_FAULT_BUS_VOLTAGE:
+        text_put(text, ": the supply is outside 0.5...1.3 of ");
+        text_number(text, drive->settings.motor.supply_V, DIGITS);
+        text_put(text, " V");
+        break;
+    case DRIVE_FAULT_ESTIMATE_RANGE:
+        text_put(text, ": the estimate has lost the rotor");
+        break;
+    case DRIVE_FAULT_OFFSET_RANGE:
+        text_put(text, ": a current sensor's offset is too large to be one");
+        break;
+    default:
+        break;
+    }
+}
+
+void report_fault(struct text *text, const struct application *application)
+{
+    text_put(text, "fault: ");
+    report_fault_reason(text, application);
+    text_put(text, "; the bridge is open since period ");
+    text_unsigned(text, application->drive.state_since);
+    text_put(text, ", disable clears the fault");
+}
+
+void report_ready(struct text *text, const struct application *application)
+{
+    struct drive_signals signals;
+
+    read_signals(&application->drive, &signals);
+    text_put(text, "ready:");
+    put_count(text, "period", application->drive.state_since);
+    put_number(text, "reference_rad", signals.theta_ref_rad);
+    put_number(text, "resistance_ohm", signals.resistance_est_ohm);
+}
+
+void report_state(struct text *text, const struct application *application)
+{
+    const struct drive *drive = &application->drive;
+    struct drive_signals signals;
+
+    read_signals(drive, &signals);
+    text_put(text, drive_state_name(signals.state));
+    put_word(text, "fault", drive_fault_name(signals.fault));
+    put_count(text, "period", signals.period);
+    put_number(text, "position_rad", signals.theta_est_rad);
+    put_number(text, "speed_rad_s", signals.omega_est_rad_s);
+    put_number(text, "load_torque_Nm", signals.load_torque_est_Nm);
+    put_number(text, "reference_rad", signals.theta_ref_rad);
+    put_number(text, "reference_rad_s", signals.omega_ref_rad_s);
+    put_word(text, "moving", signals.reference_moving ? "yes" : "no");
+    put_word(text, "holding", signals.holding ? "yes" : "no");
+    put_number(text, "i_d_A", signals.i_d_A);
+    put_number(text, "i_q_A", signals.i_q_A);
+    put_number(text, "resistance_ohm", signals.resistance_est_ohm);
+    put_number(text, "bus_V", signals.bus_V);
+    put_count(text, "underruns", signals.reference_underruns);
+    put_word(text, "law", drive_law_name(drive->settings.law));
+    put_word(text, "feedback", drive_feedback_name(drive->settings.feedback));
+    text_put(text, "; ");
+    text_put(text, application->board.version);
+}
+
+static struct control_cycles read_cycles(const struct application *application)
+{
+    const struct control_cycles *counted = &application->cycles;
+    struct control_cycles copy;
+    uint32_t before;
+
+    do {
+        before = counted->periods;
+        atomic_signal_fence(memory_order_seq_cst);
+        copy = *counted;
+        atomic_signal_fence(memory_order_seq_cst);
+    } while (before != counted->periods);
+    return copy;
+}
+
+static void put_stage(struct text *text, const char *name, const struct control_stage_cycles *stage,
+                      uint32_t periods)
+{
+    text_put(text, " ");
+    text_put(text, name);
+    text_put(text, "=");
+    text_unsigned(text, stage->last);
+    text_put(text, "/");
+    text_number(text, (double)stage->sum / (double)periods, DIGITS);
+    text_put(text, "/");
+    text_unsigned(text, stage->max);
+}
+
+void report_cycles(struct text *text, const struct application *application)
+{
+    static const char *const names[CONTROL_STAGES] = {
+        [CONTROL_STAGE_LATENCY] = "latency",
+        [CONTROL_STAGE_READ] = "read",
+        [CONTROL_STAGE_CONTROL] = "control",
+        [CONTROL_STAGE_WRITE] = "write",
+    };
+    const double share = 0.9; /* the interrupt must end within 90 us of 100 (hal.h) */
+    const struct hal_facts *facts = application->board.facts;
+    const struct control_cycles cycles = read_cycles(application);
+
+    put_count(text, "periods", cycles.periods);
+    if (cycles.periods == 0u) {
+        text_put(text, ": none counted yet, or this board does not count");
+        return;
+    }
+    text_put(text, "; last/mean/most:");
+    for (int stage = 0; stage < CONTROL_STAGES; stage++) {
+        put_stage(text, names[stage], &cycles.stage[stage], cycles.periods);
+    }
+    put_stage(text, "total", &cycles.total, cycles.periods);
+    put_number(text, "budget", share * facts->control_period_s * facts->cycle_counter_Hz);
+}
+
+void report_help(struct text *text, const struct line_form *topic)
+{
+    if (topic != NULL) {
+        line_form_usage(text, topic);
+        text_put(text, ": ");
+        text_put(text, topic->about);
+        return;
+    }
+    for (size_t i = 0; line_form_number(i) != NULL; i++) {
+        text_put(text, i == 0u ? "" : ", ");
+        text_put(text, line_form_number(i)->name);
+    }
+    text_put(text, "; help <command> explains one");
+}

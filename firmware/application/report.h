@@ -1,0 +1,30 @@
+/* What the console says of the drive, one line each, written behind what the text holds already. */
+#ifndef STEADYSTEP_REPORT_H
+#define STEADYSTEP_REPORT_H
+
+#include "firmware/design/text.h"
+
+struct application;
+struct line_form;
+
+/* "<version of the image>, float, on <board>; ...; started by: power-on" */
+void report_start(struct text *text, const struct application *application);
+
+/* Why the stored settings are not in force. */
+void report_refused_settings(struct text *text, const struct application *application);
+
+/* "fault: overcurrent in period 1234: ...; the bridge is open, disable clears it" */
+void report_fault(struct text *text, const struct application *application);
+
+/* "overcurrent: a phase current beyond 5.4 A" */
+void report_fault_reason(struct text *text, const struct application *application);
+
+/* "ready: ..." */
+void report_ready(struct text *text, const struct application *application);
+
+/* The answers to state, cycles, help and help <topic>. */
+void report_state(struct text *text, const struct application *application);
+void report_cycles(struct text *text, const struct application *application);
+void report_help(struct text *text, const struct line_form *topic);
+
+#endif

@@ -1,0 +1,61 @@
+/*
+ * What a scenario needs of a board: a drive in lock-step with a plant, fed by typed lines. Two
+ * boards are of this kind: sil::Board, whose firmware is compiled for this machine, and the virtual
+ * board, which executes the image of a real one.
+ */
+#ifndef STEADYSTEP_DRIVE_BOARD_H
+#define STEADYSTEP_DRIVE_BOARD_H
+
+#include <cstdint>
+#include <string>
+
+#include "firmware/drive/drive_interface.h"
+#include "hal/hal.h"
+#include "sil/plant/plant.h"
+
+namespace sil
+{
+
+/* Of the reference board (hal/stm32g474/board.h): trip of its comparators, and the time that its
+   deadline guard leaves the control interrupt. */
+constexpr double comparator_trip_A = 7.0;
+constexpr double control_deadline_s = 90e-6;
+
+class DriveBoard
+{
+  public:
+    virtual ~DriveBoard() = default;
+
+    /* Types a line, given without its end. Its last byte arrives in the period of the coming
+       control(): after that period's S(k), before the next one. */
+    virtual void type(const std::string &line) = 0;
+
+    /* The supply fails and returns: the drive starts again, bridge off, with the parameter store as
+       it was, while rotor and encoder go on. The coming control() is that of period 0. */
+    virtual void power_cycle() = 0;
+
+    /* Faults from outside, in the period of the coming control(). The current of a leg's shunt, 0...3:
+       A+, A-, B+, B-, towards ground: beyond the comparator's trip it opens the bridge 60 us behind
+       S(k), whatever the firmware does. */
+    virtual void short_circuit(int leg, double current_A) = 0;
+    /* Something holds the control interrupt up: for longer than 90 us, and the bridge opens before
+       the period is over. What the interrupt itself takes counts, where it takes any time. */
+    virtual void stall_control_interrupt(double duration_s) = 0;
+
+    /* One PWM period: the control interrupt with the samples of the present S(k); signals() and
+       plant().state() then both belong to S(k) until advance() takes the plant to S(k+1). */
+    virtual void control() = 0;
+    virtual void advance() = 0;
+
+    virtual const drive_signals &signals() const = 0; /* after control(): of S(k) */
+    virtual std::uint64_t drive_hash() const = 0;     /* power cycles: the sum over the starts */
+    virtual plant::Plant &plant() = 0;
+    virtual const hal_facts &facts() const = 0;
+
+    /* What the drive has written on its serial line since the last call. */
+    virtual std::string take_output() = 0;
+};
+
+} // namespace sil
+
+#endif

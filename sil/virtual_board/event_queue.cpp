@@ -1,0 +1,36 @@
+#include "sil/virtual_board/event_queue.h"
+
+#include <algorithm>
+
+namespace virtual_board
+{
+
+void EventQueue::schedule(Event &event, Ticks at)
+{
+    const auto known = std::find_if(entries_.begin(), entries_.end(),
+                                    [&](const Entry &entry) { return entry.event == &event; });
+    if (known != entries_.end()) {
+        entries_.erase(known);
+    }
+    event.at = at;
+    if (at != Event::never) {
+        /* Before all of the same time, so behind them in the order of taking. */
+        const auto place =
+            std::find_if(entries_.rbegin(), entries_.rend(), [&](const Entry &entry) {
+                return entry.at > at;
+            }).base();
+        entries_.insert(place, {at, &event});
+    }
+    remember_next();
+}
+
+Event &EventQueue::take()
+{
+    Event &event = *entries_.back().event;
+    entries_.pop_back();
+    event.at = Event::never;
+    remember_next();
+    return event;
+}
+
+} // namespace virtual_board

@@ -1,0 +1,91 @@
+#include "sil/virtual_board/interrupt_account.h"
+
+namespace virtual_board
+{
+
+void Distribution::add(std::uint64_t value)
+{
+    constexpr std::uint64_t most = 1u << 20; /* a hundred times what fits a period */
+    const std::uint64_t kept = value < most ? value : most;
+    if (kept >= counts_.size()) {
+        counts_.resize(kept + 1);
+    }
+    ++counts_[kept];
+    ++values_;
+}
+
+Figures Distribution::figures() const
+{
+    Figures figures;
+    if (values_ == 0) {
+        return figures;
+    }
+    const std::uint64_t quantile = values_ - values_ / 1000;
+    std::uint64_t seen = 0;
+    double sum = 0;
+    for (std::uint64_t value = 0; value < counts_.size(); ++value) {
+        if (counts_[value] == 0) {
+            continue;
+        }
+        figures.least = seen == 0 ? value : figures.least;
+        figures.p999 = seen < quantile ? value : figures.p999;
+        figures.worst = value;
+        seen += counts_[value];
+        sum += static_cast<double>(value) * counts_[value];
+    }
+    figures.mean = sum / static_cast<double>(values_);
+    return figures;
+}
+
+void InterruptAccount::Column::add(const Cycles &cycles)
+{
+    nominal.add(cycles.nominal);
+    worst.add(cycles.worst);
+    flash.add(cycles.flash);
+}
+
+CycleFigures InterruptAccount::Column::figures() const
+{
+    return {nominal.figures(), worst.figures(), flash.figures()};
+}
+
+void InterruptAccount::set_stages(const std::vector<std::string> &names)
+{
+    names_ = names;
+    present_.assign(names.size(), Cycles());
+    stages_.assign(names.size(), Column());
+}
+
+void InterruptAccount::begin()
+{
+    present_.assign(present_.size(), Cycles());
+}
+
+void InterruptAccount::end()
+{
+    Cycles total;
+    for (std::size_t i = 0; i < present_.size(); ++i) {
+        stages_[i].add(present_[i]);
+        total += present_[i];
+    }
+    total_.add(total);
+    ++interrupts_;
+}
+
+InterruptAccount::Summary InterruptAccount::summary() const
+{
+    Summary summary;
+    summary.interrupts = interrupts_;
+    summary.total = total_.figures();
+    summary.stage_names = names_;
+    for (const Column &stage : stages_) {
+        summary.stages.push_back(stage.figures());
+    }
+    summary.latency = latency_.figures();
+    summary.preemptions = preemptions_;
+    summary.preempting_cycles = preempting_.nominal;
+    summary.outside_fast_code = outside_fast_code_;
+    return summary;
+}
+
+} // namespace virtual_board

@@ -1,0 +1,163 @@
+#include "sil/virtual_board/interrupt_controller.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace virtual_board
+{
+
+InterruptController::InterruptController(const CoreModel &core) : core_(core)
+{
+    reset();
+}
+
+void InterruptController::reset()
+{
+    const std::vector<State> before = exceptions_;
+    exceptions_.assign(exception::first_interrupt + core_.interrupt_lines, State());
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        exceptions_[i].line = before[i].line; /* the peripherals' own reset lowers it */
+    }
+    of(exception::nmi).priority = -2;
+    of(exception::hard_fault).priority = hard_fault_priority;
+    for (const unsigned always : {exception::nmi, exception::hard_fault, exception::supervisor_call,
+                                  exception::pend_sv, exception::system_tick}) {
+        of(always).enabled = true;
+    }
+    stack_.clear();
+    group_mask_ = 0xff;
+    find_next();
+    find_running_priority();
+}
+
+const InterruptController::State &InterruptController::of(unsigned exception) const
+{
+    return exceptions_.at(exception);
+}
+
+InterruptController::State &InterruptController::of(unsigned exception)
+{
+    return exceptions_.at(exception);
+}
+
+void InterruptController::set_line(unsigned line, bool level)
+{
+    State &state = of(exception::first_interrupt + line);
+    if (level && !state.line) {
+        state.pending = true;
+    }
+    if (level != state.line) {
+        state.line = level;
+        find_next();
+    }
+}
+
+void InterruptController::set_pending(unsigned exception)
+{
+    of(exception).pending = true;
+    find_next();
+}
+
+void InterruptController::clear_pending(unsigned exception)
+{
+    State &state = of(exception);
+    state.pending = state.line && !state.active;
+    find_next();
+}
+
+void InterruptController::set_enabled(unsigned exception, bool enabled)
+{
+    of(exception).enabled = enabled;
+    find_next();
+}
+
+void InterruptController::set_priority(unsigned exception, unsigned priority)
+{
+    const unsigned implemented = 0xffu & ~(0xffu >> core_.priority_bits);
+    of(exception).priority = static_cast<int>(priority & implemented);
+    find_next();
+    find_running_priority();
+}
+
+/* Field PRIGROUP: the bits above bit `grouping` decide on preemption. */
+void InterruptController::set_priority_grouping(unsigned grouping)
+{
+    group_mask_ = static_cast<int>(0xffu & ~((2u << grouping) - 1));
+    find_next();
+    find_running_priority();
+}
+
+/* The whole priority, then the lower number, chooses among those that wait. */
+void InterruptController::find_next()
+{
+    next_ = 0;
+    int best = idle_priority;
+    for (unsigned i = exception::nmi; i < exceptions_.size(); ++i) {
+        const State &state = exceptions_[i];
+        if (state.pending && state.enabled && state.priority < best) {
+            next_ = i;
+            best = state.priority;
+        }
+    }
+    next_priority_ = next_ == 0 ? idle_priority : group(best);
+}
+
+void InterruptController::find_running_priority()
+{
+    running_priority_ = idle_priority;
+    for (const unsigned active : stack_) {
+        running_priority_ = std::min(running_priority_, group(of(active).priority));
+    }
+}
+
+int InterruptController::priority_of_execution(const Masks &masks) const
+{
+    int priority = running_priority_;
+    if (masks.base_priority != 0) {
+        priority = std::min(priority, group(static_cast<int>(masks.base_priority)));
+    }
+    if (masks.primask) {
+        priority = std::min(priority, 0);
+    }
+    if (masks.faultmask) {
+        priority = std::min(priority, hard_fault_priority);
+    }
+    return priority;
+}
+
+unsigned InterruptController::to_enter(const Masks &masks) const
+{
+    return next_priority_ < priority_of_execution(masks) ? next_ : 0;
+}
+
+bool InterruptController::wakes(const Masks &masks) const
+{
+    Masks without = masks;
+    without.primask = false;
+    return next_priority_ < priority_of_execution(without);
+}
+
+void InterruptController::enter(unsigned exception)
+{
+    State &state = of(exception);
+    state.pending = false;
+    state.active = true;
+    stack_.push_back(exception);
+    find_next();
+    find_running_priority();
+}
+
+void InterruptController::leave()
+{
+    if (stack_.empty()) {
+        throw std::logic_error("return from an exception while none is active");
+    }
+    State &state = of(stack_.back());
+    stack_.pop_back();
+    state.active = false;
+    state.pending = state.pending || state.line;
+    find_next();
+    find_running_priority();
+}
+
+} // namespace virtual_board

@@ -1,0 +1,118 @@
+/* The bus: who answers at an address. */
+#include "sil/virtual_board/machine.h"
+
+#include <cstdio>
+
+namespace virtual_board
+{
+
+const Mapping &Machine::mapping(std::uint32_t address, unsigned bytes, const char *what) const
+{
+    for (const Mapping &mapping : mappings_) {
+        if (address - mapping.base < mapping.bytes) {
+            if (address % bytes != 0) {
+                refuse_access(address, bytes, what, "is not aligned");
+            }
+            return mapping;
+        }
+    }
+    refuse_access(address, bytes, what, "finds no peripheral that is modelled");
+}
+
+void Machine::refuse_access(std::uint32_t address, unsigned bytes, const char *what,
+                            const char *why) const
+{
+    char text[96];
+    std::snprintf(text, sizeof text, "%s of %u bytes at 0x%08x %s", what, bytes,
+                  static_cast<unsigned>(address), why);
+    fail(text);
+}
+
+std::uint32_t Machine::bus_read(std::uint32_t address, unsigned bytes, Master master)
+{
+    const Mapping &place = mapping(address, bytes, "read");
+    return place.peripheral->read(address - place.base, bytes, master);
+}
+
+void Machine::bus_write(std::uint32_t address, unsigned bytes, std::uint32_t value, Master master)
+{
+    const Mapping &place = mapping(address, bytes, "write");
+    place.peripheral->write(address - place.base, bytes, value, master);
+}
+
+namespace
+{
+
+std::uint32_t little_endian(const std::uint8_t *from, unsigned bytes)
+{
+    std::uint32_t value = 0;
+    for (unsigned i = 0; i < bytes; ++i) {
+        value |= std::uint32_t{from[i]} << (8 * i);
+    }
+    return value;
+}
+
+} // namespace
+
+/* The core's accesses that are not to plain memory. */
+std::uint32_t Machine::read(std::uint32_t address, unsigned bytes)
+{
+    if (description_.flash.contains(address)) {
+        const Ticks free = flash_->busy_until(address);
+        if (free > now_) { /* the bus waits for the end of the operation */
+            const std::uint64_t cycles = (free - now_ + core_cycle_ - 1) / core_cycle_;
+            add_time({cycles, cycles, cycles});
+        }
+        return little_endian(memory(address, bytes), bytes);
+    }
+    const bool own = address - SystemControl::base < SystemControl::bytes;
+    if (own && address < 0xe0040000) {
+        return system_.read(address - SystemControl::base, bytes, Master::core);
+    }
+    add_time(costs_.rules.peripheral);
+    return bus_read(address, bytes, Master::core);
+}
+
+void Machine::write(std::uint32_t address, unsigned bytes, std::uint32_t value)
+{
+    if (description_.flash.contains(address)) {
+        flash_->store(address, bytes, value);
+        return;
+    }
+    const bool own = address - SystemControl::base < SystemControl::bytes;
+    if (own && address < 0xe0040000) {
+        const bool allowed = system_.floating_point_allowed();
+        system_.write(address - SystemControl::base, bytes, value, Master::core);
+        if (system_.floating_point_allowed() != allowed) {
+            allow_floating_point();
+        }
+        return;
+    }
+    add_time(costs_.rules.peripheral);
+    bus_write(address, bytes, value, Master::core);
+}
+
+/* What DMA channels see: memory or peripherals. */
+std::uint32_t Machine::load(std::uint32_t address, unsigned bytes)
+{
+    const std::uint8_t *const plain = memory(address, bytes);
+    return plain != nullptr ? little_endian(plain, bytes) : bus_read(address, bytes, Master::dma);
+}
+
+void Machine::store(std::uint32_t address, unsigned bytes, std::uint32_t value)
+{
+    if (description_.flash.contains(address)) {
+        flash_->store(address, bytes, value);
+        return;
+    }
+    std::uint8_t *const plain = memory(address, bytes);
+    if (plain == nullptr) {
+        bus_write(address, bytes, value, Master::dma);
+        return;
+    }
+    for (unsigned i = 0; i < bytes; ++i) {
+        plain[i] = static_cast<std::uint8_t>(value >> (8 * i));
+    }
+}
+
+} // namespace virtual_board

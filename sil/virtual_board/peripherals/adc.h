@@ -1,0 +1,115 @@
+/*
+ * ADC1...ADC5 and their common registers: power-up sequence, injected and regular sequences on
+ * triggers, oversampling, DMA, flags. Independent mode, no injected queue beyond one context, no
+ * continuous or discontinuous mode, no analog watchdog. RM0440, chapter ADC.
+ */
+#ifndef STEADYSTEP_VIRTUAL_BOARD_ADC_H
+#define STEADYSTEP_VIRTUAL_BOARD_ADC_H
+
+#include <array>
+
+#include "sil/virtual_board/peripherals/clock_tree.h"
+#include "sil/virtual_board/peripherals/dma.h"
+#include "sil/virtual_board/peripherals/trigger.h"
+
+namespace virtual_board
+{
+
+class AdcCommon : public RegisterBlock
+{
+  public:
+    AdcCommon(Chip &chip, const char *name);
+
+    /* Half a period of the ADC clock; 0 while no clock is chosen. */
+    Ticks half_clock() const;
+    /* HCLK periods of latency between a trigger and the start of sampling. */
+    Ticks latency() const;
+
+    std::function<bool()> any_enabled;
+
+  protected:
+    void put(std::uint32_t offset, std::uint32_t value, Master master) override;
+};
+
+/* One conversion as the analog side sees it. */
+struct Conversion {
+    unsigned adc; /* 1...5 */
+    unsigned channel;
+    bool injected;
+    Ticks trigger; /* of its sequence */
+    Ticks sampled; /* end of the sampling time (of the last conversion of an oversampled rank) */
+};
+
+/* The analog side: codes of 12 bits. */
+class AnalogInputs
+{
+  public:
+    virtual ~AnalogInputs() = default;
+    virtual std::uint32_t code(const Conversion &conversion) = 0;
+    /* The result of a regular conversion, `factor` x code >> `shift`, was stored by DMA. */
+    virtual void stored(const Conversion &conversion, std::uint32_t address, unsigned factor,
+                        unsigned shift) = 0;
+    /* The core has read JDR1 with the injected interrupt enabled. */
+    virtual void injected_result_taken(unsigned adc) = 0;
+};
+
+class Adc : public RegisterBlock
+{
+  public:
+    Adc(Chip &chip, unsigned number, AdcCommon &common, Triggers &triggers, Dmamux &dmamux,
+        AnalogInputs &inputs, std::function<void(bool)> interrupt);
+
+    void reset() override;
+    bool enabled() const;
+
+    struct Counters {
+        std::uint64_t conversions = 0, injected_sequences = 0, regular_sequences = 0;
+        std::uint64_t ignored_triggers = 0, overruns = 0;
+        Ticks last_injected_trigger = 0, last_injected_end = 0;
+    };
+    Counters counters;
+    int stuck_code = -1; /* a fault for tests: every conversion gives this code */
+
+  protected:
+    std::uint32_t fetch(std::uint32_t offset, Master master) override;
+    void put(std::uint32_t offset, std::uint32_t value, Master master) override;
+
+  private:
+    struct Sequence {
+        bool running = false;
+        unsigned rank = 0, ranks = 0;
+        Ticks trigger = 0, sampled = 0;
+    };
+
+    void control(std::uint32_t value);
+    void power_up(std::uint32_t value);
+    void calibrated();
+    void ready();
+    void triggered(Trigger source, TriggerEdge edge);
+    void start_injected();
+    void start_regular();
+    void next_rank(Sequence &sequence, Event &event, Ticks start);
+    void end_of_injected();
+    void end_of_regular();
+    void deliver(std::uint32_t data, const Conversion &conversion, unsigned shift);
+    unsigned channel(const Sequence &sequence) const;
+    Ticks sampling(unsigned channel) const;
+    unsigned oversampling() const;
+    std::uint32_t resolved(std::uint32_t code) const;
+    void flag(std::uint32_t flags);
+
+    unsigned number_;
+    AdcCommon &common_;
+    Dmamux &dmamux_;
+    AnalogInputs &inputs_;
+    std::function<void(bool)> interrupt_;
+    Ticks regulator_ready_ = Event::never, calibration_end_ = 0;
+    bool calibrated_ = false, ready_ = false;
+    bool dma_stopped_ = false;
+    Sequence injected_, regular_;
+    Event calibration_event_, ready_event_, injected_event_, regular_event_;
+};
+
+} // namespace virtual_board
+
+#endif

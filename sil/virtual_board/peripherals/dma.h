@@ -1,0 +1,80 @@
+/*
+ * DMA1, DMA2 and the DMAMUX. A request moves one item at once; the time of a transfer on the bus
+ * is not modelled. Reference: RM0440, chapters DMA and DMAMUX.
+ */
+#ifndef STEADYSTEP_VIRTUAL_BOARD_DMA_H
+#define STEADYSTEP_VIRTUAL_BOARD_DMA_H
+
+#include <array>
+#include <map>
+
+#include "sil/virtual_board/peripherals/register_block.h"
+
+namespace virtual_board
+{
+
+/* Request numbers of the DMAMUX. */
+enum class DmaRequest : unsigned {
+    adc1 = 5,
+    lpuart1_rx = 34,
+    lpuart1_tx = 35,
+    adc2 = 36,
+    adc3 = 37,
+    adc4 = 38,
+    adc5 = 39
+};
+
+class Dma : public RegisterBlock
+{
+  public:
+    static constexpr unsigned channels = 8;
+
+    Dma(Chip &chip, unsigned number); /* 1 or 2 */
+
+    void reset() override;
+
+    bool enabled(unsigned channel) const;
+    /* One item; false if the channel takes none. The memory address it used goes to `where`. */
+    bool transfer(unsigned channel, std::uint32_t *where);
+
+    std::function<void(unsigned channel)> on_enable;
+
+  protected:
+    void put(std::uint32_t offset, std::uint32_t value, Master master) override;
+
+  private:
+    void flag(unsigned channel, std::uint32_t flags);
+    void interrupt();
+
+    unsigned number_;
+    std::array<std::uint32_t, channels> loaded_{}; /* items when the channel was enabled */
+};
+
+class Dmamux : public RegisterBlock
+{
+  public:
+    Dmamux(Chip &chip, Dma &dma1, Dma &dma2);
+
+    /* A peripheral asks for one item; false if no enabled channel is routed to it. */
+    bool request(DmaRequest source, std::uint32_t *where = nullptr);
+    /* Called when a channel that is routed to the request has been enabled. */
+    void on_ready(DmaRequest source, std::function<void()> poll)
+    {
+        polls_[source] = std::move(poll);
+    }
+
+  protected:
+    void put(std::uint32_t offset, std::uint32_t value, Master master) override;
+
+  private:
+    void enabled(unsigned index);
+
+    Dma &dma1_, &dma2_;
+    std::map<DmaRequest, std::function<void()>> polls_;
+    std::vector<DmaRequest> ready_;
+    Event poll_event_;
+};
+
+} // namespace virtual_board
+
+#endif

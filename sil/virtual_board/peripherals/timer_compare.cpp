@@ -1,0 +1,52 @@
+/* General timers: compare flags. */
+#include "sil/virtual_board/peripherals/timer.h"
+
+#include <algorithm>
+
+namespace virtual_board
+{
+
+namespace
+{
+
+enum : std::uint32_t { DIER = 0x0c, SR = 0x10, CCMR1 = 0x18, CCMR2 = 0x1c };
+
+} // namespace
+
+bool Timer::output(int channel) const
+{
+    const std::uint32_t mode = at(channel < 2 ? CCMR1 : CCMR2);
+    return field(mode, channel % 2 == 0 ? 0 : 8, 2) == 0;
+}
+
+/* Sets the compare flags of all matches up to now. */
+void Timer::take_flags()
+{
+    const Ticks now = chip_.now();
+    if (!kind_.general || !counting() || encoder_mode() || now <= flags_until_) {
+        return;
+    }
+    for (int channel = 0; channel < 4; channel++) {
+        const Ticks match = origin_ + compare_[static_cast<std::size_t>(channel)] * count_ticks();
+        if (output(channel) && match > flags_until_ && match <= now) {
+            at(SR) |= 2u << channel;
+        }
+    }
+    flags_until_ = now;
+}
+
+void Timer::schedule_compare()
+{
+    Ticks next = Event::never;
+    for (int channel = 0; kind_.general && counting() && channel < 4; channel++) {
+        const std::uint32_t compare = compare_[static_cast<std::size_t>(channel)];
+        const Ticks match = origin_ + compare * count_ticks();
+        if (bit(at(DIER), static_cast<unsigned>(1 + channel)) && match > chip_.now() &&
+            compare <= top()) {
+            next = std::min(next, match);
+        }
+    }
+    chip_.schedule(compare_event_, next);
+}
+
+} // namespace virtual_board

@@ -1,0 +1,61 @@
+/* Trigger outputs of timers, and interrupt lines that several sources share. */
+#ifndef STEADYSTEP_VIRTUAL_BOARD_TRIGGER_H
+#define STEADYSTEP_VIRTUAL_BOARD_TRIGGER_H
+
+#include <functional>
+#include <vector>
+
+#include "sil/virtual_board/chip.h"
+
+namespace virtual_board
+{
+
+enum class Trigger { tim1, tim1_2, tim2, tim3, tim4, tim6, tim7, tim15, count };
+enum class TriggerEdge { rising, falling };
+
+class Triggers
+{
+  public:
+    void listen(std::function<void(Trigger, TriggerEdge)> listener)
+    {
+        listeners_.push_back(std::move(listener));
+    }
+    void edge(Trigger source, TriggerEdge edge)
+    {
+        for (auto &listener : listeners_) {
+            listener(source, edge);
+        }
+    }
+    void pulse(Trigger source)
+    {
+        edge(source, TriggerEdge::rising);
+        edge(source, TriggerEdge::falling);
+    }
+
+  private:
+    std::vector<std::function<void(Trigger, TriggerEdge)>> listeners_;
+};
+
+/* Several peripherals on one line of the NVIC: the line is high while one of them is. */
+class SharedLine
+{
+  public:
+    SharedLine(Chip &chip, unsigned line) : chip_(chip), line_(line)
+    {
+    }
+    void set(unsigned source, bool level)
+    {
+        const unsigned mask = 1u << source;
+        levels_ = level ? levels_ | mask : levels_ & ~mask;
+        chip_.interrupt(line_, levels_ != 0);
+    }
+
+  private:
+    Chip &chip_;
+    unsigned line_;
+    unsigned levels_ = 0;
+};
+
+} // namespace virtual_board
+
+#endif

@@ -1,0 +1,236 @@
+#include "sil/virtual_board/unicorn_core.h"
+
+#include <stdexcept>
+#include <string>
+
+#include <unicorn/unicorn.h>
+
+namespace virtual_board
+{
+
+namespace
+{
+
+/* Numbers of libunicorn's hook for what the core itself calls exceptions. */
+enum : std::uint32_t { core_supervisor_call = 2, core_breakpoint = 7, core_exception_return = 8 };
+
+int number_of(CoreRegister name)
+{
+    switch (name) {
+    case CoreRegister::r0:
+        return UC_ARM_REG_R0;
+    case CoreRegister::r1:
+        return UC_ARM_REG_R1;
+    case CoreRegister::r2:
+        return UC_ARM_REG_R2;
+    case CoreRegister::r3:
+        return UC_ARM_REG_R3;
+    case CoreRegister::r12:
+        return UC_ARM_REG_R12;
+    case CoreRegister::sp:
+        return UC_ARM_REG_SP; /* r13; the alias MSP has its own ideas */
+    case CoreRegister::lr:
+        return UC_ARM_REG_LR;
+    case CoreRegister::pc:
+        return UC_ARM_REG_PC;
+    case CoreRegister::xpsr:
+        return UC_ARM_REG_XPSR;
+    case CoreRegister::control:
+        return UC_ARM_REG_CONTROL;
+    case CoreRegister::primask:
+        return UC_ARM_REG_PRIMASK;
+    case CoreRegister::base_priority:
+        return UC_ARM_REG_BASEPRI;
+    case CoreRegister::faultmask:
+        return UC_ARM_REG_FAULTMASK;
+    case CoreRegister::fpscr:
+        return UC_ARM_REG_FPSCR;
+    }
+    throw std::logic_error("no such register");
+}
+
+} // namespace
+
+/* Exceptions must not cross the emulator's own frames: they are kept and thrown on behind it. */
+struct UnicornCore::Callbacks {
+    template <typename Call> static void guarded(UnicornCore &core, Call call)
+    {
+        if (core.thrown_) {
+            return;
+        }
+        try {
+            call();
+        } catch (...) {
+            core.thrown_ = std::current_exception();
+            core.stop();
+        }
+    }
+
+    static void instruction(uc_engine *, std::uint64_t address, std::uint32_t bytes, void *user)
+    {
+        UnicornCore &core = *static_cast<UnicornCore *>(user);
+        try {
+            if (!core.observer_.before_instruction(static_cast<std::uint32_t>(address), bytes)) {
+                core.reason_ = Stopped::by_observer;
+                core.stop();
+            }
+        } catch (...) {
+            core.thrown_ = std::current_exception();
+            core.stop();
+        }
+    }
+
+    static void interrupt(uc_engine *, std::uint32_t number, void *user)
+    {
+        UnicornCore &core = *static_cast<UnicornCore *>(user);
+        core.stop();
+        switch (number) {
+        case core_exception_return:
+            core.reason_ = Stopped::exception_return;
+            return;
+        case core_supervisor_call:
+            core.reason_ = Stopped::supervisor_call;
+            return;
+        case core_breakpoint:
+            core.reason_ = Stopped::breakpoint;
+            return;
+        default:
+            core.reason_ = Stopped::undefined_instruction;
+        }
+    }
+
+    static std::uint64_t read(uc_engine *, std::uint64_t offset, unsigned bytes, void *user)
+    {
+        const Window &window = *static_cast<Window *>(user);
+        std::uint32_t value = 0;
+        guarded(*window.core, [&] {
+            value = window.core->observer_.read(window.base + static_cast<std::uint32_t>(offset),
+                                                bytes);
+        });
+        return value;
+    }
+
+    static void write(uc_engine *, std::uint64_t offset, unsigned bytes, std::uint64_t value,
+                      void *user)
+    {
+        const Window &window = *static_cast<Window *>(user);
+        guarded(*window.core, [&] {
+            window.core->observer_.write(window.base + static_cast<std::uint32_t>(offset), bytes,
+                                         static_cast<std::uint32_t>(value));
+        });
+    }
+};
+
+UnicornCore::UnicornCore(const CoreModel &model, CoreObserver &observer) : observer_(observer)
+{
+    check(uc_open(UC_ARCH_ARM, static_cast<uc_mode>(UC_MODE_THUMB | UC_MODE_MCLASS), &engine_),
+          "open");
+    const int cpu =
+        model.architecture == Architecture::armv7em ? UC_CPU_ARM_CORTEX_M4 : UC_CPU_ARM_CORTEX_M0;
+    check(uc_ctl_set_cpu_model(engine_, cpu), "model of the core");
+    uc_hook hook = 0;
+    check(uc_hook_add(engine_, &hook, UC_HOOK_CODE,
+                      reinterpret_cast<void *>(&Callbacks::instruction), this, 1, 0),
+          "hook");
+    check(uc_hook_add(engine_, &hook, UC_HOOK_INTR, reinterpret_cast<void *>(&Callbacks::interrupt),
+                      this, 1, 0),
+          "hook");
+}
+
+UnicornCore::~UnicornCore()
+{
+    if (engine_ != nullptr) {
+        uc_close(engine_);
+    }
+}
+
+void UnicornCore::check(int error, const char *what) const
+{
+    if (error != UC_ERR_OK) {
+        throw std::runtime_error(std::string("libunicorn: ") + what + ": " +
+                                 uc_strerror(static_cast<uc_err>(error)));
+    }
+}
+
+void UnicornCore::stop()
+{
+    uc_emu_stop(engine_);
+}
+
+void UnicornCore::map_memory(AddressRange range, std::uint8_t *host, bool writable)
+{
+    check(uc_mem_map_ptr(engine_, range.base, range.bytes,
+                         writable ? UC_PROT_ALL : UC_PROT_READ | UC_PROT_EXEC, host),
+          "memory");
+}
+
+void UnicornCore::map_registers(AddressRange range)
+{
+    windows_.push_back({this, range.base});
+    check(uc_mmio_map(engine_, range.base, range.bytes, &Callbacks::read, &windows_.back(),
+                      &Callbacks::write, &windows_.back()),
+          "registers");
+}
+
+void UnicornCore::forget_code(AddressRange range)
+{
+    check(uc_ctl_remove_cache(engine_, std::uint64_t{range.base},
+                              std::uint64_t{range.base} + range.bytes),
+          "cache");
+}
+
+std::uint32_t UnicornCore::get(CoreRegister name) const
+{
+    std::uint32_t value = 0;
+    check(uc_reg_read(engine_, number_of(name), &value), "register");
+    return value;
+}
+
+void UnicornCore::set(CoreRegister name, std::uint32_t value)
+{
+    check(uc_reg_write(engine_, number_of(name), &value), "register");
+}
+
+void UnicornCore::get_floating_point(std::uint32_t s0_to_s15[16]) const
+{
+    for (int i = 0; i < 16; ++i) {
+        check(uc_reg_read(engine_, UC_ARM_REG_S0 + i, &s0_to_s15[i]), "register");
+    }
+}
+
+void UnicornCore::set_floating_point(const std::uint32_t s0_to_s15[16])
+{
+    for (int i = 0; i < 16; ++i) {
+        check(uc_reg_write(engine_, UC_ARM_REG_S0 + i, &s0_to_s15[i]), "register");
+    }
+}
+
+Stopped UnicornCore::run(std::uint32_t address)
+{
+    reason_ = Stopped::by_itself;
+    thrown_ = nullptr;
+    const uc_err error = uc_emu_start(engine_, address | 1u, 0, 0, 0);
+    if (thrown_) {
+        std::rethrow_exception(thrown_);
+    }
+    switch (error) {
+    case UC_ERR_OK:
+        return reason_;
+    case UC_ERR_READ_UNMAPPED:
+        return Stopped::unmapped_read;
+    case UC_ERR_WRITE_UNMAPPED:
+        return Stopped::unmapped_write;
+    case UC_ERR_FETCH_UNMAPPED:
+        return Stopped::unmapped_fetch;
+    case UC_ERR_WRITE_PROT:
+        return Stopped::read_only;
+    case UC_ERR_INSN_INVALID:
+    case UC_ERR_EXCEPTION:
+        return Stopped::undefined_instruction;
+    default:
+        check(error, "run");
+        return Stopped::by_itself;
+    }
+}
+
+} // namespace virtual_board

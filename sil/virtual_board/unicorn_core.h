@@ -1,0 +1,106 @@
+/*
+ * The instructions of a Cortex-M, executed by libunicorn; nothing of exceptions, time or
+ * peripherals. The only file that knows libunicorn.
+ */
+#ifndef STEADYSTEP_VIRTUAL_BOARD_UNICORN_CORE_H
+#define STEADYSTEP_VIRTUAL_BOARD_UNICORN_CORE_H
+
+#include <cstdint>
+#include <exception>
+#include <list>
+
+#include "sil/virtual_board/chip_description.h"
+
+struct uc_struct;
+
+namespace virtual_board
+{
+
+/* Who watches the core. What these throw ends UnicornCore::run with that exception. */
+class CoreObserver
+{
+  public:
+    virtual ~CoreObserver() = default;
+
+    /* Before every instruction; false: stop before it. */
+    virtual bool before_instruction(std::uint32_t address, unsigned bytes) = 0;
+    /* An access of the present instruction to registers. */
+    virtual std::uint32_t read(std::uint32_t address, unsigned bytes) = 0;
+    virtual void write(std::uint32_t address, unsigned bytes, std::uint32_t value) = 0;
+};
+
+enum class CoreRegister {
+    r0,
+    r1,
+    r2,
+    r3,
+    r12,
+    sp,
+    lr,
+    pc,
+    xpsr,
+    control,
+    primask,
+    base_priority,
+    faultmask,
+    fpscr
+};
+
+enum class Stopped {
+    by_observer,
+    by_itself, /* behind the instruction that let it, WFI as a rule */
+    exception_return,
+    supervisor_call,
+    breakpoint,
+    unmapped_read, /* here and below: the last instruction was not executed */
+    unmapped_write,
+    unmapped_fetch,
+    read_only,
+    undefined_instruction
+};
+
+/* A word that code jumps to in order to return from an exception, and above. */
+constexpr std::uint32_t first_exception_return = 0xffffffe0;
+
+class UnicornCore
+{
+  public:
+    UnicornCore(const CoreModel &model, CoreObserver &observer);
+    ~UnicornCore();
+    UnicornCore(const UnicornCore &) = delete;
+    UnicornCore &operator=(const UnicornCore &) = delete;
+
+    /* `host`: the memory's contents; they stay the caller's. Whole kilobytes times 4. */
+    void map_memory(AddressRange range, std::uint8_t *host, bool writable);
+    void map_registers(AddressRange range);
+    /* Contents of memory with code have changed behind the core's back. */
+    void forget_code(AddressRange range);
+
+    std::uint32_t get(CoreRegister name) const;
+    void set(CoreRegister name, std::uint32_t value);
+    void get_floating_point(std::uint32_t s0_to_s15[16]) const;
+    void set_floating_point(const std::uint32_t s0_to_s15[16]);
+
+    Stopped run(std::uint32_t address);
+
+  private:
+    struct Window {
+        UnicornCore *core;
+        std::uint32_t base;
+    };
+    struct Callbacks;
+    friend struct Callbacks;
+
+    void check(int error, const char *what) const;
+    void stop();
+
+    CoreObserver &observer_;
+    uc_struct *engine_ = nullptr;
+    std::list<Window> windows_; /* their addresses are given away */
+    std::exception_ptr thrown_;
+    Stopped reason_ = Stopped::by_itself;
+};
+
+} // namespace virtual_board
+
+#endif

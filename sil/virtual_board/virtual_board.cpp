@@ -1,0 +1,314 @@
+#include "sil/virtual_board/virtual_board.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "firmware/application/settings_record.h"
+#include "sil/plant/sensors.h"
+#include "sil/virtual_board/board_facts.h"
+#include "sil/virtual_board/drive_memory.h"
+#include "sil/virtual_board/peripherals/stm32g474_device.h"
+
+namespace virtual_board
+{
+
+namespace
+{
+
+/* The parameter store: the last four pages of the flash (hal.h, parameters_*). */
+constexpr std::size_t parameter_pages = 4;
+
+/* Of a period, after S(k), the last byte of a typed line arrives; the control interrupt is over. */
+constexpr Ticks arrival_in_period = ticks_per_s / 1'000'000 * 60;
+
+/* Where in a period a leg is shorted, and how soon the bridge must be open then. */
+constexpr Ticks short_in_period = ticks_per_s / 1'000'000 * 60;
+constexpr Ticks trip_time = ticks_per_s / 1'000'000;
+
+constexpr std::uint32_t stalled_instruction = 300; /* of the control interrupt: in its midst */
+
+/* Longest time without a control interrupt: start-up designs the gains. */
+constexpr Ticks patience = ticks_per_s;
+
+Stm32g474Config device_config(const plant::Config &plant)
+{
+    Stm32g474Config config;
+    config.power_stage.plant = plant;
+    return config;
+}
+
+} // namespace
+
+struct VirtualBoard::Impl {
+    Impl(const plant::Config &config, const std::string &image_file)
+        : machine(stm32g474()), device(machine, device_config(config)),
+          elf(ElfImage::read(image_file)),
+          map(ImageMap::read(map_file_of(image_file), elf, machine.costs())),
+          facts(facts_of(config)),
+          timeout([this] { machine.fail("no control interrupt for a second"); }),
+          trip_check([this] {
+              if (device.power_stage().bridge_on()) {
+                  machine.fail("the bridge is closed 1 us after a leg was shorted");
+              }
+          })
+    {
+        machine.attach(device);
+        machine.load(elf);
+        memory.emplace(machine, map);
+        machine.stops_behind_control_interrupt = true;
+        device.power_stage().on_sample = [this](std::int64_t k) { sample(k); };
+    }
+
+    void sample(std::int64_t k)
+    {
+        machine.mark_sampling();
+        sampled_at = machine.now();
+        sampled_period = k;
+        check_bridge(k);
+        if (stops_at_sample) {
+            machine.stop();
+        }
+    }
+    void check_bridge(std::int64_t k);
+    void run();
+    void send_typed();
+
+    Machine machine;
+    Stm32g474Device device;
+    ElfImage elf;
+    ImageMap map;
+    hal_facts facts;
+    std::optional<DriveMemory> memory;
+    Event timeout, trip_check;
+
+    Ticks sampled_at = 0;
+    std::int64_t sampled_period = -1; /* k of the last S(k) */
+    std::uint64_t outside_low_state = 0;
+    struct Duties {
+        std::uint32_t period = UINT32_MAX;
+        std::array<std::uint32_t, PowerStage::legs> high_counts{};
+    };
+    std::array<Duties, 4> computed; /* by the drive in the last control interrupts */
+    bool stops_at_sample = false;
+    std::string typed; /* its last byte arrives in the period of the coming control() */
+    drive_signals signals = {};
+    std::uint32_t period = 0; /* of the coming control() */
+    std::uint64_t hash = 0, hash_before = 0;
+    std::vector<std::string> resets;
+};
+
+VirtualBoard::VirtualBoard(const plant::Config &plant, const std::string &image_file,
+                           const std::string &numeric, const drive_settings &settings)
+    : impl_(std::make_unique<Impl>(plant, image_file))
+{
+    require_image_facts(plant, impl_->map.numeric, numeric);
+    std::vector<std::uint8_t> &flash = impl_->device.flash().memory();
+    const std::size_t page = impl_->facts.parameter_page_bytes;
+    const std::size_t store = flash.size() - parameter_pages * page;
+    const std::size_t record_at = store + SETTINGS_RECORD_FIRST_PAGE * page;
+    stored_settings stored = {};
+    stored.drive = settings;
+    stored.encoder_counts_per_turn =
+        static_cast<std::uint32_t>(plant.sensors.encoder_counts_per_turn);
+    settings_record_encode(&stored, 1, &flash[record_at]);
+    impl_->machine.power_on();
+}
+
+VirtualBoard::~VirtualBoard() = default;
+
+/*
+ * At S(k): what the legs did since S(k-1) is what the drive computed from S(k-2), leg by leg, and
+ * the currents were sampled while all legs were low. Duties that are swapped for all measurements
+ * alike would go unseen otherwise, and so would samples that happen to be zero.
+ */
+void VirtualBoard::Impl::check_bridge(std::int64_t k)
+{
+    const std::uint64_t outside = device.power_stage().counters.outside_low_state;
+    if (!device.power_stage().bridge_on() || k < 2) {
+        outside_low_state = outside;
+        return;
+    }
+    if (outside != outside_low_state) {
+        machine.fail("a current was sampled while a leg was high, before S(" + std::to_string(k) +
+                     ")");
+    }
+    const auto source = static_cast<std::uint32_t>(k - 2);
+    const Duties &wanted = computed[source % computed.size()];
+    if (wanted.period != source) {
+        return;
+    }
+    for (int leg = 0; leg < PowerStage::legs; ++leg) {
+        const std::uint32_t count = wanted.high_counts[static_cast<std::size_t>(leg)];
+        if (device.tim1().active_compare(leg) != count) {
+            machine.fail("leg " + std::to_string(leg + 1) + " of 4 was high for " +
+                         std::to_string(device.tim1().active_compare(leg)) + " counts before S(" +
+                         std::to_string(k) + "); of S(" + std::to_string(k - 2) +
+                         ") the drive computed " + std::to_string(count));
+        }
+    }
+}
+
+/* Until something stops it; a reset that nobody asked for is a failure. */
+void VirtualBoard::Impl::run()
+{
+    machine.schedule(timeout, machine.now() + patience);
+    machine.run();
+    machine.schedule(timeout, Event::never);
+    if (!machine.resets().empty()) {
+        const std::string cause = machine.resets().back();
+        machine.fail("the chip was reset (" + cause + ")" +
+                     (machine.fault().empty() ? "" : " after " + machine.fault()));
+    }
+}
+
+void VirtualBoard::control()
+{
+    Impl &board = *impl_;
+    board.stops_at_sample = false;
+    const std::uint64_t before = board.machine.control_interrupts();
+    while (board.machine.control_interrupts() == before) {
+        board.run();
+    }
+    board.signals = board.memory->signals();
+    if (board.signals.period != board.period) {
+        board.machine.fail("control interrupt " + std::to_string(board.period) +
+                           " left the drive in period " + std::to_string(board.signals.period));
+    }
+    if (board.period++ == 0) {
+        board.hash = board.memory->gains_hash();
+    }
+    const struct drive_hash_row row = board.memory->hash_row();
+    board.hash = drive_hash_add(board.hash, row);
+    Impl::Duties &computed = board.computed[board.signals.period % board.computed.size()];
+    computed.period = board.signals.period;
+    computed.high_counts = {row.words[0] >> 16, row.words[0] & 0xffff, row.words[1] >> 16,
+                            row.words[1] & 0xffff};
+    board.send_typed();
+}
+
+/* Up to the instant of the next S(k), where the plant has just been stepped; a control interrupt
+   that has been held up may have passed it. */
+void VirtualBoard::advance()
+{
+    Impl &board = *impl_;
+    const std::int64_t next = board.period;
+    const std::uint64_t interrupts = board.machine.control_interrupts();
+    board.stops_at_sample = true;
+    while (board.sampled_period < next) {
+        board.run();
+        if (board.machine.control_interrupts() != interrupts) {
+            board.machine.fail("two control interrupts between two samples");
+        }
+    }
+    board.stops_at_sample = false;
+}
+
+void VirtualBoard::type(const std::string &line)
+{
+    impl_->typed += line + '\n';
+}
+
+/*
+ * A line takes longer than a period. What is to arrive in this one began as much earlier: bytes
+ * whose time has passed come at once, back to back, the others at their pace.
+ */
+void VirtualBoard::Impl::send_typed()
+{
+    if (typed.empty()) {
+        return;
+    }
+    const Ticks byte_time = device.serial_line().byte_time();
+    const Ticks last = std::max(machine.now(), sampled_at + arrival_in_period);
+    device.serial_line().send(last - typed.size() * byte_time, typed);
+    typed.clear();
+}
+
+void VirtualBoard::power_cycle()
+{
+    Impl &board = *impl_;
+    board.hash_before = drive_hash();
+    board.hash = 0;
+    board.period = 0;
+    board.typed.clear();
+    board.computed = {};
+    board.sampled_period = -1;
+    board.machine.power_on();
+}
+
+void VirtualBoard::short_circuit(int leg, double current_A)
+{
+    Impl &board = *impl_;
+    const Ticks at = std::max(board.machine.now(), board.sampled_at + short_in_period);
+    board.device.power_stage().short_circuit(at, leg, current_A);
+    if (current_A > sil::comparator_trip_A) {
+        board.machine.schedule(board.trip_check, at + trip_time);
+    }
+}
+
+void VirtualBoard::stall_control_interrupt(double duration_s)
+{
+    Machine &machine = impl_->machine;
+    const auto ticks = static_cast<Ticks>(duration_s * static_cast<double>(ticks_per_s));
+    machine.stall_control_interrupt(stalled_instruction,
+                                    static_cast<std::uint64_t>(ticks / machine.core_cycle()));
+}
+
+const drive_signals &VirtualBoard::signals() const
+{
+    return impl_->signals;
+}
+
+std::uint64_t VirtualBoard::drive_hash() const
+{
+    return impl_->hash_before + impl_->hash;
+}
+
+plant::Plant &VirtualBoard::plant()
+{
+    return impl_->device.power_stage().plant();
+}
+
+const hal_facts &VirtualBoard::facts() const
+{
+    return impl_->facts;
+}
+
+std::string VirtualBoard::take_output()
+{
+    return impl_->device.serial_line().take_output();
+}
+
+BoardReport VirtualBoard::report() const
+{
+    const Machine &machine = impl_->machine;
+    BoardReport report;
+    report.interrupt = machine.account().summary();
+    report.stack_used_bytes = machine.stack_used();
+    report.resets = machine.resets();
+    report.bytes_received = impl_->device.serial_line().counters.received;
+    report.bytes_sent = impl_->device.serial_line().counters.sent;
+    report.flash_erases = impl_->device.flash_controller().counters().erases;
+    report.flash_programs = impl_->device.flash_controller().counters().programs;
+    report.simulated_s = static_cast<double>(machine.now()) / static_cast<double>(ticks_per_s);
+    return report;
+}
+
+std::string VirtualBoard::numeric_of(const std::string &image_file)
+{
+    InstructionCosts costs(stm32g474());
+    const ElfImage image = ElfImage::read(image_file);
+    return ImageMap::read(map_file_of(image_file), image, costs).numeric;
+}
+
+Machine &VirtualBoard::machine()
+{
+    return impl_->machine;
+}
+
+Stm32g474Device &VirtualBoard::device()
+{
+    return impl_->device;
+}
+
+} // namespace virtual_board

@@ -1,0 +1,149 @@
+#include "firmware/application/application.h"
+
+#include <string.h>
+#include <unity.h>
+
+#include "firmware/application/settings_record.h"
+#include "firmware/drive/drive_hash.h"
+#include "tests/unit/console_bench.h"
+
+static char error[DRIVE_ERROR_TEXT];
+static struct hal_facts facts;
+static struct hal board;
+
+void setUp(void)
+{
+    bench_power_up();
+    facts = bench_stored_facts();
+    board = bench_board(&facts);
+    error[0] = '\0';
+}
+
+void tearDown(void)
+{
+}
+
+static bool start(void)
+{
+    return application_init(&bench.application, &board, &bench_params, error);
+}
+
+static void store(const struct drive_settings *settings, uint32_t encoder_counts_per_turn)
+{
+    const struct stored_settings stored = {*settings, encoder_counts_per_turn};
+
+    TEST_ASSERT_TRUE(settings_record_write(&board, &stored));
+}
+
+static void test_without_stored_settings_the_defaults_of_the_motor_apply(void)
+{
+    TEST_ASSERT_TRUE(start());
+    TEST_ASSERT_EQUAL_INT(APPLICATION_SETTINGS_DEFAULT, bench.application.settings_from);
+    TEST_ASSERT_TRUE(bench.application.drive.settings.motor.inertia_kgm2 ==
+                     bench_params.inertia_kgm2);
+    TEST_ASSERT_EQUAL_INT(POSITION_LAW_STATE_FEEDBACK, bench.application.drive.settings.law);
+    TEST_ASSERT_TRUE(bench.application.gains_hash ==
+                     drive_hash_gains(&bench.application.drive.params));
+}
+
+static void test_stored_settings_apply_with_their_encoder(void)
+{
+    struct drive_settings settings;
+
+    drive_settings_default(&settings, &bench_params);
+    drive_settings_select_feedback(&settings, DRIVE_FEEDBACK_ENCODER);
+    settings.hold_on_enable_s = 0.2;
+    store(&settings, 16384);
+    TEST_ASSERT_TRUE_MESSAGE(start(), error);
+    TEST_ASSERT_EQUAL_INT(APPLICATION_SETTINGS_STORED, bench.application.settings_from);
+    TEST_ASSERT_TRUE(bench.application.drive.settings.hold_on_enable_s == 0.2);
+    TEST_ASSERT_EQUAL_UINT32(16384, bench.application.drive.board->facts->encoder_counts_per_turn);
+    TEST_ASSERT_EQUAL_UINT32(0, facts.encoder_counts_per_turn); /* the board's own is left alone */
+}
+
+static void test_stored_settings_that_are_refused_are_announced_and_the_defaults_apply(void)
+{
+    struct drive_settings settings;
+
+    drive_settings_default(&settings, &bench_params);
+    settings.hold_on_enable_s = -1.0;
+    store(&settings, 99);
+    TEST_ASSERT_TRUE(start());
+    TEST_ASSERT_EQUAL_INT(APPLICATION_SETTINGS_DEFAULT, bench.application.settings_from);
+    TEST_ASSERT_TRUE(bench.application.drive.settings.hold_on_enable_s > 0.0);
+    TEST_ASSERT_EQUAL_UINT32(0, bench.application.facts.encoder_counts_per_turn);
+    application_background(&bench.application);
+    application_background(&bench.application);
+    TEST_ASSERT_NOT_NULL(strstr(bench_heard(), "\nwarning: the stored settings are not in force: "
+                                               "hold_on_enable_s -1 s: must be at least 0.01 s"));
+}
+
+static void test_a_motor_that_is_refused_stops_the_start(void)
+{
+    struct motor_params impossible = bench_params;
+
+    impossible.inertia_kgm2 = 0.0;
+    TEST_ASSERT_FALSE(application_init(&bench.application, &board, &impossible, error));
+    TEST_ASSERT_NOT_NULL(strstr(error, "inertia_kgm2"));
+}
+
+static void test_the_watchdog_is_fed_only_while_control_interrupts_come(void)
+{
+    TEST_ASSERT_TRUE(start());
+    application_background(&bench.application);
+    TEST_ASSERT_EQUAL_INT(0, bench.watchdog_fed);
+    bench_periods(3);
+    TEST_ASSERT_EQUAL_INT(3, bench.watchdog_fed);
+    application_background(&bench.application);
+    application_background(&bench.application);
+    TEST_ASSERT_EQUAL_INT(3, bench.watchdog_fed);
+}
+
+static void test_the_outputs_are_those_of_the_drive(void)
+{
+    const struct drive_settings settings = bench_quick_settings();
+
+    TEST_ASSERT_TRUE(bench_start(&settings));
+    TEST_ASSERT_FALSE(bench.application.outputs.bridge_on);
+    (void)bench_ask("enable at=12");
+    bench_periods(14);
+    TEST_ASSERT_TRUE(bench.application.outputs.bridge_on);
+}
+
+static void test_cycles_are_counted_by_stage(void)
+{
+    struct application *application = &bench.application;
+    const struct control_cycles_of_period first = {{100, 20, 1000, 7}};
+    const struct control_cycles_of_period second = {{200, 10, 900, 8}};
+
+    TEST_ASSERT_TRUE(start());
+    application_count_cycles(application, &first);
+    application_count_cycles(application, &second);
+    TEST_ASSERT_EQUAL_UINT32(2, application->cycles.periods);
+    TEST_ASSERT_EQUAL_UINT32(200, application->cycles.stage[CONTROL_STAGE_LATENCY].last);
+    TEST_ASSERT_EQUAL_UINT32(1000, application->cycles.stage[CONTROL_STAGE_CONTROL].max);
+    TEST_ASSERT_EQUAL_UINT32(900, application->cycles.stage[CONTROL_STAGE_CONTROL].last);
+    TEST_ASSERT_EQUAL_UINT32(1127, application->cycles.total.max);
+    TEST_ASSERT_TRUE(application->cycles.total.sum == 2245u);
+    application_background(application); /* the start */
+    TEST_ASSERT_EQUAL_STRING(
+        "ok cycles periods=2; last/mean/most: latency=200/150/200 read=10/15/20 "
+        "control=900/950/1000 write=8/7.5/8 total=1118/1122.5/1127 budget=15300\n",
+        bench_ask("cycles reset"));
+    application_count_cycles(application, &first);
+    TEST_ASSERT_EQUAL_UINT32(1, application->cycles.periods);
+    TEST_ASSERT_EQUAL_UINT32(100, application->cycles.stage[CONTROL_STAGE_LATENCY].max);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_without_stored_settings_the_defaults_of_the_motor_apply);
+    RUN_TEST(test_stored_settings_apply_with_their_encoder);
+    RUN_TEST(test_stored_settings_that_are_refused_are_announced_and_the_defaults_apply);
+    RUN_TEST(test_a_motor_that_is_refused_stops_the_start);
+    RUN_TEST(test_the_watchdog_is_fed_only_while_control_interrupts_come);
+    RUN_TEST(test_the_outputs_are_those_of_the_drive);
+    RUN_TEST(test_cycles_are_counted_by_stage);
+    return UNITY_END();
+}

@@ -1,0 +1,335 @@
+#include "firmware/application/console.h"
+
+#include <string.h>
+#include <unity.h>
+
+#include "tests/unit/console_bench.h"
+
+static struct drive *drive;
+
+void setUp(void)
+{
+    const struct drive_settings settings = bench_quick_settings();
+
+    bench_power_up();
+    TEST_ASSERT_TRUE(bench_start(&settings));
+    drive = &bench.application.drive;
+}
+
+void tearDown(void)
+{
+}
+
+static void assert_begins(const char *text, const char *begin)
+{
+    if (strncmp(text, begin, strlen(begin)) != 0) {
+        TEST_FAIL_MESSAGE(text);
+    }
+}
+
+static void answers(const char *line, const char *begin)
+{
+    assert_begins(bench_ask(line), begin);
+}
+
+static void enable(void)
+{
+    bench_periods(2);
+    answers("enable", "ok enable at=1");
+    bench_periods(15);
+    TEST_ASSERT_EQUAL_INT(DRIVE_OPERATION_ENABLED, drive->state);
+    (void)bench_heard();
+}
+
+static void test_it_announces_the_firmware_and_why_it_started(void)
+{
+    application_background(&bench.application);
+    const char *heard = bench_heard();
+
+    assert_begins(heard, "version, ");
+    TEST_ASSERT_NOT_NULL(strstr(heard, " on bench; settings: given resistance_ohm=0.37 "));
+    TEST_ASSERT_NOT_NULL(strstr(heard, "rotor_teeth=50"));
+    TEST_ASSERT_NOT_NULL(strstr(heard, "law=state-feedback feedback=sensorless; "
+                                       "started by: crash: hard fault at 0x08001234\n"));
+    application_background(&bench.application);
+    TEST_ASSERT_EQUAL_STRING("", bench_heard());
+}
+
+static void test_an_answer_waits_for_room_and_the_next_line_for_the_answer(void)
+{
+    char all[200] = "";
+
+    application_background(&bench.application);
+    (void)bench_heard();
+    bench.room = 7;
+    bench_type("help stop\nhelp disable\n");
+    for (int i = 0; i < 40; i++) {
+        application_background(&bench.application);
+        strcat(all, bench_heard());
+    }
+    TEST_ASSERT_EQUAL_STRING("ok stop [ at= ]: brings the reference to rest\n"
+                             "ok disable [ at= ]: opens the bridge; clears a fault\n",
+                             all);
+}
+
+/* Whenever the background comes to it. */
+static void test_a_command_acts_ten_periods_after_its_line(void)
+{
+    bench_periods(3);
+    bench_type("enable\n"); /* in period 2 */
+    bench_periods(9);
+    TEST_ASSERT_EQUAL_INT(DRIVE_SWITCH_ON_DISABLED, drive->state);
+    bench_period(); /* 12 */
+    TEST_ASSERT_EQUAL_INT(DRIVE_OPERATION_ENABLED, drive->state);
+    TEST_ASSERT_EQUAL_UINT32(12, drive->state_since);
+}
+
+static void test_a_slow_background_changes_nothing(void)
+{
+    bench_periods(3);
+    bench_type("enable\n");
+    for (int i = 0; i < 8; i++) { /* control interrupts alone */
+        bench.period++;
+        (void)application_control_interrupt(&bench.application, &bench.samples);
+    }
+    bench_periods(3);
+    TEST_ASSERT_EQUAL_UINT32(12, drive->state_since);
+}
+
+/* Where the reference rests after a stop of a plan, `slow` periods of which went by unseen. */
+static struct position rest_after_stop(int slow)
+{
+    setUp();
+    enable();
+    answers("velocity 5 acceleration_rad_s2=500 jerk_rad_s3=1e5", "ok velocity at=36\n");
+    bench_periods(300); /* 316: at full speed */
+    answers("stop", "ok stop at=326\n");
+    bench_periods(9);
+    for (int i = 0; i < slow; i++) {
+        bench.period++;
+        (void)application_control_interrupt(&bench.application, &bench.samples);
+    }
+    bench_periods(300 - slow);
+    TEST_ASSERT_EQUAL_INT(DRIVE_OPERATION_ENABLED, drive->state);
+    TEST_ASSERT_FALSE(reference_busy(&drive->reference));
+    return drive->reference.next.position;
+}
+
+static void test_a_stop_of_a_plan_does_not_depend_on_the_background(void)
+{
+    const struct position prompt = rest_after_stop(0);
+    const struct position slow = rest_after_stop(4);
+
+    TEST_ASSERT_EQUAL_HEX32(prompt.fraction, slow.fraction);
+    TEST_ASSERT_EQUAL_INT32(prompt.turns, slow.turns);
+}
+
+static void test_what_is_planned_acts_a_lead_later(void)
+{
+    enable();
+    answers("velocity 1 acceleration_rad_s2=100 jerk_rad_s3=1e4", "ok velocity at=36\n");
+    answers("retarget 1 speed_rad_s=1 acceleration_rad_s2=100 jerk_rad_s3=1e4",
+            "ok retarget at=36\n");
+    answers("stop", "ok stop at=26\n");
+}
+
+static void test_a_later_period_can_be_asked_for_and_an_earlier_one_not(void)
+{
+    enable();
+    answers("move 0.1 at=5000", "ok move at=5000 ");
+    answers("stop at=25", "error: at=25: must be at least 26, the first period");
+    answers("stop at=4294967296", "error: \"4294967296\": expected a control period");
+    answers("stop at=", "error: \"\": expected a control period");
+}
+
+static void test_a_late_line_says_so(void)
+{
+    enable();
+    bench_type("hold\n");
+    for (int i = 0; i < 20; i++) {
+        bench.period++;
+        (void)application_control_interrupt(&bench.application, &bench.samples);
+    }
+    application_background(&bench.application);
+    TEST_ASSERT_EQUAL_STRING("ok hold at=26 late: that period had passed\n", bench_heard());
+}
+
+static void test_a_move_without_times_is_one_the_motor_can_follow(void)
+{
+    enable();
+    answers("move 10", "ok move at=26 duration_s=0.3124 ramp_s=0.0507 jerk_s=0.0126\n");
+    answers("move 10", "ok move at=26 duration_s=0.02 ramp_s=0.01 jerk_s=0.0025\n");
+    answers("move -0.5 duration_s=0.4", "ok move at=26 duration_s=0.4 ramp_s=0.1 jerk_s=0.025\n");
+    TEST_ASSERT_TRUE(drive->planned_end.turns == -4);
+}
+
+static void test_every_command_reaches_the_drive(void)
+{
+    static const char *const lines[] = {
+        "move-smooth position_rad=0x1p-3 duration_s=0.1 ramp_s=0.04 jerk_s=0.01",
+        "move-trapezoid duration_s=0.1 position_rad=0 ramp_s=0.05",
+        "step position_rad=1e-2",
+        "hold",
+        "sine amplitude_rad=0.1 frequency_Hz=1 cycles=0 ramp_s=1",
+    };
+    static const enum drive_command_kind kinds[] = {
+        DRIVE_COMMAND_MOVE_SMOOTH, DRIVE_COMMAND_MOVE_TRAPEZOID, DRIVE_COMMAND_STEP,
+        DRIVE_COMMAND_HOLD, DRIVE_COMMAND_SINE};
+
+    enable();
+    for (uint32_t i = 0; i < 5; i++) {
+        const uint32_t at = drive->commands.written;
+
+        answers(lines[i], "ok ");
+        TEST_ASSERT_EQUAL_INT(kinds[i], drive->commands.entry[at % COMMAND_QUEUE_LENGTH].kind);
+    }
+    answers("disable", "ok disable at=26\n");
+    TEST_ASSERT_TRUE(drive->commands.disable.posted);
+}
+
+static void test_set_points_are_a_stream(void)
+{
+    enable();
+    answers("set-point 0.001 interval_s=1e-2 acceleration_rad_s2=1000 jerk_rad_s3=1e6",
+            "ok set-point at=36\n");
+    bench_periods(10);
+    answers("set-point 0.002", "ok set-point at=46\n");
+    bench_periods(19);
+    TEST_ASSERT_FALSE(reference_busy(&drive->reference)); /* in period 45: the second counts */
+    bench_periods(1);
+    TEST_ASSERT_TRUE(reference_busy(&drive->reference));
+    answers("save", "error: save refused: writing takes longer");
+}
+
+static void test_what_is_not_understood_is_refused_with_what_was_expected(void)
+{
+    enable();
+    answers("fly", "error: \"fly\": expected a command; help lists them\n");
+    answers("help fly", "error: \"fly\": expected a command");
+    answers("step", "error: step: missing position_rad=\n");
+    answers("step one", "error: \"one\": expected a number, as -1.5, 2e-3 or 0x1.8p+0\n");
+    answers("step 1e-40", "error: \"1e-40\": expected a number within 1e-22...1e37");
+    answers("step 3.14159265358979323", "error: \"3.14159265358979323\": expected a number of at "
+                                        "most 15 digits");
+    answers("step 1 2", "error: \"2\": expected step position_rad= [ at= ]\n");
+    answers("step 1 position_rad=2", "error: position_rad: given twice\n");
+    answers("step 1 speed_rad_s=2", "error: \"speed_rad_s\": expected step position_rad= [ at= ]");
+    answers("enable now", "error: \"now\": expected enable [ at= ]");
+    answers("save at=5000", "error: \"at\": expected save\n");
+    answers("cycles all", "error: \"all\": expected cycles or cycles reset\n");
+    answers("step \x01\x80", "error: \"??\": expected a number");
+    answers("step 1e6 at=99", "ok step at=99\n");
+    answers("move 1e9", "error: ");
+}
+
+static void test_what_the_drive_would_drop_is_refused(void)
+{
+    application_background(&bench.application);
+    bench_periods(2);
+    answers("move 1", "error: move refused: the drive is switch-on-disabled, enable it first\n");
+    enable();
+    bench.samples.current_a = 4000;
+    bench_period();
+    TEST_ASSERT_EQUAL_INT(DRIVE_FAULT, drive->state);
+    (void)bench_heard();
+    answers("move 1", "error: move refused: the drive is fault, disable clears it\n");
+    answers("enable", "error: enable refused: fault overcurrent: a phase current beyond 5.4 A; ");
+    answers("velocity 1 acceleration_rad_s2=1 jerk_rad_s3=1", "error: velocity refused: ");
+    answers("disable", "ok disable at=");
+    answers("enable", "ok enable at=");
+}
+
+static void test_a_fault_is_announced_with_its_reason(void)
+{
+    enable();
+    bench.samples.bus_voltage = 100;
+    bench_period();
+    TEST_ASSERT_EQUAL_STRING("fault: bus-voltage: the supply is outside 0.5...1.3 of 24 V; the "
+                             "bridge is open since period 17, disable clears the fault\n",
+                             bench_heard());
+    bench_periods(5);
+    TEST_ASSERT_EQUAL_STRING("", bench_heard());
+    answers("state", "ok fault fault=bus-voltage period=22 position_rad=");
+}
+
+static void test_readiness_is_announced(void)
+{
+    bench_periods(2);
+    answers("enable", "ok enable at=11\n");
+    bench_periods(15);
+    assert_begins(bench_heard(), "ready: period=11 reference_rad=0 ");
+}
+
+static void test_lines_may_end_and_be_corrected_as_terminals_do(void)
+{
+    application_background(&bench.application);
+    bench_periods(3);
+    answers("\r", "");
+    answers("  help   stop  \r", "ok stop");
+    answers("helk\bp stop", "ok stop");
+    answers("help stap\x7f\x7fop", "ok stop");
+}
+
+static void test_a_carriage_return_alone_ends_a_line_after_a_while(void)
+{
+    bench_periods(3);
+    (void)bench_heard();
+    bench_type("help stop\r");
+    bench_periods(50);
+    TEST_ASSERT_EQUAL_STRING("", bench_heard());
+    bench_periods(2);
+    assert_begins(bench_heard(), "ok stop");
+}
+
+static void test_long_and_damaged_lines_are_refused_as_a_whole(void)
+{
+    char line[400];
+
+    bench_periods(3);
+    memset(line, 'a', sizeof line);
+    line[CONSOLE_LINE_BYTES + 1] = '\0';
+    (void)bench_heard();
+    answers(line, "error: the line is longer than 200 characters\n");
+    line[CONSOLE_LINE_BYTES] = '\0';
+    answers(line, "error: \"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...\": expected a command");
+    answers("enable\x18", "error: bytes of the line were lost, it came faster than it is read\n");
+    TEST_ASSERT_EQUAL_UINT32(0, drive->commands.written);
+    answers("help stop", "ok stop");
+}
+
+static void test_the_longest_answers_are_not_cut(void)
+{
+    static const char *const lines[] = {"help", "state", "help move", "help set-point"};
+
+    enable();
+    for (size_t i = 0; i < 4; i++) {
+        const size_t length = strlen(bench_ask(lines[i]));
+
+        TEST_ASSERT_TRUE(length > 20 && length < CONSOLE_ANSWER_BYTES - 80);
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_it_announces_the_firmware_and_why_it_started);
+    RUN_TEST(test_an_answer_waits_for_room_and_the_next_line_for_the_answer);
+    RUN_TEST(test_a_command_acts_ten_periods_after_its_line);
+    RUN_TEST(test_a_slow_background_changes_nothing);
+    RUN_TEST(test_a_stop_of_a_plan_does_not_depend_on_the_background);
+    RUN_TEST(test_what_is_planned_acts_a_lead_later);
+    RUN_TEST(test_a_later_period_can_be_asked_for_and_an_earlier_one_not);
+    RUN_TEST(test_a_late_line_says_so);
+    RUN_TEST(test_a_move_without_times_is_one_the_motor_can_follow);
+    RUN_TEST(test_every_command_reaches_the_drive);
+    RUN_TEST(test_set_points_are_a_stream);
+    RUN_TEST(test_what_is_not_understood_is_refused_with_what_was_expected);
+    RUN_TEST(test_what_the_drive_would_drop_is_refused);
+    RUN_TEST(test_a_fault_is_announced_with_its_reason);
+    RUN_TEST(test_readiness_is_announced);
+    RUN_TEST(test_lines_may_end_and_be_corrected_as_terminals_do);
+    RUN_TEST(test_a_carriage_return_alone_ends_a_line_after_a_while);
+    RUN_TEST(test_long_and_damaged_lines_are_refused_as_a_whole);
+    RUN_TEST(test_the_longest_answers_are_not_cut);
+    return UNITY_END();
+}

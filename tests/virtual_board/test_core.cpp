@@ -1,0 +1,191 @@
+/* The virtual board's core executes exceptions, sleep, faults and time as a Cortex-M4F does. */
+#include <string>
+#include <vector>
+
+#include <unity.h>
+
+#include "sil/virtual_board/machine.h"
+#include "tests/virtual_board/probe_device.h"
+
+using virtual_board::ElfImage;
+using virtual_board::Failure;
+using virtual_board::Machine;
+
+namespace
+{
+
+/* A program that has run to its end, or to what stopped it. */
+struct Run {
+    explicit Run(const std::string &program) : machine(virtual_board::stm32g474()), probe(machine)
+    {
+        machine.attach(probe);
+        machine.load(ElfImage::read(PROGRAMS "/" + program + ".elf"));
+        machine.power_on();
+        try {
+            while (!probe.ended) {
+                machine.run();
+            }
+        } catch (const Failure &stopped) {
+            failure = stopped.what();
+        }
+    }
+
+    Machine machine;
+    ProbeDevice probe;
+    std::string failure;
+
+    std::uint64_t cycle(std::size_t entry) const
+    {
+        return probe.log.at(entry).at / machine.core_cycle();
+    }
+};
+
+void assert_contains(const char *part, const std::string &text)
+{
+    if (text.find(part) == std::string::npos) {
+        TEST_FAIL_MESSAGE(("expected \"" + std::string(part) + "\" in: " + text).c_str());
+    }
+}
+
+void registers_survive_thousands_of_interrupts()
+{
+    const Run run("fp_context");
+    TEST_ASSERT_EQUAL_STRING("", run.failure.c_str());
+    TEST_ASSERT_TRUE(run.probe.ended);
+    TEST_ASSERT_EQUAL_UINT32(0, run.probe.result);
+}
+
+/* The test above bites. */
+void floating_point_registers_are_lost_without_aspen()
+{
+    const Run run("fp_context_lost");
+    TEST_ASSERT_EQUAL_STRING("", run.failure.c_str());
+    TEST_ASSERT_TRUE(run.probe.result >= 6);
+}
+
+void exceptions_nest_and_follow_by_priority()
+{
+    const Run run("nesting");
+    TEST_ASSERT_EQUAL_STRING("", run.failure.c_str());
+    const std::vector<std::uint32_t> expected = {
+        1, 0x110, 0x100, 0x111, 0x120, 0x130, 2, 3, 0x100, 4, 0x100, 5, 0x120, 6, 0x1e0, 0x1b0, 7};
+    TEST_ASSERT_EQUAL_size_t(expected.size(), run.probe.log.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        TEST_ASSERT_EQUAL_HEX32(expected[i], run.probe.log[i].value);
+    }
+}
+
+/* 3: 0x111 is the end of handler 1, 0x120 and 0x130 follow without return to the thread. */
+void tail_chaining_is_shorter_than_return_and_entry()
+{
+    const Run run("nesting");
+    TEST_ASSERT_TRUE(run.cycle(4) - run.cycle(3) < 20);
+    TEST_ASSERT_TRUE(run.cycle(5) - run.cycle(4) < 20);
+}
+
+void sleep_ends_with_its_interrupt()
+{
+    const Run run("sleep");
+    TEST_ASSERT_EQUAL_STRING("", run.failure.c_str());
+    const std::vector<std::uint32_t> expected = {1, 0x100, 2, 3, 4, 0x100, 5};
+    TEST_ASSERT_EQUAL_size_t(expected.size(), run.probe.log.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        TEST_ASSERT_EQUAL_HEX32(expected[i], run.probe.log[i].value);
+    }
+    TEST_ASSERT_UINT64_WITHIN(40, 100000, run.cycle(1) - run.cycle(0));
+    TEST_ASSERT_UINT64_WITHIN(40, 5000, run.cycle(4) - run.cycle(3));
+}
+
+void cycle_counter_counts_the_time()
+{
+    const Run run("cycle_counter");
+    TEST_ASSERT_EQUAL_STRING("", run.failure.c_str());
+    const std::uint64_t passed = run.cycle(1) - run.cycle(0);
+    TEST_ASSERT_TRUE(passed >= 10000);
+    TEST_ASSERT_UINT64_WITHIN(20, passed, run.probe.log.at(2).value);
+}
+
+void access_to_nothing_is_a_hard_fault_at_its_instruction()
+{
+    const Run run("bad_access");
+    TEST_ASSERT_EQUAL_STRING("", run.failure.c_str());
+    TEST_ASSERT_EQUAL_UINT32(7, run.probe.result);
+    assert_contains("reads_nothing+0x0", run.machine.fault());
+    assert_contains(virtual_board::ElfImage::read(PROGRAMS "/bad_access.elf")
+                        .place(run.probe.log.at(0).value)
+                        .c_str(),
+                    run.machine.fault());
+    TEST_ASSERT_EQUAL_HEX32(virtual_board::fault_bus_precise |
+                                virtual_board::fault_bus_address_valid,
+                            run.probe.log.at(1).value);
+    TEST_ASSERT_EQUAL_HEX32(virtual_board::fault_forced, run.probe.log.at(2).value);
+}
+
+void stack_below_its_limit_is_told()
+{
+    const Run run("deep_stack");
+    assert_contains("stack overflow", run.failure);
+    TEST_ASSERT_EQUAL_size_t(1, run.probe.log.size()); /* the shallower descent went well */
+    TEST_ASSERT_TRUE(run.machine.stack_used().value_or(0) >= 1020);
+}
+
+/* Whoever runs the machine may stop it at any instant. */
+void stops_between_instructions_change_nothing()
+{
+    Machine machine(virtual_board::stm32g474());
+    ProbeDevice probe(machine);
+    machine.attach(probe);
+    machine.load(ElfImage::read(PROGRAMS "/conditional.elf"));
+    machine.power_on();
+    int stops = 0;
+    virtual_board::Event stop([&] { machine.stop(); });
+    while (!probe.ended) {
+        machine.schedule(stop, machine.now() + 7 * machine.core_cycle());
+        machine.run();
+        ++stops;
+    }
+    TEST_ASSERT_TRUE(stops > 1000);
+    TEST_ASSERT_EQUAL_UINT32(8000, probe.result);
+}
+
+void reset_starts_anew_and_keeps_memory()
+{
+    Machine machine(virtual_board::stm32g474());
+    ProbeDevice probe(machine);
+    machine.attach(probe);
+    machine.load(ElfImage::read(PROGRAMS "/reset_request.elf"));
+    machine.power_on();
+    machine.run();
+    TEST_ASSERT_EQUAL_size_t(1, machine.resets().size());
+    TEST_ASSERT_EQUAL_STRING("software", machine.resets()[0].c_str());
+    machine.run();
+    TEST_ASSERT_TRUE(probe.ended);
+    TEST_ASSERT_EQUAL_HEX32(0xfa05, probe.result);
+    TEST_ASSERT_EQUAL_size_t(2, probe.resets.size());
+}
+
+} // namespace
+
+void setUp()
+{
+}
+
+void tearDown()
+{
+}
+
+int main()
+{
+    UNITY_BEGIN();
+    RUN_TEST(registers_survive_thousands_of_interrupts);
+    RUN_TEST(floating_point_registers_are_lost_without_aspen);
+    RUN_TEST(exceptions_nest_and_follow_by_priority);
+    RUN_TEST(tail_chaining_is_shorter_than_return_and_entry);
+    RUN_TEST(sleep_ends_with_its_interrupt);
+    RUN_TEST(cycle_counter_counts_the_time);
+    RUN_TEST(access_to_nothing_is_a_hard_fault_at_its_instruction);
+    RUN_TEST(stack_below_its_limit_is_told);
+    RUN_TEST(stops_between_instructions_change_nothing);
+    RUN_TEST(reset_starts_anew_and_keeps_memory);
+    return UNITY_END();
+}
