@@ -1,0 +1,57 @@
+/*
+ * The bridge: TIM1 with one channel per half-bridge, the bridge's RESET and FAULT, and the guard of
+ * the deadline (TIM14).
+ *
+ * TIM1 counts up and down between 0 and BRIDGE_HALF_PERIOD_COUNTS; a leg is high around the valley,
+ * while the counter is below its compare value. Compares act from the next peak on.
+ *
+ * The bridge is on while TIM1's main output is enabled and RESET is high. It is opened through
+ * both: without the main output the legs' inputs are low, which alone would close the low sides.
+ */
+#ifndef STEADYSTEP_STM32G071_BRIDGE_H
+#define STEADYSTEP_STM32G071_BRIDGE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "hal/hal.h"
+#include "hal/stm32g071/pins.h"
+#include "hal/stm32g071/registers.h"
+
+enum {
+    BRIDGE_HALF_PERIOD_COUNTS = 3200,
+    BRIDGE_PERIOD_COUNTS = 2 * BRIDGE_HALF_PERIOD_COUNTS,
+    /* From the start of the control interrupt, 3 us behind the peak, to 90 us behind it. */
+    BRIDGE_GUARD_COUNTS = 5560
+};
+
+/* Dead time is the bridge's own, so DTG is 0. Break: FAULT, low, no filter, without the clock. */
+#define BRIDGE_OFF (TIM_BDTR_OSSI | TIM_BDTR_OSSR | TIM_BDTR_BKE)
+#define BRIDGE_ON  (BRIDGE_OFF | TIM_BDTR_MOE)
+
+/* Start-up: bridge off, timers stopped. */
+void bridge_start(void);
+/* Starts TIM1 and, with it, TIM3. false: compares do not load at the peak. */
+bool bridge_run(void);
+
+/* As hal.h says. */
+bool bridge_enable(void);
+void bridge_disable(void);
+bool bridge_is_on(void);
+
+/* All gates off; nothing else changes. From anywhere, faults included. */
+static inline void bridge_open(void)
+{
+    BRIDGE_RESET_PORT->brr = BIT(BRIDGE_RESET_PIN);
+    TIM1->bdtr = BRIDGE_OFF;
+}
+
+/*
+ * The control interrupt. bridge_begin_period starts the guard and returns the flags of the sample
+ * set. bridge_end_period writes duties that act from the next peak on; it opens the bridge at once
+ * and closes it a period after that was asked for, when the duties computed with the demand act.
+ */
+uint32_t bridge_begin_period(void);
+void bridge_end_period(const struct hal_outputs *outputs);
+
+#endif

@@ -1,0 +1,70 @@
+/* The image: the board's start, the application's loop. */
+#include "firmware/application/application.h"
+#include "hal/stm32g474/board_hal.h"
+#include "hal/stm32g474/clock.h"
+#include "hal/stm32g474/control_interrupt.h"
+#include "hal/stm32g474/core.h"
+#include "hal/stm32g474/crash.h"
+#include "hal/stm32g474/current_sampling.h"
+#include "hal/stm32g474/cycle_counter.h"
+#include "hal/stm32g474/deadline_guard.h"
+#include "hal/stm32g474/encoder.h"
+#include "hal/stm32g474/image.h"
+#include "hal/stm32g474/overcurrent_trip.h"
+#include "hal/stm32g474/parameter_flash.h"
+#include "hal/stm32g474/phase_voltage_sampling.h"
+#include "hal/stm32g474/pins.h"
+#include "hal/stm32g474/pwm.h"
+#include "hal/stm32g474/serial_line.h"
+#include "hal/stm32g474/watchdog.h"
+
+static struct application application;
+
+/* The gates are held low, by pull-downs until the timer drives them, from reset on. */
+static void start_board(void)
+{
+    crash_read_cause();
+    cycle_counter_start();
+    clock_start();
+    parameter_flash_check_options();
+    overcurrent_trip_configure();
+    pwm_configure();
+    pins_connect();
+    encoder_configure();
+    serial_line_configure();
+}
+
+/*
+ * In step with the PWM timer, so before it starts; control interrupts begin at the first peak after
+ * two at which compares have been seen to load, when the means of a whole period are there.
+ */
+static void start_control(void)
+{
+    control_set_application(&application);
+    current_sampling_configure();
+    phase_voltage_sampling_configure();
+    deadline_guard_configure();
+    pwm_start();
+    pwm_clear_break();
+    deadline_guard_start();
+    current_sampling_start();
+}
+
+int main(void)
+{
+    char error[DRIVE_ERROR_TEXT] = "";
+
+    start_board();
+    if (!application_init(&application, &board_hal, &motor_default, error)) {
+        board_fault(BOARD_FAULT_SETTINGS_REFUSED);
+    }
+    start_control();
+    watchdog_start();
+    crash_start_done();
+    pins_led(1);
+    for (;;) {
+        application_background(&application);
+        serial_line_continue();
+        wait_for_interrupt();
+    }
+}

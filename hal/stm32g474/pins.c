@@ -1,0 +1,40 @@
+#include "hal/stm32g474/pins.h"
+
+#include "hal/stm32g474/registers.h"
+
+struct pin {
+    struct gpio_registers *port;
+    uint8_t number, mode, alternate, pull;
+};
+
+#define PIN_ENTRY(port, number, mode, alternate, pull, peripheral, signal)                         \
+    {GPIO##port, number, GPIO_MODE_##mode, alternate, GPIO_PULL_##pull},
+
+static const struct pin pins[] = {BOARD_PINS(PIN_ENTRY)};
+
+static void connect(const struct pin *pin)
+{
+    const uint32_t twice = 2u * pin->number;
+    const uint32_t afr = pin->number / 8u;
+    const uint32_t quad = 4u * (pin->number % 8u);
+    struct gpio_registers *port = pin->port;
+
+    port->pupdr = (port->pupdr & ~FIELD(3, twice, 2)) | FIELD(pin->pull, twice, 2);
+    port->ospeedr = (port->ospeedr & ~FIELD(3, twice, 2)) | FIELD(GPIO_SPEED_MEDIUM, twice, 2);
+    port->afr[afr] = (port->afr[afr] & ~FIELD(15, quad, 4)) | FIELD(pin->alternate, quad, 4);
+    port->moder = (port->moder & ~FIELD(3, twice, 2)) | FIELD(pin->mode, twice, 2);
+}
+
+void pins_connect(void)
+{
+    RCC->ahb2enr |= RCC_AHB2ENR_GPIOAEN | RCC_AHB2ENR_GPIOBEN | RCC_AHB2ENR_GPIOCEN;
+    (void)RCC->ahb2enr;
+    for (uint32_t i = 0; i < sizeof pins / sizeof pins[0]; i++) {
+        connect(&pins[i]);
+    }
+}
+
+void pins_led(int on)
+{
+    GPIOA->bsrr = on ? BIT(LED_PIN) : BIT(LED_PIN + 16);
+}

@@ -1,0 +1,81 @@
+/*
+ * The PWM timer TIM1: four half-bridges with dead time, centre-aligned, 170 MHz, 10 kHz. Legs are
+ * high around the valley; compares load at the peak alone. The peak, S(k), starts the injected
+ * conversions (TRGO2, from channel 5) and, once, the timers that keep step (TRGO, update).
+ *
+ * The gates follow the compares while MOE is set. It is cleared by software, by a comparator
+ * (overcurrent_trip.h), by a lockup of the core, a double error of the flash, a parity error of
+ * SRAM or a stop of the crystal; set by pwm_close_bridge alone.
+ */
+#ifndef STEADYSTEP_STM32G474_PWM_H
+#define STEADYSTEP_STM32G474_PWM_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "hal/hal.h"
+#include "hal/stm32g474/board.h"
+#include "hal/stm32g474/registers.h"
+
+/* Everything but the start; gates held low. */
+void pwm_configure(void);
+/* Starts the counter, and returns at a peak, having seen that compares load there. */
+void pwm_start(void);
+
+/* Break flags, latched: a comparator, or the system (lockup, memory error, crystal). */
+#define PWM_BREAK_FLAGS (TIM_SR_BIF | TIM_SR_SBIF)
+
+/* What never changes in the break and dead-time register; MOE comes and goes. Dead time: above 127
+   cycles it counts in twos, 64 + DTG[5:0] of them. */
+#define PWM_BDTR                                                                                   \
+    (TIM_BDTR_DTG(0x80 | (DEAD_TIME_CYCLES / 2 - 64)) | TIM_BDTR_LOCK(3) | TIM_BDTR_OSSI |         \
+     TIM_BDTR_OSSR | TIM_BDTR_BKE | TIM_BDTR_BKP)
+
+/* All gates off; one write, from anywhere. */
+static inline void pwm_open_bridge(void)
+{
+    TIM1->bdtr = PWM_BDTR;
+}
+
+/* Duties, to load at the next peak. */
+static inline void pwm_write(const uint16_t high_counts[HAL_LEGS])
+{
+    for (int leg = 0; leg < HAL_LEGS; leg++) {
+        TIM1->ccr[leg] = high_counts[leg];
+    }
+}
+
+/* Gates on, unless a break is latched; with the guard interrupts disabled. */
+static inline void pwm_close_bridge(void)
+{
+    if ((TIM1->sr & PWM_BREAK_FLAGS) == 0) {
+        TIM1->bdtr = PWM_BDTR | TIM_BDTR_MOE;
+    }
+}
+
+static inline bool pwm_bridge_closed(void)
+{
+    return (TIM1->bdtr & TIM_BDTR_MOE) != 0;
+}
+
+static inline bool pwm_break_latched(void)
+{
+    return (TIM1->sr & PWM_BREAK_FLAGS) != 0;
+}
+
+/* A break whose cause lasts is latched again at once. */
+static inline void pwm_clear_break(void)
+{
+    TIM1->sr = ~PWM_BREAK_FLAGS;
+}
+
+/* Core cycles since S(k), the last peak. */
+static inline uint32_t pwm_cycles_since_peak(void)
+{
+    const bool down = (TIM1->cr1 & TIM_CR1_DIR) != 0;
+    const uint32_t count = TIM1->cnt;
+
+    return down ? PWM_HALF_PERIOD - count : PWM_HALF_PERIOD + count;
+}
+
+#endif

@@ -1,0 +1,392 @@
+#!/usr/bin/env python3
+"""Compares the register headers of hal/stm32g474 with independent descriptions of chip and core.
+
+usage: check_registers.py CC ROOT               exit 1 and one line for each difference
+       check_registers.py --self-test CC ROOT   plants errors, and expects each to be found
+
+Every address, offset, bit position, width, interrupt number, pin and alternate function that the
+headers name is looked up; what is not in the description, or not in the form that registers.h
+promises, is a difference. Offsets and masks are what the compiler makes of the headers.
+"""
+
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+PORT = Path("hal/stm32g474")
+
+# Families of peripherals: prefix of the field macros -> peripherals that share the registers.
+FAMILIES = {
+    "TIM": ["TIM1", "TIM2", "TIM3", "TIM4"],
+    "GPIO": ["GPIOA", "GPIOB", "GPIOC"],
+    "ADC": ["ADC1", "ADC2", "ADC3", "ADC4", "ADC12_COMMON", "ADC345_COMMON"],
+    "OPAMP": ["OPAMP1", "OPAMP2"],
+    "COMP": ["COMP1", "COMP2", "COMP3", "COMP4"],
+    "DAC": ["DAC3"],
+    "DMA": ["DMA1"],
+    "DMAMUX": ["DMAMUX1"],
+    "LPUART": ["LPUART1"],
+}
+# Registers whose name in the macros or structs is not the one of the description.
+REGISTERS = {
+    "CCMR": "ccmr_output[0]",
+    "CCR": {"DMAMUX": "ccr[0]"},
+    "CR": {"DMA": "ch[0].cr"},
+}
+MEMBERS = {
+    "DAC3": {
+        **{f"dhr{n}{k}": f"dhr{n}[{k - 1}]" for n in ("12r", "12l", "8r") for k in (1, 2)},
+        **{f"dor{k}": f"dor[{k - 1}]" for k in (1, 2)},
+    }
+}
+# Where the description is wrong: RM0440 and the vendor's own header have PWR_CR5.R1MODE in bit 8.
+CORRECTIONS = {("PWR", "cr5", "r1mode"): (8, 1)}
+CORE = ["SCB", "DWT", "COREDEBUG"]
+# In capture mode CCMR1 has other fields.
+CAPTURE = {"IC1F", "IC2F"}
+
+FORM = re.compile(
+    r"#define (?:"
+    r"(?P<flag>[A-Z0-9_]+)\s+BIT\(\d+\)|"
+    r"(?P<field>[A-Z0-9_]+)\((?P<parameters>[a-z, ]+)\)\s+FIELD\(.*\)|"
+    r"(?P<peripheral>[A-Z0-9_]+)\s+\(\(struct (?P<struct>\w+) \*\)0x(?P<address>[0-9a-f]+)u\)|"
+    r"FLASH_(?:BANK_1|BANK_BYTES|PAGE_BYTES)\s+\w+|"
+    r"(?:BIT|FIELD)\(.*|STEADYSTEP_\w+_H"
+    r")(?:\s*/\*.*)?"
+)
+
+
+class Facts:
+    def __init__(self, *files):
+        self.registers, self.fields, self.clocks = {}, {}, {}
+        self.interrupts, self.pins, self.memories = {}, set(), {}
+        for file in files:
+            for line in file.read_text(encoding="utf-8").splitlines():
+                word = line.split()
+                if not word or word[0] == "#":
+                    continue
+                kind = word.pop(0)
+                if kind == "REG":
+                    self.registers[word[0], word[1]] = int(word[2], 16)
+                elif kind == "FIELD":
+                    self.fields.setdefault((word[0], word[1]), []).append(word[2:])
+                elif kind == "IRQ":
+                    self.interrupts[word[0]] = int(word[1])
+                elif kind == "PIN":
+                    self.pins.add(tuple(word))
+                elif kind == "MEM":
+                    self.memories[word[0]] = (int(word[1], 16), int(word[2]))
+                elif kind == "CLKEN":
+                    self.clocks[word[0]] = (word[1].lower(), word[2].lower())
+
+    def masks(self, peripheral, register, name):
+        """Masks that a field may have: of an array the element that the digit in its name counts;
+        of one in parts the first part."""
+        if (peripheral, register, name) in CORRECTIONS:
+            low, count = CORRECTIONS[peripheral, register, name]
+            return {(1 << count) - 1 << low}
+        found = set()
+        index = int(re.sub(r"\D", "", name) or 1) - 1
+        if register == "ccmr3":
+            index -= 4  # of channels 5 and 6
+        plain = re.sub(r"\d", "", name)
+        for field, position, width, *array in self.fields.get((peripheral, register), []):
+            if field not in (name, plain) or (field == plain != name and not array):
+                continue
+            first, _, last = position.split(",")[0].partition("..")
+            low, count = int(first), int(last) - int(first) + 1 if last else int(width)
+            if array:
+                if index >= int(array[0][1:]):
+                    continue
+                low += index * int(array[1][1:])
+            found.add((1 << count) - 1 << low)
+        return found
+
+
+def without_comments(text):
+    return re.sub(r"/\*.*?\*/", lambda m: re.sub(r"[^\n]", "", m.group()), text, flags=re.DOTALL)
+
+
+def structs(text):
+    """{struct: [member expression]} in words or bytes; of arrays the first and the last element."""
+    found = {}
+    for name, body in re.findall(r"^struct (\w+) \{\n(.*?)^\};", text, re.DOTALL | re.MULTILINE):
+        members = []
+        inner = re.search(r"struct \w+ \{(.*?)\} (\w+)\[(\d+)\];", body, re.DOTALL)
+        if inner:
+            body = body.replace(inner.group(), "")
+        for declaration in re.findall(r"volatile uint(?:32|8)_t ([^;]*);", body):
+            members += declaration.replace("\n", " ").split(",")
+        if inner:
+            plain = re.findall(r"volatile uint32_t ([^;]*);", inner.group(1))
+            inside = [m for part in plain for m in part.split(",")]
+            last = int(inner.group(3)) - 1
+            members += [f"{inner.group(2)}[{k}].{m.strip()}" for k in (0, last) for m in inside]
+        found[name] = [
+            element
+            for member in (m.strip() for m in members)
+            if "reserved" not in member
+            for element in elements(member)
+        ]
+    return found
+
+
+def elements(member):
+    array = re.fullmatch(r"(\w+)\[(\d+)\]", member)
+    if not array:
+        return [member]
+    return [f"{array.group(1)}[{k}]" for k in (0, int(array.group(2)) - 1)]
+
+
+def compiled(cc, root, header, expressions):
+    """Values of C expressions, with the header included."""
+    lines = "".join(f'    printf("%llx\\n", (unsigned long long)({e}));\n' for e in expressions)
+    text = (
+        f'#include <stddef.h>\n#include <stdio.h>\n#include "{header}"\n'
+        f"int main(void)\n{{\n{lines}    return 0;\n}}\n"
+    )
+    with tempfile.TemporaryDirectory() as scratch:
+        source, program = Path(scratch) / "values.c", Path(scratch) / "values"
+        source.write_text(text, encoding="utf-8")
+        made = [cc, "-w", "-std=gnu11", "-I", str(root), str(source), "-o", str(program)]
+        subprocess.run(made, check=True)
+        output = subprocess.run([program], check=True, capture_output=True, text=True).stdout
+    return [int(line, 16) for line in output.split()]
+
+
+def register_of(prefix, macro, registers):
+    """(peripherals, register, field) that TIM_CR2_MMS stands for."""
+    peripherals = FAMILIES.get(prefix, [prefix])
+    rest = macro[len(prefix) + 1 :]
+    for end in [m.start() for m in re.finditer("_", rest)]:
+        short, field = rest[:end], rest[end + 1 :]
+        alias = REGISTERS.get(short, short.lower())
+        if isinstance(alias, dict):
+            alias = alias.get(prefix, short.lower())
+        if field in CAPTURE:
+            alias = "ccmr_input[0]"
+        if any((p, alias) in registers for p in peripherals):
+            yield peripherals, alias, field.lower()
+
+
+def check_fields(facts, masks):
+    for macro, mask in masks.items():
+        prefixes = [*FAMILIES, "RCC", "PWR", "FLASH", "SYSCFG", "IWDG", "DBGMCU", *CORE]
+        prefix = next((p for p in prefixes if macro.startswith(p + "_")), "")
+        places = list(register_of(prefix, macro, facts.registers))
+        known = [
+            allowed
+            for peripherals, register, field in places
+            for p in peripherals
+            if (allowed := facts.masks(p, register, field))
+        ]
+        if not known:
+            yield f"{macro}: no such field in the description"
+        elif not any(mask in allowed for allowed in known):
+            expected = sorted(hex(m) for allowed in known for m in allowed)
+            yield f"{macro}: {mask:#x}, expected {' or '.join(dict.fromkeys(expected))}"
+
+
+def check_header(cc, root, header, facts):
+    """Form, addresses and fields of one register header."""
+    text = without_comments((root / header).read_text(encoding="utf-8"))
+    lines = text.replace("\\\n", " ").splitlines()
+    forms = [(line, FORM.fullmatch(line.rstrip())) for line in lines if line.startswith("#define")]
+    if header.name == "registers.h":
+        yield from (f"not in the promised form: {line}" for line, form in forms if not form)
+    forms = [form for _, form in forms if form]
+    members = structs(text)
+
+    expressions, meanings = [], []
+    for form in forms:
+        if form["peripheral"]:
+            for member in members.get(form["struct"], []):
+                expressions.append(
+                    f"0x{form['address']}u + offsetof(struct {form['struct']}, {member})"
+                )
+                meanings.append((form["peripheral"], member))
+        elif form["flag"]:
+            expressions.append(form["flag"])
+            meanings.append(form["flag"])
+        elif form["field"]:
+            count = form["parameters"].count(",") + 1
+            one = form["parameters"] == "channel"
+            arguments = "0" if one else ", ".join(["0"] * (count - 1) + ["~0u"])
+            expressions.append(f"{form['field']}({arguments})")
+            meanings.append(form["field"])
+
+    masks, seen = {}, set()
+    for meaning, value in zip(meanings, compiled(cc, root, header.as_posix(), expressions)):
+        if isinstance(meaning, str):
+            masks[meaning] = value
+            continue
+        peripheral, member = meaning
+        register = MEMBERS.get(peripheral, {}).get(member, member)
+        expected = facts.registers.get((peripheral, register))
+        if expected is None:
+            continue  # the struct serves larger relatives of this peripheral; see below
+        seen.add((peripheral, member))
+        if value != expected:
+            yield f"{peripheral}->{member}: {value:#x}, expected {expected:#x}"
+    for form in forms:
+        if form["peripheral"] and not any(p == form["peripheral"] for p, _ in seen):
+            yield f"{form['peripheral']}: not in the description"
+    for name, expected in members.items():
+        owners = [form["peripheral"] for form in forms if form["struct"] == name]
+        for member in expected:
+            if owners and not any((p, member) in seen for p in owners):
+                if not (header.name == "core.h" and re.search(r"\[[1-9]", member)):
+                    yield f"struct {name}: {member} is not in the description"
+    yield from check_fields(facts, masks)
+
+
+def check_interrupts(root, facts):
+    text = without_comments((root / PORT / "registers.h").read_text(encoding="utf-8"))
+    found = dict(re.findall(r"INTERRUPT_(\w+) = (\d+)", text))
+    if not found:
+        yield "no interrupt numbers found"
+    for name, number in found.items():
+        if facts.interrupts.get(name) != int(number):
+            yield f"INTERRUPT_{name}: {number}, expected {facts.interrupts.get(name)}"
+    total = re.search(r"INTERRUPTS = (\d+)", text)
+    if not total or int(total.group(1)) != max(facts.interrupts.values()) + 1:
+        yield f"INTERRUPTS: expected {max(facts.interrupts.values()) + 1}"
+
+
+def check_pins(root, facts):
+    text = without_comments((root / PORT / "pins.h").read_text(encoding="utf-8"))
+    entries = re.findall(
+        r"PIN\((\w), (\d+), (\w+), (\d+), (\w+), (\w+), (\w+)\)", text.replace("\\\n", "")
+    )
+    if len(entries) < 20:
+        yield f"only {len(entries)} pins found"
+    at = {}
+    for port, number, mode, function, _, peripheral, signal in entries:
+        pin = f"P{port}{number}"
+        if pin in at.values():
+            yield f"{pin} has two uses"
+        at[peripheral, signal] = pin
+        expected = function if mode == "ALTERNATE" else "-"
+        if mode != "OUTPUT" and (peripheral, pin, signal, expected) not in facts.pins:
+            yield f"{pin}: no {peripheral} {signal} with function {expected} there"
+    for amplifier, comparator in (("OPAMP1", "COMP1"), ("OPAMP2", "COMP2")):
+        pin = at.get((amplifier, "VINP0"))
+        if (comparator, pin, "INP0", "-") not in facts.pins:
+            yield f"{pin}: {comparator} does not see what {amplifier} amplifies"
+    channels = re.findall(r"CHANNEL_(\w+) = (\d+),\s*/\* (ADC\d)", pin_text(root))
+    for name, channel, converter in channels:
+        if not name.startswith("OPAMP") and (converter, f"IN{channel}") not in at:
+            yield f"CHANNEL_{name}: no pin leads to {converter} IN{channel}"
+
+
+def pin_text(root):
+    return (root / PORT / "pins.h").read_text(encoding="utf-8")
+
+
+def check_clocks(root, facts):
+    """Every peripheral that the port has registers of can be switched on."""
+    text = (root / PORT / "registers.h").read_text(encoding="utf-8")
+    for peripheral in re.findall(r"#define (\w+) +\(\(struct", text):
+        if peripheral in facts.clocks:
+            register, bit = facts.clocks[peripheral]
+            if f"RCC_{register.upper()}_{bit.upper()} " not in text:
+                yield f"{peripheral}: RCC_{register.upper()}_{bit.upper()} is missing"
+
+
+def check_memory(root, facts):
+    script = without_comments((root / PORT / "memory.ld").read_text(encoding="utf-8"))
+    for name, memory in (("FLASH", "BANK_1"), ("CCM", "CCMRAM_ICODE"), ("RAM", "SRAM1")):
+        pattern = rf"{name}\s+\(\w+\)\s*: ORIGIN = (0x\w+), LENGTH = (\d+)K"
+        origin, length = re.search(pattern, script).groups()
+        start, size = facts.memories[memory]
+        if int(origin, 16) != start or int(length) * 1024 > size:
+            yield f"memory.ld: {name} is {origin}, {length}K; the chip has {start:#x}, {size} bytes"
+
+
+def differences(cc, root):
+    chip = Facts(HERE / "stm32g474-registers.txt")
+    core = Facts(HERE / "cortex-m4-registers.txt")
+    yield from check_header(cc, root, PORT / "registers.h", chip)
+    yield from check_header(cc, root, PORT / "core.h", core)
+    yield from check_interrupts(root, chip)
+    yield from check_pins(root, chip)
+    yield from check_clocks(root, chip)
+    yield from check_memory(root, chip)
+
+
+# file, what is there, what is planted instead
+PLANTED = [
+    ("registers.h", "0x40012c00u", "0x40012d00u"),
+    ("registers.h", "TIM_BDTR_MOE BIT(15)", "TIM_BDTR_MOE BIT(14)"),
+    (
+        "registers.h",
+        "TIM_CR2_MMS2(value) FIELD(value, 20, 4)",
+        "TIM_CR2_MMS2(value) FIELD(value, 20, 3)",
+    ),
+    (
+        "registers.h",
+        "TIM_CR2_MMS(value) FIELD(value, 4, 3)",
+        "TIM_CR2_MMS(value) FIELD(value, 5, 3)",
+    ),
+    ("registers.h", "TIM_AF1_BKCMP3E BIT(3)", "TIM_AF1_BKCMP3E BIT(4)"),
+    (
+        "registers.h",
+        "ADC_JSQR_JSQ2(value) FIELD(value, 15, 5)",
+        "ADC_JSQR_JSQ2(value) FIELD(value, 14, 5)",
+    ),
+    ("registers.h", "TIM_CCMR_OC2PE BIT(11)", "TIM_CCMR_OC2PE BIT(10)"),
+    ("registers.h", "DAC_SR_DAC2RDY BIT(27)", "DAC_SR_DAC2RDY BIT(12)"),
+    ("registers.h", "INTERRUPT_ADC1_2 = 18", "INTERRUPT_ADC1_2 = 47"),
+    ("registers.h", "bdtr, ccr5", "ccr5, bdtr"),
+    ("registers.h", "kr, pr, rlr", "kr, rlr, pr"),
+    ("registers.h", "#define PWR_SR2_VOSF BIT(10)", "#define PWR_SR2_VOSF (1u << 10)"),
+    ("registers.h", "#define RCC_AHB2ENR_DAC3EN BIT(18)", ""),
+    ("core.h", "icsr, vtor, aircr", "vtor, icsr, aircr"),
+    ("core.h", "reserved4[56]", "reserved4[55]"),
+    ("pins.h", "PIN(B, 15, ALTERNATE, 4,", "PIN(B, 15, ALTERNATE, 6,"),
+    ("pins.h", "PIN(A, 7, ANALOG, 0, NONE, OPAMP2", "PIN(A, 6, ANALOG, 0, NONE, OPAMP2"),
+    ("pins.h", "CHANNEL_BUS = 14", "CHANNEL_BUS = 13"),
+    ("memory.ld", "ORIGIN = 0x10000000", "ORIGIN = 0x10001000"),
+]
+
+
+def self_test(cc, root):
+    wrong = 0
+    with tempfile.TemporaryDirectory() as scratch:
+        copy = Path(scratch)
+        (copy / "hal").mkdir()
+        shutil.copytree(root / PORT, copy / PORT)
+        for name, there, planted in PLANTED:
+            path = copy / PORT / name
+            text = path.read_text(encoding="utf-8")
+            pattern = r"\s+".join(re.escape(part) for part in there.split())
+            changed, count = re.subn(pattern, lambda _, new=planted: new, text, count=1)
+            path.write_text(changed, encoding="utf-8")
+            try:
+                found = list(differences(cc, copy)) if count else []
+            except subprocess.CalledProcessError:
+                found = ["does not compile"]
+            path.write_text(text, encoding="utf-8")
+            wrong += not found
+            print(f"{'ok' if found else 'WRONG':6} {there} -> {planted or 'nothing'}: {found[:1]}")
+    return 1 if wrong else 0
+
+
+def main(arguments):
+    if len(arguments) == 3 and arguments[0] == "--self-test":
+        return self_test(arguments[1], Path(arguments[2]))
+    if len(arguments) != 2:
+        sys.exit(__doc__)
+    found = list(differences(arguments[0], Path(arguments[1])))
+    for text in found:
+        print(text)
+    print(f"{len(found)} differences")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

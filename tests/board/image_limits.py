@@ -1,0 +1,64 @@
+#!/usr/bin/python3
+"""Fails if an image takes more memory than promised, or has something where it must not be.
+
+usage: image_limits.py IMAGE.elf             prints what is used and exits 1 if that is too much
+       image_limits.py --self-test IMAGE.elf expects each limit, lowered, to be found
+
+The stack's worst case is another test: tools/stack_bound.
+"""
+
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+
+from arm_image import memory  # noqa: E402
+from arm_image.image import Image  # noqa: E402
+
+LIMITS_B = {"flash": 128 * 1024, "ccm": 32 * 1024, "ram": 80 * 1024}
+RAM = 0x20000000
+VECTORS = 0x10000000  # aligned to more than the table takes
+
+
+def used(image):
+    """Bytes by memory; of flash what is loaded into it."""
+    totals = {"flash": sum(len(data) for _, data in memory.loaded(image.path))}
+    for _, start, size, _, _ in image.sections:
+        where = memory.region(start)
+        if where in ("ccm", "ram"):
+            totals[where] = totals.get(where, 0) + size
+    return totals
+
+
+def violations(image, limits):
+    for name, size in used(image).items():
+        print(f"{name:5} {size:6} of {limits[name]} B")
+        if size > limits[name]:
+            yield f"{name}: {size} B, at most {limits[name]}"
+    if image.symbols["stack_bottom"] != RAM:
+        yield "stack: not at the bottom of SRAM, an overflow would not fault"
+    if image.symbols["vectors"] != VECTORS:
+        yield f"vector table at {image.symbols['vectors']:#x}, expected {VECTORS:#x}"
+
+
+def self_test(image):
+    found = [list(violations(image, {**LIMITS_B, name: 1000})) for name in LIMITS_B]
+    for texts in found:
+        print(texts)
+    return 0 if all(len(texts) == 1 for texts in found) else 1
+
+
+def main(arguments):
+    if len(arguments) == 2 and arguments[0] == "--self-test":
+        return self_test(Image(arguments[1]))
+    if len(arguments) != 1:
+        sys.exit(__doc__)
+    found = list(violations(Image(arguments[0]), LIMITS_B))
+    for text in found:
+        print(text)
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
