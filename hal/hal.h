@@ -48,8 +48,9 @@ enum hal_leg { HAL_LEG_A_PLUS, HAL_LEG_A_MINUS, HAL_LEG_B_PLUS, HAL_LEG_B_MINUS,
 
 /* What the control interrupt returns, to act over S(k+1)...S(k+2). */
 struct hal_outputs {
-    uint16_t high_counts[HAL_LEGS]; /* time high per half period, 0...pwm_half_period_counts */
-    bool bridge_on;                 /* false: all gates off, at once */
+    /* time high per half period, 0...pwm_half_period_counts; aligned, to be copied in words */
+    uint16_t high_counts[HAL_LEGS] __attribute__((aligned(4)));
+    bool bridge_on; /* false: all gates off, at once */
 };
 
 /* Constant properties of a board, SI units; read at start-up only. */
@@ -111,7 +112,9 @@ struct hal {
 
     /* Parameter store in the units of real flash, at least four pages: 0 and 1 for what the drive
        learns, 2 and 3 for its settings. false: out of range or not erased. Erasing takes up to
-       25 ms, programming 0.1 ms a word, reading 10 us per 100 bytes. */
+       25 ms, programming 0.1 ms a word, reading 10 us per 100 bytes. A board whose program lies in
+       the same bank of flash would stall with it: it refuses (false) while the bridge is on, and
+       blocks for up to 40 ms otherwise. */
     bool (*parameters_erase)(void *context, uint32_t page);
     bool (*parameters_program)(void *context, uint32_t offset, const void *data, size_t count);
     bool (*parameters_read)(void *context, uint32_t offset, void *data, size_t count);
