@@ -99,22 +99,26 @@ struct hal {
     const char *(*start_cause)(void *context);
 
     /*
-     * Bytes from the host: at most `capacity`, and none behind the first '\n'; the number read.
-     * If the last one is '\n', `line_period` receives the index of the control period in which it
-     * arrived: of the last control interrupt that had begun by then. The first since start-up is 0,
-     * before it the index is UINT32_MAX. A character-match interrupt stamps it, so that the stamp
-     * does not depend on when the background reads. What the board cannot hold is lost; a line that
-     * it has lost bytes of, it ends with HAL_STREAM_LOST before the '\n'. Up to 20 us.
+     * Bytes from the host, as they come: at most `capacity`, and none behind the first '\n'; the
+     * number read. If the last one is '\n', `line_period` receives the index of the control period
+     * in which it arrived: of the last control interrupt that had begun by then. The first since
+     * start-up is 0, before it the index is UINT32_MAX. A character-match interrupt stamps it, so
+     * that the stamp does not depend on when the background reads. '\r' ends a line, too, but has
+     * no stamp: such a line counts from the period in which its '\r' is read, so that what is to
+     * happen in the same period every time ends with '\n'. What the board cannot hold is lost; a
+     * line that it has lost bytes of, it gives HAL_STREAM_LOST before the '\n' or '\r'. Up to 20
+     * us.
      */
     size_t (*stream_read)(void *context, uint8_t *bytes, size_t capacity, uint32_t *line_period);
     /* Bytes to the host: number of bytes taken, as many as there is room for. Up to 20 us. */
     size_t (*stream_write)(void *context, const uint8_t *bytes, size_t count);
 
     /* Parameter store in the units of real flash, at least four pages: 0 and 1 for what the drive
-       learns, 2 and 3 for its settings. false: out of range or not erased. Erasing takes up to
-       25 ms, programming 0.1 ms a word, reading 10 us per 100 bytes. A board whose program lies in
-       the same bank of flash would stall with it: it refuses (false) while the bridge is on, and
-       blocks for up to 40 ms otherwise. */
+       learns, 2 and 3 for its settings. false: out of range, not erased, or, of a read, unreadable
+       since a loss of power has cut off programming or erasing. Erasing takes up to 25 ms,
+       programming 0.1 ms a word, reading 10 us per 100 bytes. A board whose program lies in the
+       same bank of flash would stall with it: it refuses (false) while the bridge is on, and blocks
+       for up to 40 ms otherwise. */
     bool (*parameters_erase)(void *context, uint32_t page);
     bool (*parameters_program)(void *context, uint32_t offset, const void *data, size_t count);
     bool (*parameters_read)(void *context, uint32_t offset, void *data, size_t count);

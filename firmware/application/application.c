@@ -1,6 +1,7 @@
 #include "firmware/application/application.h"
 
 #include "firmware/application/settings_record.h"
+#include "firmware/design/refusal.h"
 #include "firmware/drive/drive_hash.h"
 
 static const struct hal_outputs bridge_off = {.bridge_on = false};
@@ -39,7 +40,13 @@ __attribute__((noinline)) static bool start_with_stored(struct application *appl
     if (stored.encoder_counts_per_turn != 0u) {
         application->facts.encoder_counts_per_turn = stored.encoder_counts_per_turn;
     }
-    application->stored_refused = !start(application, &stored.drive, application->stored_refusal);
+    application->stored_refused =
+        (stored.drive.feedback == DRIVE_FEEDBACK_ENCODER &&
+         application->facts.encoder_counts_per_turn == 0u &&
+         !design_refuse(application->stored_refusal,
+                        "feedback = encoder, but neither board nor stored settings have an "
+                        "encoder: store its counts per turn, or feedback = sensorless")) ||
+        !start(application, &stored.drive, application->stored_refusal);
     return !application->stored_refused;
 }
 

@@ -97,27 +97,57 @@ static bool needs_operation(const struct drive_command *command)
            command->kind != DRIVE_COMMAND_SAVE;
 }
 
-/* What the drive would drop without a word. */
-static bool fits_state(const struct application *application, const struct command_line *line,
-                       struct text *answer)
+/* It got ready only after the line had arrived: with a fast background the line would have been
+   read before. */
+static bool got_ready_since(const struct application *application, uint32_t line_period)
+{
+    const uint32_t since = *(const volatile uint32_t *)&application->drive.state_since;
+    const uint32_t now = period_now(application);
+
+    return now - since < now - line_period;
+}
+
+/* Whether a command finds the drive ready; if not, why, and what to do. */
+static bool finds_operation(const struct application *application, const struct command_line *line,
+                            uint32_t line_period, struct text *answer)
 {
     const struct drive *drive = &application->drive;
-    const enum drive_state state =
-        drive->commands.disable.posted ? DRIVE_SWITCH_ON_DISABLED : drive->state;
+    const enum drive_state state = drive_state_by(drive, line->command.at_period);
 
-    if (line->command.kind == DRIVE_COMMAND_ENABLE && state == DRIVE_FAULT) {
+    if (state == DRIVE_OPERATION_ENABLED && !got_ready_since(application, line_period)) {
+        return true;
+    }
+    text_put(answer, line->form->name);
+    text_put(answer, " refused: ");
+    if (state == DRIVE_FAULT) {
+        text_put(answer, "the drive is fault, disable clears it");
+    } else if (state != DRIVE_SWITCH_ON_DISABLED || command_queue_enable_waits(&drive->commands)) {
+        text_put(answer, "the drive is being enabled, wait until it is ready");
+    } else if (drive->commands.disable.posted) {
+        text_put(answer, "a disable acts in period ");
+        text_unsigned(answer, drive->commands.disable.at_period);
+        text_put(answer, ", enable the drive behind it");
+    } else {
+        text_put(answer, "the drive is switch-on-disabled, enable it first");
+    }
+    return false;
+}
+
+/* What the drive would drop without a word. */
+static bool fits_state(const struct application *application, const struct command_line *line,
+                       uint32_t line_period, struct text *answer)
+{
+    const struct drive *drive = &application->drive;
+
+    if (line->command.kind == DRIVE_COMMAND_ENABLE &&
+        drive_state_by(drive, line->command.at_period) == DRIVE_FAULT) {
         text_put(answer, "enable refused: fault ");
         report_fault_reason(answer, application);
         text_put(answer, "; disable clears it");
         return false;
     }
-    if (needs_operation(&line->command) && state != DRIVE_OPERATION_ENABLED) {
-        text_put(answer, line->form->name);
-        text_put(answer, " refused: the drive is ");
-        text_put(answer, drive_state_name(state));
-        text_put(answer, state == DRIVE_SWITCH_ON_DISABLED ? ", enable it first"
-                         : state == DRIVE_FAULT            ? ", disable clears it"
-                                                           : ", wait until it is ready");
+    if (needs_operation(&line->command) &&
+        !finds_operation(application, line, line_period, answer)) {
         return false;
     }
     if (line->command.kind == DRIVE_COMMAND_SAVE && drive->planner.motion != PLANNER_IDLE) {
@@ -197,8 +227,8 @@ static bool obey_command(struct application *application, struct command_line *l
 {
     char refusal[DRIVE_ERROR_TEXT];
 
-    if (!fits_state(application, line, answer) ||
-        !address(application, line, line_period, answer)) {
+    if (!address(application, line, line_period, answer) ||
+        !fits_state(application, line, line_period, answer)) {
         return false;
     }
     if (line->form->action == LINE_MOVE) {
@@ -207,6 +237,12 @@ static bool obey_command(struct application *application, struct command_line *l
     if (!drive_command(&application->drive, &line->command, refusal)) {
         text_put(answer, refusal);
         return false;
+    }
+    /* one that waits already may come earlier */
+    if (line->command.kind == DRIVE_COMMAND_DISABLE) {
+        line->command.at_period = application->drive.commands.disable.at_period;
+    } else if (line->command.kind == DRIVE_COMMAND_STOP) {
+        line->command.at_period = application->drive.commands.stop.at_period;
     }
     return true;
 }
@@ -252,6 +288,8 @@ static bool obey_line(struct application *application, uint32_t line_period)
     text_put(&answer, "error: ");
     if (console->bytes_lost) {
         text_put(&answer, "bytes of the line were lost, it came faster than it is read");
+    } else if (console->nul) {
+        text_put(&answer, "the line contains a NUL byte");
     } else if (too_long) {
         text_put(&answer, "the line is longer than 200 characters");
     } else if (command_line_read(&line, console->line, &answer)) {
@@ -265,19 +303,17 @@ static bool obey_line(struct application *application, uint32_t line_period)
         }
     }
     console->bytes_lost = false;
+    console->nul = false;
     end_answer(console, &answer);
     return true;
 }
 
-static void take_character(struct application *application, char character)
+static void take_character(struct console *console, char character)
 {
-    struct console *console = &application->console;
-
-    console->returned = character == '\r';
-    if (character == '\r') {
-        console->returned_in = period_now(application);
-    } else if (character == (char)HAL_STREAM_LOST) {
+    if (character == (char)HAL_STREAM_LOST) {
         console->bytes_lost = true;
+    } else if (character == '\0') {
+        console->nul = true;
     } else if (character == '\b' || character == '\x7f') {
         console->line_length -= console->line_length > 0u ? 1u : 0u;
     } else {
@@ -288,37 +324,38 @@ static void take_character(struct application *application, char character)
     }
 }
 
-/* A terminal that ends its lines with '\r' alone. */
-static bool line_returned(struct application *application)
+/* More from the board, when what it has handed out is used up. */
+static void refill(struct application *application)
 {
     struct console *console = &application->console;
-    const uint32_t now = period_now(application);
+    const struct hal *board = &application->board;
 
-    if (!console->returned || now - console->returned_in < CONSOLE_RETURN_PERIODS) {
-        return false;
+    if (console->taken == console->received_count) {
+        console->taken = 0;
+        console->received_count = board->stream_read(
+            board->context, console->received, sizeof console->received, &console->received_in);
     }
-    console->returned = false;
-    return obey_line(application, now);
 }
 
 /* true: an answer is to be sent. */
 static bool read_line(struct application *application)
 {
-    enum { PIECE = 64 };
     struct console *console = &application->console;
-    const struct hal *board = &application->board;
-    uint8_t bytes[PIECE];
-    uint32_t line_period = 0;
-    const size_t count = board->stream_read(board->context, bytes, PIECE, &line_period);
+    bool answered = false;
 
-    for (size_t i = 0; i < count; i++) {
-        if (bytes[i] == '\n') {
-            console->returned = false;
-            return obey_line(application, line_period);
+    refill(application);
+    while (!answered && console->taken < console->received_count) {
+        const char character = (char)console->received[console->taken++];
+
+        if (character == '\n') {
+            answered = obey_line(application, console->received_in);
+        } else if (character == '\r') { /* a '\n' behind it ends an empty line: no answer */
+            answered = obey_line(application, period_now(application));
+        } else {
+            take_character(console, character);
         }
-        take_character(application, (char)bytes[i]);
     }
-    return line_returned(application);
+    return answered;
 }
 
 void console_init(struct console *console)

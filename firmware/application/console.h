@@ -3,13 +3,19 @@
  * without being asked for. What can be typed: firmware/README.md; `help` lists it.
  *
  * A line is a command and its parameters, `name=value` with the unit in the name, in any order,
- * ended by '\n' ('\r' before it counts for nothing). It answers "ok ..." or "error: ..."; an empty
- * line has no answer. '\r' alone ends a line, too, 5 ms later, and then in the period in which it
- * is read. Backspace and delete take the last character back. Nothing is echoed.
+ * ended by '\n', '\r' or both. It answers "ok ..." or "error: ..."; an empty line has no answer,
+ * and so the '\n' of "\r\n" counts for nothing. Backspace and delete take the last character back.
+ * A line with a NUL byte is refused. Nothing is echoed.
  *
  * A command acts DRIVE_TYPED_DELAY_PERIODS after the period in which its line's last byte arrived,
  * and one that the background plans DRIVE_LEAD_s after that: so what a tape of lines does, depends
  * on when they arrive and not on how fast they are read. `at=<period>` addresses a later period.
+ * The board stamps '\n' alone: a line that ends with '\r', be it followed by '\n', counts from the
+ * period in which it is read. A tape that is to do the same every time ends its lines with '\n'
+ * alone.
+ *
+ * A command is refused by the state that it will find: a disable or enable that waits counts, and
+ * what arrived before the drive was ready is refused even if it is read afterwards.
  */
 #ifndef STEADYSTEP_CONSOLE_H
 #define STEADYSTEP_CONSOLE_H
@@ -20,7 +26,7 @@
 enum {
     CONSOLE_LINE_BYTES = 200,   /* longest line, its end not counted */
     CONSOLE_ANSWER_BYTES = 640, /* longest line that the console writes, its end counted */
-    CONSOLE_RETURN_PERIODS = 50 /* until '\r' alone ends a line */
+    CONSOLE_PIECE_BYTES = 64    /* read from the board at once */
 };
 
 /* What of a drive was announced last. */
@@ -36,8 +42,11 @@ struct console {
     char line[CONSOLE_LINE_BYTES + 1];
     size_t line_length; /* beyond CONSOLE_LINE_BYTES: what came behind was not kept */
     bool bytes_lost;    /* of the line, by the board */
-    bool returned;      /* the line's last character so far is '\r' */
-    uint32_t returned_in;
+    bool nul;           /* a byte of the line */
+    uint8_t received[CONSOLE_PIECE_BYTES];
+    size_t received_count;
+    size_t taken;         /* of them */
+    uint32_t received_in; /* period of the '\n' that they end with, if they do */
     char answer[CONSOLE_ANSWER_BYTES];
     size_t answer_length;
     size_t answer_sent;

@@ -4,20 +4,24 @@
  * at its own place, little-endian, a real number as the 64 bits of its IEEE 754 double. What comes
  * back is what went in, bit for bit.
  *
- *   payload  0  motor: resistance_ohm, inductance_H, torque_constant_Nm_A,
- *               viscous_friction_Nms_rad, inertia_kgm2, rated_current_A, supply_V   double each
- *           56  motor: rotor_teeth, 4 bytes
- *           60  encoder counts per turn of the board, 4 bytes; 0: none
- *           64  law, feedback, estimator, observer, 1 byte each (drive_interface.h,
- * position_laws.h) 68  flags, 4 bytes: bit 0 feed_forward, 1 detent_learning, 2
- * bridge_loss_compensation, 3 resistance_adaptation, 4 encoder_zero_known, 5 calibrate_offsets, 6
- * hold_on_enable, 7 hold_at_rest 72  law_bandwidth_rad_s, current_bandwidth_rad_s, current_limit_A,
- * overcurrent_trip_A, speed_limit_rad_s, observer_bandwidth_rad_s, high_gain_epsilon_s,
- *               encoder_zero_rad, initial_load_torque_Nm, hold_on_enable_s, hold_current_A,
- *               hold_ramp_s, hold_delay_s, hold_bandwidth_rad_s, initial_angle_rad,
- *               initial_angle_error_rad   double each
- *          200  law_gains, 12 doubles; NaN: not given
- *          296  detent_torque_Nm, 6 doubles
+ *   payload     0   motor, a double each: resistance_ohm, inductance_H, torque_constant_Nm_A,
+ *                   viscous_friction_Nms_rad, inertia_kgm2, rated_current_A, supply_V
+ *              56   rotor_teeth of the motor, 4 bytes
+ *              60   encoder counts per turn of the board, 4 bytes; 0: none
+ *              64   law (position_laws.h), 1 byte
+ *              65   feedback (drive_interface.h), 1 byte
+ *              66   estimator, 1 byte
+ *              67   observer, 1 byte
+ *              68   flags, 4 bytes; from bit 0 on: feed_forward, detent_learning,
+ *                   bridge_loss_compensation, resistance_adaptation, encoder_zero_known,
+ *                   calibrate_offsets, hold_on_enable, hold_at_rest
+ *              72   a double each: law_bandwidth_rad_s, current_bandwidth_rad_s, current_limit_A,
+ *                   overcurrent_trip_A, speed_limit_rad_s, observer_bandwidth_rad_s,
+ *                   high_gain_epsilon_s, encoder_zero_rad, initial_load_torque_Nm,
+ *                   hold_on_enable_s, hold_current_A, hold_ramp_s, hold_delay_s,
+ *                   hold_bandwidth_rad_s, initial_angle_rad, initial_angle_error_rad
+ *             200   law_gains, 12 doubles; NaN: not given
+ *             296   detent_torque_Nm, 6 doubles
  */
 #ifndef STEADYSTEP_SETTINGS_RECORD_H
 #define STEADYSTEP_SETTINGS_RECORD_H

@@ -28,9 +28,24 @@ bool command_queue_put(struct command_queue *queue, const struct queued_command 
     return true;
 }
 
+/* false: none waits, or the interrupt has just taken it, or it would come later than `at_period`.
+ */
+static bool join_waiting(const struct command_queue *queue, struct urgent_command *urgent,
+                         uint32_t at_period)
+{
+    if (!urgent->posted || !has_come(urgent->at_period, at_period)) {
+        return false;
+    }
+    *(volatile uint32_t *)&urgent->flush_to = queue->written;
+    return urgent->posted;
+}
+
 void command_queue_put_urgent(struct command_queue *queue, struct urgent_command *urgent,
                               uint32_t at_period)
 {
+    if (join_waiting(queue, urgent, at_period)) {
+        return;
+    }
     urgent->posted = false;
     urgent->at_period = at_period;
     urgent->flush_to = queue->written;
@@ -50,6 +65,26 @@ bool command_queue_take_urgent(struct command_queue *queue, struct urgent_comman
         queue->read = urgent->flush_to;
     }
     return true;
+}
+
+bool command_queue_enable_waits(const struct command_queue *queue)
+{
+    const struct urgent_command *disable = &queue->disable;
+    const bool disabled = disable->posted;
+    uint32_t entry = *(const volatile uint32_t *)&queue->read;
+
+    if (disabled && (int32_t)(disable->flush_to - entry) > 0) {
+        entry = disable->flush_to;
+    }
+    for (; entry != queue->written; entry++) {
+        const struct queued_command *command = &queue->entry[entry % COMMAND_QUEUE_LENGTH];
+
+        if (command->kind == DRIVE_COMMAND_ENABLE &&
+            (!disabled || has_come(disable->at_period, command->at_period))) {
+            return true;
+        }
+    }
+    return false;
 }
 
 struct queued_command *command_queue_due(struct command_queue *queue, uint32_t period)

@@ -48,7 +48,8 @@ static inline bool queued_command_is_planned(const struct queued_command *comman
     return command->kind >= DRIVE_COMMAND_SINE && command->kind <= DRIVE_COMMAND_RETARGET;
 }
 
-/* A command that waits for nothing but its period; the last one posted counts. */
+/* A command that waits for nothing but its period. One of a kind waits at a time: of two, the
+   earlier period counts, and what was posted before either is flushed. */
 struct urgent_command {
     volatile bool posted;
     uint32_t at_period;
@@ -78,13 +79,17 @@ struct command_queue {
 /* Background: false if COMMAND_QUEUE_LENGTH - 1 wait; the last entry may be a profile in use. */
 bool command_queue_put(struct command_queue *queue, const struct queued_command *command);
 
-/* Background: `urgent` is one of the queue's own. */
+/* Background: `urgent` is one of the queue's own; if it waits already, its at_period is the earlier
+   of both periods afterwards. */
 void command_queue_put_urgent(struct command_queue *queue, struct urgent_command *urgent,
                               uint32_t at_period);
 
 /* Interrupt: true once, when the period of `urgent` has come; flushes the queue. */
 bool command_queue_take_urgent(struct command_queue *queue, struct urgent_command *urgent,
                                uint32_t period);
+
+/* Background: an enable waits, for the disable's period or later if one waits, too. */
+bool command_queue_enable_waits(const struct command_queue *queue);
 
 /*
  * Interrupt: the oldest command if its period has come, else NULL. It leaves the queue when

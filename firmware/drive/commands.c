@@ -149,6 +149,44 @@ double drive_planned_end_rad(struct drive *drive)
     return position_to_rad(drive->planned_end, drive->settings.motor.rotor_teeth);
 }
 
+enum drive_state drive_state_by(const struct drive *drive, uint32_t at_period)
+{
+    const struct urgent_command *disable = &drive->commands.disable;
+    const bool posted = disable->posted; /* before the state, which changes when it is taken */
+    const enum drive_state state = *(const volatile enum drive_state *)&drive->state;
+    const uint32_t next = *(const volatile uint32_t *)&drive->period + 1u;
+    const uint32_t acts_in = (int32_t)(at_period - next) > 0 ? at_period : next;
+
+    return posted && (int32_t)(acts_in - disable->at_period) >= 0 ? DRIVE_SWITCH_ON_DISABLED
+                                                                  : state;
+}
+
+/*
+ * The board is told at once, so that it can refuse: the state machine keeps the bridge open until
+ * the enable acts. A latched trip is cleared if the bridge is open and has no fault to keep, or
+ * none when the disable that waits has acted.
+ */
+static bool enable(struct drive *drive, uint32_t at_period, char error[DRIVE_ERROR_TEXT])
+{
+    const struct hal *board = drive->board;
+    const enum drive_state found = drive_state_by(drive, at_period);
+    const enum drive_state state = drive->state;
+
+    if (found == DRIVE_SWITCH_ON_DISABLED &&
+        (state == DRIVE_SWITCH_ON_DISABLED || state == DRIVE_FAULT)) {
+        board->bridge_disable(board->context);
+    }
+    if (!board->bridge_enable(board->context)) {
+        return design_refuse(error, "enable refused: the board's overcurrent trip is latched");
+    }
+    if (found != DRIVE_OPERATION_ENABLED) {
+        drive->planned_end = drive->params.initial_position;
+        drive->end_known =
+            drive->params.encoder_zero_known ? PLANNED_END_AFTER_ENABLING : PLANNED_END_KNOWN;
+    }
+    return true;
+}
+
 bool drive_command(struct drive *drive, const struct drive_command *command,
                    char error[DRIVE_ERROR_TEXT])
 {
@@ -168,18 +206,8 @@ bool drive_command(struct drive *drive, const struct drive_command *command,
         }
         return true;
     }
-    if (command->kind == DRIVE_COMMAND_ENABLE) {
-        if (drive->state == DRIVE_SWITCH_ON_DISABLED) {
-            drive->board->bridge_disable(drive->board->context); /* clears a latched trip */
-        }
-        if (!drive->board->bridge_enable(drive->board->context)) {
-            return design_refuse(error, "enable refused: the board's overcurrent trip is latched");
-        }
-        if (drive->state != DRIVE_OPERATION_ENABLED || drive->commands.disable.posted) {
-            drive->planned_end = drive->params.initial_position;
-            drive->end_known =
-                drive->params.encoder_zero_known ? PLANNED_END_AFTER_ENABLING : PLANNED_END_KNOWN;
-        }
+    if (command->kind == DRIVE_COMMAND_ENABLE && !enable(drive, command->at_period, error)) {
+        return false;
     }
     if (queued_command_is_move(&queued) && !plan(drive, command, &queued.profile, error)) {
         return false;

@@ -108,6 +108,10 @@ __attribute__((noinline)) struct hal_outputs drive_control_cycle(struct drive *d
 bool drive_command(struct drive *drive, const struct drive_command *command,
                    char error[DRIVE_ERROR_TEXT]);
 
+/* Background: the state that a command posted now for `at_period` will find: the present one, or
+   switch-on-disabled if a disable waits that acts by then. A fault to come is not foreseen. */
+enum drive_state drive_state_by(const struct drive *drive, uint32_t at_period);
+
 /* Background: where the reference rests when all posted moves are done; the last place it was known
    to rest, while a stop, sine, set-points or a speed leave that open. */
 double drive_planned_end_rad(struct drive *drive);

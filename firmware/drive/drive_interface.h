@@ -138,8 +138,11 @@ enum drive_command_kind {
 /*
  * A command, addressed to a period: it acts in the control interrupt whose index is at_period
  * (0 is the first), or in the next one if that has passed. Moves are absolute and start from the
- * end of the last posted move. A drive whose encoder's zero is known starts where its rotor is: it
- * refuses all motion between the posting of an enable and operation.
+ * end of the last posted move. Of two disables or two stops that wait, the earlier period counts.
+ * An enable may follow a disable at once; if the board's overcurrent trip comes between the posting
+ * of the two and the disable, the drive is in fault again as soon as it is enabled. A drive whose
+ * encoder's zero is known starts where its rotor is: it refuses all motion between the posting of
+ * an enable and operation.
  *
  * Sine, set-points, velocity and retarget are planned by drive_background, DRIVE_LEAD_s ahead: they
  * act in the period they are addressed to if they are posted that much earlier, else that much

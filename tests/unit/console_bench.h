@@ -18,8 +18,10 @@ struct console_bench {
     size_t typed_count, typed_read;
     char written[BENCH_STREAM];
     size_t written_count;
-    size_t room; /* of the line to the host, per call */
+    size_t room;  /* of the line to the host, per call */
+    size_t piece; /* most that one reading brings; 0: all that has come */
     int watchdog_fed;
+    bool trip_latched; /* refuses to enable the bridge until it has been disabled */
     bool bridge_enabled;
     uint8_t store[BENCH_PAGE * BENCH_PAGES];
     struct hal_samples samples;
@@ -29,13 +31,18 @@ static struct console_bench bench;
 
 static inline bool bench_bridge_enable(void *context)
 {
-    ((struct console_bench *)context)->bridge_enabled = true;
-    return true;
+    struct console_bench *b = context;
+
+    b->bridge_enabled = !b->trip_latched;
+    return b->bridge_enabled;
 }
 
 static inline void bench_bridge_disable(void *context)
 {
-    ((struct console_bench *)context)->bridge_enabled = false;
+    struct console_bench *b = context;
+
+    b->bridge_enabled = false;
+    b->trip_latched = false;
 }
 
 static inline void bench_watchdog_feed(void *context)
@@ -53,9 +60,10 @@ static inline size_t bench_stream_read(void *context, uint8_t *bytes, size_t cap
                                        uint32_t *line_period)
 {
     struct console_bench *b = context;
+    const size_t most = b->piece != 0u && b->piece < capacity ? b->piece : capacity;
     size_t count = 0;
 
-    while (count < capacity && b->typed_read < b->typed_count) {
+    while (count < most && b->typed_read < b->typed_count) {
         bytes[count++] = (uint8_t)b->typed[b->typed_read++];
         if (bytes[count - 1] == '\n') {
             *line_period = b->line_period[b->lines_read++ % BENCH_LINES];
@@ -168,18 +176,32 @@ static inline void bench_periods(int count)
     }
 }
 
-/* Arrives in the present period; nothing is read yet. */
-static inline void bench_type(const char *text)
+/* Control interrupts while the background is busy elsewhere. */
+static inline void bench_interrupts(int count)
+{
+    for (int i = 0; i < count; i++) {
+        bench.period++;
+        (void)application_control_interrupt(&bench.application, &bench.samples);
+    }
+}
+
+/* Arrive in the present period; nothing is read yet. */
+static inline void bench_type_bytes(const char *bytes, size_t count)
 {
     if (bench.typed_read == bench.typed_count) {
         bench.typed_read = bench.typed_count = 0;
     }
-    for (; *text != '\0'; text++) {
-        if (*text == '\n') {
+    for (size_t i = 0; i < count; i++) {
+        if (bytes[i] == '\n') {
             bench.line_period[bench.lines_typed++ % BENCH_LINES] = bench.period;
         }
-        bench.typed[bench.typed_count++] = *text;
+        bench.typed[bench.typed_count++] = bytes[i];
     }
+}
+
+static inline void bench_type(const char *text)
+{
+    bench_type_bytes(text, strlen(text));
 }
 
 /* What has been written since the last call; valid until more is written. */

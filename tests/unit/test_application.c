@@ -46,6 +46,20 @@ static void test_without_stored_settings_the_defaults_of_the_motor_apply(void)
                      drive_hash_gains(&bench.application.drive.params));
 }
 
+static void test_stored_settings_for_an_encoder_that_is_not_there_say_what_to_do(void)
+{
+    struct drive_settings settings;
+
+    drive_settings_default(&settings, &bench_params);
+    drive_settings_select_feedback(&settings, DRIVE_FEEDBACK_ENCODER);
+    store(&settings, 0);
+    TEST_ASSERT_TRUE_MESSAGE(start(), error);
+    TEST_ASSERT_EQUAL_INT(APPLICATION_SETTINGS_DEFAULT, bench.application.settings_from);
+    TEST_ASSERT_EQUAL_STRING("feedback = encoder, but neither board nor stored settings have an "
+                             "encoder: store its counts per turn, or feedback = sensorless",
+                             bench.application.stored_refusal);
+}
+
 static void test_stored_settings_apply_with_their_encoder(void)
 {
     struct drive_settings settings;
@@ -140,6 +154,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_without_stored_settings_the_defaults_of_the_motor_apply);
     RUN_TEST(test_stored_settings_apply_with_their_encoder);
+    RUN_TEST(test_stored_settings_for_an_encoder_that_is_not_there_say_what_to_do);
     RUN_TEST(test_stored_settings_that_are_refused_are_announced_and_the_defaults_apply);
     RUN_TEST(test_a_motor_that_is_refused_stops_the_start);
     RUN_TEST(test_the_watchdog_is_fed_only_while_control_interrupts_come);

@@ -158,12 +158,34 @@ static void test_an_urgent_command_is_taken_once(void)
     TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.disable, 13));
 }
 
-static void test_of_two_stops_the_last_counts(void)
+/* One for later does not withdraw the one that waits. */
+static void test_of_two_disables_the_earlier_period_counts(void)
 {
-    command_queue_put_urgent(&queue, &queue.stop, 10);
-    command_queue_put_urgent(&queue, &queue.stop, 20);
-    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.stop, 10));
-    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.stop, 20));
+    command_queue_put_urgent(&queue, &queue.disable, 10);
+    command_queue_put_urgent(&queue, &queue.disable, 20);
+    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.disable, 9));
+    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.disable, 10));
+    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.disable, 20));
+
+    command_queue_put_urgent(&queue, &queue.stop, UINT32_MAX);
+    command_queue_put_urgent(&queue, &queue.stop, 3); /* behind the wrap */
+    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.stop, UINT32_MAX));
+    command_queue_put_urgent(&queue, &queue.stop, 40);
+    command_queue_put_urgent(&queue, &queue.stop, 30);
+    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.stop, 30));
+    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.stop, 40));
+}
+
+/* What the second one was to flush acts after neither. */
+static void test_of_two_disables_all_that_was_posted_before_is_flushed(void)
+{
+    put(1, 1000);
+    command_queue_put_urgent(&queue, &queue.disable, 10);
+    put(2, 11);
+    command_queue_put_urgent(&queue, &queue.disable, 20);
+    put(3, 12);
+    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.disable, 10));
+    TEST_ASSERT_TRUE(is_due(3, 12));
 }
 
 static void test_stop_and_disable_do_not_stand_in_each_others_way(void)
@@ -222,7 +244,8 @@ int main(void)
     RUN_TEST(test_a_command_addressed_across_the_wrap_of_the_period_waits_for_it);
     RUN_TEST(test_a_stop_overtakes_the_commands_before_it_and_flushes_them);
     RUN_TEST(test_an_urgent_command_is_taken_once);
-    RUN_TEST(test_of_two_stops_the_last_counts);
+    RUN_TEST(test_of_two_disables_the_earlier_period_counts);
+    RUN_TEST(test_of_two_disables_all_that_was_posted_before_is_flushed);
     RUN_TEST(test_stop_and_disable_do_not_stand_in_each_others_way);
     RUN_TEST(test_a_flush_never_brings_commands_back);
     RUN_TEST(test_attention_is_asked_for_as_long_as_anything_waits);

@@ -88,10 +88,7 @@ static void test_a_slow_background_changes_nothing(void)
 {
     bench_periods(3);
     bench_type("enable\n");
-    for (int i = 0; i < 8; i++) { /* control interrupts alone */
-        bench.period++;
-        (void)application_control_interrupt(&bench.application, &bench.samples);
-    }
+    bench_interrupts(8);
     bench_periods(3);
     TEST_ASSERT_EQUAL_UINT32(12, drive->state_since);
 }
@@ -105,10 +102,7 @@ static struct position rest_after_stop(int slow)
     bench_periods(300); /* 316: at full speed */
     answers("stop", "ok stop at=326\n");
     bench_periods(9);
-    for (int i = 0; i < slow; i++) {
-        bench.period++;
-        (void)application_control_interrupt(&bench.application, &bench.samples);
-    }
+    bench_interrupts(slow);
     bench_periods(300 - slow);
     TEST_ASSERT_EQUAL_INT(DRIVE_OPERATION_ENABLED, drive->state);
     TEST_ASSERT_FALSE(reference_busy(&drive->reference));
@@ -146,10 +140,7 @@ static void test_a_late_line_says_so(void)
 {
     enable();
     bench_type("hold\n");
-    for (int i = 0; i < 20; i++) {
-        bench.period++;
-        (void)application_control_interrupt(&bench.application, &bench.samples);
-    }
+    bench_interrupts(20);
     application_background(&bench.application);
     TEST_ASSERT_EQUAL_STRING("ok hold at=26 late: that period had passed\n", bench_heard());
 }
@@ -239,6 +230,96 @@ static void test_what_the_drive_would_drop_is_refused(void)
     answers("enable", "ok enable at=");
 }
 
+static void test_a_disable_for_later_leaves_the_one_that_waits(void)
+{
+    enable();
+    answers("disable", "ok disable at=26\n");
+    answers("disable at=5000", "ok disable at=26\n");
+    bench_periods(10);
+    TEST_ASSERT_EQUAL_INT(DRIVE_SWITCH_ON_DISABLED, drive->state);
+    TEST_ASSERT_EQUAL_UINT32(26, drive->state_since);
+}
+
+static void test_a_stop_for_later_leaves_the_one_that_waits(void)
+{
+    enable();
+    answers("velocity 5 acceleration_rad_s2=500 jerk_rad_s3=1e5", "ok velocity at=36\n");
+    bench_periods(300); /* 316 */
+    answers("stop", "ok stop at=326\n");
+    answers("stop at=5000", "ok stop at=326\n");
+    bench_periods(300);
+    TEST_ASSERT_FALSE(reference_busy(&drive->reference));
+}
+
+/* Until then the drive obeys; what is addressed behind it would be dropped. */
+static void test_a_disable_for_later_counts_from_its_period_on(void)
+{
+    enable();
+    answers("disable at=5000", "ok disable at=5000\n");
+    answers("move 1", "ok move at=26 ");
+    answers("enable", "ok enable at=26\n");
+    TEST_ASSERT_TRUE(drive_planned_end_rad(drive) > 0.999);
+    answers("hold at=4999", "ok hold at=4999\n");
+    answers("hold at=5000",
+            "error: hold refused: a disable acts in period 5000, enable the drive behind it\n");
+}
+
+static void trip(void)
+{
+    enable();
+    bench.trip_latched = true;
+    bench.samples.flags = HAL_FLAG_OVERCURRENT_TRIP;
+    bench_period();
+    bench.samples.flags = 0;
+    TEST_ASSERT_EQUAL_INT(DRIVE_FAULT, drive->state);
+    (void)bench_heard();
+}
+
+static void test_after_a_trip_of_the_board_disable_and_enable_may_come_in_one_go(void)
+{
+    for (int slow = 0; slow < 9; slow++) {
+        setUp();
+        trip(); /* 17 */
+        bench_type("disable\nenable\nmove 1\n");
+        bench_interrupts(slow);
+        application_background(&bench.application);
+        TEST_ASSERT_EQUAL_STRING("ok disable at=27\n", bench_heard());
+        application_background(&bench.application);
+        TEST_ASSERT_EQUAL_STRING("ok enable at=27\n", bench_heard());
+        application_background(&bench.application);
+        TEST_ASSERT_EQUAL_STRING("error: move refused: the drive is being enabled, wait until it "
+                                 "is ready\n",
+                                 bench_heard());
+        bench_interrupts(11 - slow);
+        TEST_ASSERT_EQUAL_INT(DRIVE_OPERATION_ENABLED, drive->state);
+        TEST_ASSERT_EQUAL_UINT32(28, drive->state_since);
+        TEST_ASSERT_TRUE(bench.bridge_enabled);
+    }
+}
+
+/* Whether the background reads the line before or after the drive is ready. */
+static void test_what_came_before_readiness_is_refused_however_late_it_is_read(void)
+{
+    for (int slow = 0; slow < 9; slow++) {
+        setUp();
+        bench_periods(3);
+        answers("enable", "ok enable at=12\n");
+        bench_periods(9); /* 11 */
+        bench_type("hold\n");
+        bench_interrupts(slow);
+        (void)bench_heard();
+        application_background(&bench.application);
+        if (slow > 0) { /* readiness is announced first */
+            application_background(&bench.application);
+        }
+        TEST_ASSERT_NOT_NULL(strstr(bench_heard(), "error: hold refused: the drive is being "
+                                                   "enabled, wait until it is ready\n"));
+    }
+    bench_type("hold\n");
+    application_background(&bench.application);
+    assert_begins(bench_heard(), "ok hold at=");
+}
+
 static void test_a_fault_is_announced_with_its_reason(void)
 {
     enable();
@@ -270,14 +351,76 @@ static void test_lines_may_end_and_be_corrected_as_terminals_do(void)
     answers("help stap\x7f\x7fop", "ok stop");
 }
 
-static void test_a_carriage_return_alone_ends_a_line_after_a_while(void)
+/* All that is answered to `text` if each reading brings at most `piece` bytes. */
+static void assert_hears(const char *text, size_t piece, const char *expected)
+{
+    char all[200] = "";
+
+    setUp();
+    application_background(&bench.application);
+    (void)bench_heard();
+    bench.piece = piece;
+    bench_type(text);
+    for (int i = 0; i < 60; i++) {
+        application_background(&bench.application);
+        strcat(all, bench_heard());
+    }
+    TEST_ASSERT_EQUAL_STRING(expected, all);
+}
+
+static void test_carriage_return_and_line_feed_end_lines_wherever_the_bytes_are_split(void)
+{
+    static const char *const typed[] = {
+        "help stop\nhelp disable\n",       "help stop\rhelp disable\r",
+        "help stop\r\nhelp disable\r\n",   "help stop\rhelp disable\n",
+        "help stop\n\rhelp disable\r\n\n", "\r\r\nhelp stop\r\nhelp disable\r",
+    };
+
+    for (size_t i = 0; i < sizeof typed / sizeof typed[0]; i++) {
+        for (size_t piece = 0; piece <= strlen(typed[i]); piece++) {
+            assert_hears(typed[i], piece,
+                         "ok stop [ at= ]: brings the reference to rest\n"
+                         "ok disable [ at= ]: opens the bridge; clears a fault\n");
+        }
+    }
+}
+
+static void test_a_carriage_return_ends_its_line_at_once(void)
 {
     bench_periods(3);
     (void)bench_heard();
     bench_type("help stop\r");
-    bench_periods(50);
-    TEST_ASSERT_EQUAL_STRING("", bench_heard());
+    application_background(&bench.application);
+    TEST_ASSERT_EQUAL_STRING("ok stop [ at= ]: brings the reference to rest\n", bench_heard());
+    bench_periods(100);
+    bench_type("\nhelp disable\r");
     bench_periods(2);
+    TEST_ASSERT_EQUAL_STRING("ok disable [ at= ]: opens the bridge; clears a fault\n",
+                             bench_heard());
+}
+
+/* Only a line feed is stamped when it arrives. */
+static void test_a_line_ended_by_carriage_return_counts_from_when_it_is_read(void)
+{
+    enable(); /* period 16 */
+    bench_type("stop\r");
+    bench_interrupts(4);
+    application_background(&bench.application);
+    TEST_ASSERT_EQUAL_STRING("ok stop at=30\n", bench_heard());
+}
+
+static void test_a_line_with_a_nul_byte_is_refused(void)
+{
+    static const char typed[] = "step 1\0junk\n\0\nhelp stop\n";
+
+    enable();
+    bench_type_bytes(typed, sizeof typed - 1u);
+    bench_periods(1);
+    TEST_ASSERT_EQUAL_STRING("error: the line contains a NUL byte\n", bench_heard());
+    TEST_ASSERT_EQUAL_UINT32(drive->commands.written, drive->commands.read);
+    bench_periods(1);
+    TEST_ASSERT_EQUAL_STRING("error: the line contains a NUL byte\n", bench_heard());
+    bench_periods(1);
     assert_begins(bench_heard(), "ok stop");
 }
 
@@ -325,10 +468,18 @@ int main(void)
     RUN_TEST(test_set_points_are_a_stream);
     RUN_TEST(test_what_is_not_understood_is_refused_with_what_was_expected);
     RUN_TEST(test_what_the_drive_would_drop_is_refused);
+    RUN_TEST(test_a_disable_for_later_leaves_the_one_that_waits);
+    RUN_TEST(test_a_stop_for_later_leaves_the_one_that_waits);
+    RUN_TEST(test_a_disable_for_later_counts_from_its_period_on);
+    RUN_TEST(test_after_a_trip_of_the_board_disable_and_enable_may_come_in_one_go);
+    RUN_TEST(test_what_came_before_readiness_is_refused_however_late_it_is_read);
     RUN_TEST(test_a_fault_is_announced_with_its_reason);
     RUN_TEST(test_readiness_is_announced);
     RUN_TEST(test_lines_may_end_and_be_corrected_as_terminals_do);
-    RUN_TEST(test_a_carriage_return_alone_ends_a_line_after_a_while);
+    RUN_TEST(test_carriage_return_and_line_feed_end_lines_wherever_the_bytes_are_split);
+    RUN_TEST(test_a_carriage_return_ends_its_line_at_once);
+    RUN_TEST(test_a_line_ended_by_carriage_return_counts_from_when_it_is_read);
+    RUN_TEST(test_a_line_with_a_nul_byte_is_refused);
     RUN_TEST(test_long_and_damaged_lines_are_refused_as_a_whole);
     RUN_TEST(test_the_longest_answers_are_not_cut);
     return UNITY_END();

@@ -204,6 +204,33 @@ static void test_after_a_trip_of_the_board_the_drive_can_be_enabled_again(void)
     is_in(DRIVE_OPERATION_ENABLED, true);
 }
 
+/* The disable is on its way: it counts although the drive is in fault still. */
+static void test_after_a_trip_of_the_board_disable_and_enable_can_be_posted_at_once(void)
+{
+    enable();
+    samples.flags = HAL_FLAG_OVERCURRENT_TRIP;
+    fake_board.trip_latched = true;
+    run(1);
+    samples.flags = 0;
+    post_kind(DRIVE_COMMAND_DISABLE);
+    post_kind(DRIVE_COMMAND_ENABLE);
+    has_fault(DRIVE_FAULT_HARDWARE_OVERCURRENT);
+    run(3);
+    is_in(DRIVE_OPERATION_ENABLED, true);
+    TEST_ASSERT_TRUE(fake_board.bridge_enabled);
+}
+
+static void test_a_disable_for_later_does_not_clear_the_boards_trip(void)
+{
+    enable();
+    samples.flags = HAL_FLAG_OVERCURRENT_TRIP;
+    fake_board.trip_latched = true;
+    run(1);
+    must_post((struct drive_command){.kind = DRIVE_COMMAND_DISABLE, .at_period = 5000});
+    TEST_ASSERT_FALSE(post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE}));
+    TEST_ASSERT_TRUE(fake_board.trip_latched);
+}
+
 static void test_a_drive_starts_at_the_angle_it_is_told(void)
 {
     settings.initial_angle_rad = 0.3;
@@ -691,6 +718,8 @@ int main(void)
     RUN_TEST(test_enabling_waits_for_the_period_it_is_addressed_to);
     RUN_TEST(test_enabling_is_refused_while_the_boards_trip_cannot_be_cleared);
     RUN_TEST(test_after_a_trip_of_the_board_the_drive_can_be_enabled_again);
+    RUN_TEST(test_after_a_trip_of_the_board_disable_and_enable_can_be_posted_at_once);
+    RUN_TEST(test_a_disable_for_later_does_not_clear_the_boards_trip);
     RUN_TEST(test_a_drive_starts_at_the_angle_it_is_told);
     RUN_TEST(test_enabling_an_enabled_drive_changes_nothing);
     RUN_TEST(test_enabling_begins_with_all_blocks_at_rest);
