@@ -13,6 +13,7 @@
 enum {
     CORE_Hz = 170000000,
     HSE_Hz = 24000000, /* crystal X3 of the NUCLEO-G474RE */
+    HSI16_Hz = 16000000,
     BAUD = 921600,
 
     PWM_HALF_PERIOD = 8500,                   /* counts; 100 us, valley to valley, at 170 MHz */

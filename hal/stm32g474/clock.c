@@ -13,7 +13,6 @@
  */
 enum {
     PLL_INPUT_Hz = 4000000,
-    HSI16_Hz = 16000000,
     PLL_MULTIPLIER = 85,
     FLASH_WAIT_STATES = 4, /* 136...170 MHz in range 1 boost (RM0440, table of wait states) */
 };

@@ -34,8 +34,8 @@ bool control_allow_bridge(void)
 IN_CCM(control_forbid_bridge)
 void control_forbid_bridge(void)
 {
+    allowed = false; /* first: a control interrupt in between must not close it again */
     pwm_open_bridge();
-    allowed = false;
     pwm_clear_break();
 }
 
@@ -53,7 +53,7 @@ static inline void sample(struct hal_samples *samples)
         samples->flags |= HAL_FLAG_OVERCURRENT_TRIP;
         allowed = false;
     }
-    if (deadline_guard_missed()) {
+    if (deadline_guard_take_missed()) {
         samples->flags |= HAL_FLAG_DEADLINE_MISSED;
     }
 }
@@ -72,7 +72,7 @@ static inline void actuate(const struct hal_outputs *outputs)
         pwm_open_bridge();
     } else if (wanted && !pwm_bridge_closed()) {
         interrupts_disable();
-        if (!deadline_guard_tripped()) {
+        if (!deadline_guard_has_missed()) {
             pwm_close_bridge();
         }
         interrupts_enable();

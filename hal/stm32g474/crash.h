@@ -6,6 +6,7 @@
 #ifndef STEADYSTEP_STM32G474_CRASH_H
 #define STEADYSTEP_STM32G474_CRASH_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* Hardware that does not do what it must. */
@@ -41,11 +42,18 @@ _Noreturn void board_fault(enum board_fault fault);
  */
 void crash_read_cause(void);
 const char *crash_start_cause(void);
+/* Whether so many starts in a row have crashed, for whatever reason, before they were done, that
+   this one shall not close a bridge; a power cycle or the reset pin begins anew. */
+bool crash_stays_off(void);
 /* The start has succeeded: failures in a row count anew. */
 void crash_start_done(void);
 
-/* Handler of NMI, HardFault, MemManage, BusFault and UsageFault, and of any other exception that
-   nothing handles. */
+/* Handler of HardFault, MemManage, BusFault and UsageFault, and of any other exception that nothing
+   handles. */
 void crash_exception(void);
+/* Of NMI: a crash, too, but for a double error in the parameter store. */
+void nmi_exception(void);
+/* Before memory is in place: nothing could be recorded, and no peripheral is on; stays there. */
+void start_exception(void);
 
 #endif

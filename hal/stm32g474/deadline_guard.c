@@ -18,9 +18,9 @@ void deadline_guard_configure(void)
 
 void deadline_guard_start(void)
 {
-    const uint32_t since_peak = TIM2->cnt % PWM_PERIOD;
+    const uint32_t count = TIM2->cnt;
 
-    TIM2->ccr[0] = TIM2->cnt - since_peak + PWM_PERIOD + DEADLINE_CYCLES;
+    TIM2->ccr[0] = count - count % PWM_PERIOD + PWM_PERIOD + DEADLINE_CYCLES;
     TIM2->sr = 0;
     TIM2->dier = TIM_DIER_CC1IE;
     interrupt_enable(INTERRUPT_TIM2, PRIORITY_GUARD);
@@ -35,8 +35,8 @@ void deadline_guard_interrupt(void)
     data_barrier(); /* the flag is down before the interrupt ends */
 }
 
-IN_CCM(deadline_guard_missed)
-bool deadline_guard_missed(void)
+IN_CCM(deadline_guard_take_missed)
+bool deadline_guard_take_missed(void)
 {
     if (!missed) {
         return false;
@@ -45,8 +45,8 @@ bool deadline_guard_missed(void)
     return true;
 }
 
-IN_CCM(deadline_guard_tripped)
-bool deadline_guard_tripped(void)
+IN_CCM(deadline_guard_has_missed)
+bool deadline_guard_has_missed(void)
 {
     return missed;
 }

@@ -16,14 +16,16 @@
 #include "hal/stm32g474/pins.h"
 #include "hal/stm32g474/pwm.h"
 #include "hal/stm32g474/serial_line.h"
+#include "hal/stm32g474/wait.h"
 #include "hal/stm32g474/watchdog.h"
+
+enum { START_DONE = 1000 }; /* control period from which a crash is none of the start */
 
 static struct application application;
 
 /* The gates are held low, by pull-downs until the timer drives them, from reset on. */
 static void start_board(void)
 {
-    crash_read_cause();
     cycle_counter_start();
     clock_start();
     parameter_flash_check_options();
@@ -50,19 +52,38 @@ static void start_control(void)
     current_sampling_start();
 }
 
+/* Says why, once a second, to whoever listens. */
+static _Noreturn void stay_off(void)
+{
+    pwm_configure(); /* holds the gates low; no more is started, as any of it may have failed */
+    pins_connect();
+    for (;;) {
+        serial_line_tell("steadystep stays off, three starts failed: ");
+        serial_line_tell(crash_start_cause());
+        serial_line_tell("\r\n");
+        wait_cycles(HSI16_Hz);
+    }
+}
+
 int main(void)
 {
     char error[DRIVE_ERROR_TEXT] = "";
 
+    crash_read_cause();
+    if (crash_stays_off()) {
+        stay_off();
+    }
     start_board();
     if (!application_init(&application, &board_hal, &motor_default, error)) {
         board_fault(BOARD_FAULT_SETTINGS_REFUSED);
     }
     start_control();
     watchdog_start();
-    crash_start_done();
     pins_led(1);
     for (;;) {
+        if (control_period() - START_DONE < CONTROL_NOT_STARTED / 2) {
+            crash_start_done();
+        }
         application_background(&application);
         serial_line_continue();
         wait_for_interrupt();

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "hal/stm32g474/board.h"
+#include "hal/stm32g474/core.h"
 #include "hal/stm32g474/crash.h"
 #include "hal/stm32g474/registers.h"
 #include "hal/stm32g474/wait.h"
@@ -45,6 +46,7 @@ static bool begin(uint32_t operation)
         FLASH->keyr = (uint32_t)FLASH_KEY_2;
     }
     FLASH->sr = ERRORS | FLASH_SR_EOP;
+    FLASH->acr &= ~FLASH_ACR_DCEN; /* reads while writing may corrupt it: ES0430, 2.2.2 */
     FLASH->cr = operation;
     return true;
 }
@@ -53,7 +55,7 @@ static bool begin(uint32_t operation)
 static void end(void)
 {
     FLASH->cr = FLASH_CR_LOCK;
-    FLASH->acr &= ~FLASH_ACR_DCEN;
+    FLASH->acr &= ~FLASH_ACR_DCEN; /* a reset of the cache needs it off */
     FLASH->acr |= FLASH_ACR_DCRST;
     FLASH->acr &= ~FLASH_ACR_DCRST;
     FLASH->acr |= FLASH_ACR_DCEN;
@@ -76,6 +78,40 @@ bool parameter_flash_erase(uint32_t page)
     return done;
 }
 
+static volatile bool damaged; /* what is being read; set by the handler of the NMI */
+
+bool parameter_flash_take_error(void)
+{
+    const uint32_t eccr = FLASH->eccr;
+
+    /* Of bank 2 nothing but the store is ever read. */
+    if ((eccr & FLASH_ECCR_ECCD) == 0 || (eccr & FLASH_ECCR_BK_ECC) == 0) {
+        return false;
+    }
+    FLASH->eccr = FLASH_ECCR_ECCD;
+    damaged = true;
+    data_barrier(); /* the request is down before the handler ends */
+    return true;
+}
+
+/* Every read is to reach the flash, whose cells cut off by a loss of power are found by it alone.
+ */
+static bool read_store(uint8_t *to, uint32_t offset, size_t count)
+{
+    const uint32_t acr = FLASH->acr;
+
+    FLASH->acr = acr & ~FLASH_ACR_DCEN;
+    damaged = false;
+    compiler_barrier();
+    memcpy(to, (const void *)(uintptr_t)(STORE + offset), count);
+    data_barrier();
+    const bool late = (FLASH->eccr & FLASH_ECCR_ECCD) != 0; /* by this the NMI has come */
+
+    instruction_barrier();
+    FLASH->acr = acr;
+    return !late && !damaged;
+}
+
 static bool in_store(uint32_t offset, size_t count)
 {
     return offset <= STORE_BYTES && count <= STORE_BYTES - offset;
@@ -83,11 +119,16 @@ static bool in_store(uint32_t offset, size_t count)
 
 static bool erased(uint32_t offset, size_t count)
 {
-    const uint8_t *bytes = (const uint8_t *)(uintptr_t)(STORE + offset);
+    for (uint32_t i = 0; i < count; i += PARAMETER_WORD_BYTES) {
+        uint8_t word[PARAMETER_WORD_BYTES];
 
-    for (size_t i = 0; i < count; i++) {
-        if (bytes[i] != 0xff) {
+        if (!read_store(word, offset + i, sizeof word)) {
             return false;
+        }
+        for (size_t k = 0; k < sizeof word; k++) {
+            if (word[k] != 0xff) {
+                return false;
+            }
         }
     }
     return true;
@@ -126,9 +167,5 @@ bool parameter_flash_program(uint32_t offset, const void *data, size_t count)
 
 bool parameter_flash_read(uint32_t offset, void *data, size_t count)
 {
-    if (!in_store(offset, count)) {
-        return false;
-    }
-    memcpy(data, (const void *)(uintptr_t)(STORE + offset), count);
-    return true;
+    return in_store(offset, count) && read_store(data, offset, count);
 }

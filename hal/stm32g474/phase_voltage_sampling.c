@@ -3,8 +3,10 @@
 #include "hal/stm32g474/adc.h"
 #include "hal/stm32g474/board.h"
 #include "hal/stm32g474/core.h"
+#include "hal/stm32g474/deadline_guard.h"
 #include "hal/stm32g474/dma.h"
 #include "hal/stm32g474/pins.h"
+#include "hal/stm32g474/pwm.h"
 
 enum {
     LEGS_OF_PHASE = 2,
@@ -23,6 +25,7 @@ struct phase {
 };
 
 static struct phase phase_a, phase_b;
+static uint32_t last_done = UINT32_MAX; /* half of the period before; none at first */
 
 static void start_converter(struct adc_registers *adc, uint32_t plus, uint32_t minus)
 {
@@ -79,6 +82,18 @@ static inline int16_t mean(const uint16_t *sums)
     return (int16_t)((int32_t)(difference / DIVISOR) - OFFSET_CODES);
 }
 
+/*
+ * Whether as many sums as belong there at this time, give or take two, lie in the half that is
+ * being filled: a lost trigger or transfer shifts all that follow.
+ */
+static inline bool in_step(uint32_t stored, uint32_t done, uint32_t since_peak)
+{
+    const uint32_t in_half = stored - (HALF - done);
+    const uint32_t expected = since_peak / (LEG_GROUP_CYCLES / LEGS_OF_PHASE);
+
+    return in_half + 2u - expected <= 4u;
+}
+
 IN_CCM(phase_voltage_sampling_read)
 bool phase_voltage_sampling_read(struct hal_samples *samples)
 {
@@ -86,8 +101,14 @@ bool phase_voltage_sampling_read(struct hal_samples *samples)
     const uint32_t stored_b = 2 * HALF - dma_remaining(DMA_LEGS_B);
     /* The half that is being filled, and with it the other, holds until the next peak. */
     const uint32_t done = stored_a < HALF ? HALF : 0;
+    const uint32_t since_peak = pwm_cycles_since_peak();
+    /* A period without a control interrupt is told as a missed deadline. */
+    const bool other_half = done != last_done || deadline_guard_has_missed();
 
+    last_done = done;
     samples->phase_voltage_a = mean(&phase_a.sums[done]);
     samples->phase_voltage_b = mean(&phase_b.sums[done]);
-    return (stored_a < HALF) == (stored_b < HALF) && ((ADC3->isr | ADC4->isr) & ADC_ISR_OVR) == 0;
+    return other_half && (stored_a < HALF) == (stored_b < HALF) &&
+           in_step(stored_a, done, since_peak) && in_step(stored_b, done, since_peak) &&
+           ((ADC3->isr | ADC4->isr) & ADC_ISR_OVR) == 0;
 }

@@ -1,7 +1,7 @@
 /*
- * The pin map: the one file to change for another wiring. Reference: NUCLEO-G474RE with a double
- * H-bridge of discrete MOSFETs (README.md has the wiring table). A test compares pins, signals and
- * alternate functions with an independent description of the chip.
+ * The pin map: with board.h, what to change for another wiring. Reference: NUCLEO-G474RE with a
+ * double H-bridge of discrete MOSFETs (README.md has the wiring table). A test compares pins,
+ * signals and alternate functions with an independent description of the chip.
  *
  *   PIN(port, number, mode, alternate function, pull, peripheral, signal)
  *

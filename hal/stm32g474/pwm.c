@@ -1,5 +1,6 @@
 #include "hal/stm32g474/pwm.h"
 
+#include "hal/stm32g474/core.h"
 #include "hal/stm32g474/crash.h"
 #include "hal/stm32g474/wait.h"
 
@@ -9,7 +10,9 @@ void pwm_configure(void)
 {
     RCC->apb2enr |= RCC_APB2ENR_TIM1EN | RCC_APB2ENR_SYSCFGEN;
     (void)RCC->apb2enr;
-    SYSCFG->cfgr2 |= SYSCFG_CFGR2_CLL | SYSCFG_CFGR2_SPL | SYSCFG_CFGR2_ECCL;
+    /* Not ECCL: a double error of the flash is the NMI's, which opens the bridge but for the store.
+     */
+    SYSCFG->cfgr2 |= SYSCFG_CFGR2_CLL | SYSCFG_CFGR2_SPL;
 
     TIM1->cr1 = TIM_CR1_CMS(TIM_CENTRE_ALIGNED_1) | TIM_CR1_ARPE;
     TIM1->psc = 0;
@@ -31,13 +34,15 @@ void pwm_configure(void)
     TIM1->bdtr = PWM_BDTR;
 
     /*
-     * The repetition counter lets every second extreme of the count load the compares. It is filled
-     * by an update: with 0 here, so that the first peak is one, and there with 1, so that of the
-     * following only the peaks are.
+     * A halt by the debugger stops the counter and with it, as OSSI is set, holds the gates low
+     * (RM0440, TIM1 in debug mode). TIM2 runs on: when the core does again, the deadline is over
+     * and opens the bridge. TIM3 keeps step.
      */
-    TIM1->rcr = 0;
+    DBGMCU->apb2fzr |= DBGMCU_APB2FZR_TIM1;
+    DBGMCU->apb1lfzr |= DBGMCU_APB1LFZR_TIM3;
+
+    TIM1->rcr = 0; /* see pwm_start */
     TIM1->egr = TIM_EGR_UG;
-    TIM1->rcr = 1;
     TIM1->sr = 0;
 }
 
@@ -55,7 +60,17 @@ static void see_update_at_peak(void)
 
 void pwm_start(void)
 {
+    const uint32_t primask = interrupts_save_and_disable();
+
+    /*
+     * The repetition counter lets every second extreme of the count load the compares. An update
+     * fills it from RCR: that of UG with 0, so the first extreme, a peak, is an update, and fills
+     * it with 1, so that of the following only the peaks are. RCR is written once the counter runs:
+     * whether a write fills the repetition counter while it stands, RM0440 leaves open.
+     */
     TIM1->cr1 |= TIM_CR1_CEN;
+    TIM1->rcr = 1;
+    interrupts_restore(primask);
     see_update_at_peak();
     see_update_at_peak();
 }

@@ -4,8 +4,8 @@
  * conversions (TRGO2, from channel 5) and, once, the timers that keep step (TRGO, update).
  *
  * The gates follow the compares while MOE is set. It is cleared by software, by a comparator
- * (overcurrent_trip.h), by a lockup of the core, a double error of the flash, a parity error of
- * SRAM or a stop of the crystal; set by pwm_close_bridge alone.
+ * (overcurrent_trip.h), by a lockup of the core, a parity error of SRAM (if the option byte
+ * SRAM_PE enables the check) or a stop of the crystal; set by pwm_close_bridge alone.
  */
 #ifndef STEADYSTEP_STM32G474_PWM_H
 #define STEADYSTEP_STM32G474_PWM_H
@@ -45,22 +45,26 @@ static inline void pwm_write(const uint16_t high_counts[HAL_LEGS])
     }
 }
 
-/* Gates on, unless a break is latched; with the guard interrupts disabled. */
+static inline bool pwm_break_latched(void)
+{
+    return (TIM1->sr & PWM_BREAK_FLAGS) != 0;
+}
+
+/* Gates on, unless a break is latched; with the guard interrupts disabled. A break between the
+   question and the write has cleared MOE before it was set: so the question is asked again. */
 static inline void pwm_close_bridge(void)
 {
-    if ((TIM1->sr & PWM_BREAK_FLAGS) == 0) {
+    if (!pwm_break_latched()) {
         TIM1->bdtr = PWM_BDTR | TIM_BDTR_MOE;
+        if (pwm_break_latched()) {
+            pwm_open_bridge();
+        }
     }
 }
 
 static inline bool pwm_bridge_closed(void)
 {
     return (TIM1->bdtr & TIM_BDTR_MOE) != 0;
-}
-
-static inline bool pwm_break_latched(void)
-{
-    return (TIM1->sr & PWM_BREAK_FLAGS) != 0;
 }
 
 /* A break whose cause lasts is latched again at once. */

@@ -97,12 +97,9 @@ struct pwr_registers {
 };
 #define PWR ((struct pwr_registers *)0x40007000u)
 
-#define PWR_CR1_VOS(value)  FIELD(value, 9, 2)
 #define PWR_CR3_UCPD1_DBDIS BIT(14)
 #define PWR_SR2_VOSF        BIT(10)
 #define PWR_CR5_R1MODE      BIT(8)
-
-enum { PWR_VOS_RANGE_1 = 1 };
 
 /* ---- Embedded flash ---- */
 struct flash_registers {
@@ -126,8 +123,6 @@ struct flash_registers {
 #define FLASH_SR_PGSERR          BIT(7)
 #define FLASH_SR_MISERR          BIT(8)
 #define FLASH_SR_FASTERR         BIT(9)
-#define FLASH_SR_RDERR           BIT(14)
-#define FLASH_SR_OPTVERR         BIT(15)
 #define FLASH_SR_BSY             BIT(16)
 #define FLASH_CR_PG              BIT(0)
 #define FLASH_CR_PER             BIT(1)
@@ -135,6 +130,8 @@ struct flash_registers {
 #define FLASH_CR_BKER            BIT(11)
 #define FLASH_CR_STRT            BIT(16)
 #define FLASH_CR_LOCK            BIT(31)
+#define FLASH_ECCR_BK_ECC        BIT(21)
+#define FLASH_ECCR_ECCD          BIT(31)
 #define FLASH_OPTR_BFB2          BIT(20)
 #define FLASH_OPTR_DBANK         BIT(22)
 
@@ -158,9 +155,9 @@ struct syscfg_registers {
 };
 #define SYSCFG ((struct syscfg_registers *)0x40010000u)
 
-#define SYSCFG_CFGR2_CLL  BIT(0)
-#define SYSCFG_CFGR2_SPL  BIT(1)
-#define SYSCFG_CFGR2_ECCL BIT(3)
+#define SYSCFG_CFGR2_CLL BIT(0)
+#define SYSCFG_CFGR2_SPL BIT(1)
+#define SYSCFG_CFGR2_SPF BIT(8)
 
 /* ---- Timers: TIM1 has all of these, TIM2, TIM3 and TIM4 a part of them ---- */
 struct tim_registers {
@@ -181,10 +178,8 @@ struct tim_registers {
 #define TIM_SMCR_SMS(value)   FIELD(value, 0, 3)
 #define TIM_SMCR_TS(value)    FIELD(value, 4, 3)
 #define TIM_DIER_CC1IE        BIT(1)
-#define TIM_DIER_BIE          BIT(7)
 #define TIM_SR_UIF            BIT(0)
 #define TIM_SR_CC1IF          BIT(1)
-#define TIM_SR_TIF            BIT(6)
 #define TIM_SR_BIF            BIT(7)
 #define TIM_SR_SBIF           BIT(13)
 #define TIM_EGR_UG            BIT(0)
@@ -196,7 +191,6 @@ struct tim_registers {
 #define TIM_CCMR_OC2M(value)  FIELD(value, 12, 3)
 #define TIM_CCMR_IC1F(value)  FIELD(value, 4, 4)
 #define TIM_CCMR_IC2F(value)  FIELD(value, 12, 4)
-#define TIM_CCMR3_OC5PE       BIT(3)
 #define TIM_CCMR3_OC5M(value) FIELD(value, 4, 3)
 #define TIM_CCER_CC1E         BIT(0)
 #define TIM_CCER_CC1NE        BIT(2)
@@ -206,7 +200,6 @@ struct tim_registers {
 #define TIM_CCER_CC3NE        BIT(10)
 #define TIM_CCER_CC4E         BIT(12)
 #define TIM_CCER_CC4NE        BIT(14)
-#define TIM_CCER_CC5E         BIT(16)
 #define TIM_BDTR_DTG(value)   FIELD(value, 0, 8)
 #define TIM_BDTR_LOCK(value)  FIELD(value, 8, 2)
 #define TIM_BDTR_OSSI         BIT(10)
@@ -215,7 +208,6 @@ struct tim_registers {
 #define TIM_BDTR_BKP          BIT(13)
 #define TIM_BDTR_MOE          BIT(15)
 #define TIM_BDTR_BKF(value)   FIELD(value, 16, 4)
-#define TIM_AF1_BKINE         BIT(0)
 #define TIM_AF1_BKCMP1E       BIT(1)
 #define TIM_AF1_BKCMP2E       BIT(2)
 #define TIM_AF1_BKCMP3E       BIT(3)
@@ -324,9 +316,7 @@ struct comp_registers {
 
 #define COMP_CSR_EN            BIT(0)
 #define COMP_CSR_INMSEL(value) FIELD(value, 4, 3)
-#define COMP_CSR_INPSEL        BIT(8)
 #define COMP_CSR_HYST(value)   FIELD(value, 16, 3)
-#define COMP_CSR_VALUE         BIT(30)
 #define COMP_CSR_LOCK          BIT(31)
 
 enum {
@@ -407,6 +397,7 @@ struct lpuart_registers {
 #define LPUART_ISR_NE         BIT(2)
 #define LPUART_ISR_ORE        BIT(3)
 #define LPUART_ISR_RXNE       BIT(5)
+#define LPUART_ISR_TXE        BIT(7)
 #define LPUART_ISR_CMF        BIT(17)
 #define LPUART_ICR_PE         BIT(0)
 #define LPUART_ICR_FE         BIT(1)
@@ -434,13 +425,13 @@ struct dbgmcu_registers {
 };
 #define DBGMCU ((struct dbgmcu_registers *)0xe0042000u)
 
+#define DBGMCU_APB1LFZR_TIM3 BIT(1)
 #define DBGMCU_APB1LFZR_IWDG BIT(12)
 #define DBGMCU_APB2FZR_TIM1  BIT(11)
 
 /* ---- Interrupt numbers ---- */
 enum interrupt {
     INTERRUPT_ADC1_2 = 18,
-    INTERRUPT_TIM1_BRK_TIM15 = 24,
     INTERRUPT_TIM2 = 28,
     INTERRUPT_LPUART1 = 91,
     INTERRUPTS = 102,

@@ -12,8 +12,9 @@
 enum {
     RECEIVE_BYTES = 4096, /* 44 ms at full rate; the background reads at least every 35 ms */
     TRANSMIT_BYTES = 2048,
-    LINES = 64,      /* whose ends are stamped and that are not read yet */
-    MOVE_WAIT = 100, /* passes; DMA takes a byte within some cycles */
+    LINES = 64,       /* whose ends are stamped and that are not read yet */
+    MOVE_WAIT = 100,  /* passes; DMA takes a byte within some cycles */
+    BYTE_WAIT = 1000, /* passes at 16 MHz; a byte takes 11 us */
 };
 
 struct line_end {
@@ -28,13 +29,14 @@ struct line_end {
 static struct {
     uint8_t bytes[RECEIVE_BYTES];
     struct line_end ends[LINES];
-    volatile uint32_t stored; /* behind the last end of a line that the interrupt has seen */
+    volatile uint32_t stored; /* behind it no end of a line has been searched for */
     volatile uint32_t lines_ended;
     volatile bool overrun; /* more came than there is room for */
     bool damaged;          /* the line that is being received */
 
     uint32_t read, lines_read;
-    bool behind; /* the background has dropped bytes of the line it will read next */
+    bool behind;      /* the background has dropped bytes of the line it will read next */
+    unsigned telling; /* bytes that are left to tell of what was dropped: LOST, '\n' */
 } receive;
 
 static struct {
@@ -42,14 +44,31 @@ static struct {
     uint32_t written, sent, sending;
 } transmit;
 
-void serial_line_configure(void)
+static void set_rate(uint64_t clock_Hz)
 {
     RCC->apb1enr2 |= RCC_APB1ENR2_LPUART1EN;
     (void)RCC->apb1enr2;
     RCC->ccipr &= ~RCC_CCIPR_LPUART1SEL(3); /* bus clock */
 
     /* 256 clocks over the rate, rounded (RM0440). */
-    LPUART1->brr = (uint32_t)(((uint64_t)CORE_Hz * 256u + BAUD / 2u) / BAUD);
+    LPUART1->brr = (uint32_t)((clock_Hz * 256u + BAUD / 2u) / BAUD);
+}
+
+void serial_line_tell(const char *text)
+{
+    if ((RCC->apb1enr2 & RCC_APB1ENR2_LPUART1EN) == 0) {
+        set_rate(HSI16_Hz);
+        LPUART1->cr1 = LPUART_CR1_UE | LPUART_CR1_TE;
+    }
+    for (; *text != '\0'; text++) {
+        (void)wait_until(&LPUART1->isr, LPUART_ISR_TXE, LPUART_ISR_TXE, BYTE_WAIT);
+        LPUART1->tdr = (uint8_t)*text;
+    }
+}
+
+void serial_line_configure(void)
+{
+    set_rate(CORE_Hz);
     LPUART1->cr2 = LPUART_CR2_ADD('\n');
     LPUART1->cr3 = LPUART_CR3_DMAR | LPUART_CR3_DMAT | LPUART_CR3_EIE;
     dma_start(DMA_LINE_RECEIVE, DMAMUX_LPUART1_RX, &LPUART1->rdr, receive.bytes, RECEIVE_BYTES,
@@ -102,17 +121,37 @@ static void drop_if_overrun(void)
 {
     const uint32_t primask = interrupts_save_and_disable();
 
+    if ((int32_t)(receive.read - receive.stored) > 0) { /* bytes of a line without an end so far */
+        receive.stored = receive.read;
+    }
     if (stored_behind(receive.stored) > RECEIVE_BYTES / 2) {
         receive.stored += stored_behind(receive.stored);
         receive.overrun = true;
     }
     if (receive.overrun) {
         receive.overrun = false;
-        receive.behind = true;
+        receive.behind = receive.bytes[(receive.stored - 1u) % RECEIVE_BYTES] != '\n';
+        receive.damaged = receive.damaged && receive.behind;
+        receive.telling = 2;
         receive.read = receive.stored;
         receive.lines_read = receive.lines_ended;
     }
     interrupts_restore(primask);
+}
+
+/* Whether bytes of the line that is being read were lost; forgets it. */
+static bool take_damage(void)
+{
+    const uint32_t primask = interrupts_save_and_disable();
+    bool *damaged = receive.lines_read == receive.lines_ended
+                        ? &receive.damaged
+                        : &receive.ends[receive.lines_read % LINES].damaged;
+    const bool taken = *damaged || receive.behind;
+
+    *damaged = false;
+    receive.behind = false;
+    interrupts_restore(primask);
+    return taken;
 }
 
 size_t serial_line_read(uint8_t *bytes, size_t capacity, uint32_t *line_period)
@@ -120,23 +159,38 @@ size_t serial_line_read(uint8_t *bytes, size_t capacity, uint32_t *line_period)
     size_t count = 0;
 
     drop_if_overrun();
-    while (count < capacity && receive.read != receive.stored) {
+    if (receive.telling == 2 && capacity > 0) {
+        bytes[count++] = HAL_STREAM_LOST;
+        receive.telling--;
+    }
+    if (receive.telling == 1 && count < capacity) {
+        bytes[count++] = '\n';
+        receive.telling--;
+        *line_period = control_period();
+        return count;
+    }
+    for (uint32_t fresh = stored_behind(receive.read); count < capacity && fresh > 0; fresh--) {
         const uint8_t byte = receive.bytes[receive.read % RECEIVE_BYTES];
 
         if (byte == '\n') {
-            struct line_end *line = &receive.ends[receive.lines_read % LINES];
-
-            if (line->damaged || receive.behind) {
-                line->damaged = false;
-                receive.behind = false;
+            if (receive.lines_read == receive.lines_ended) {
+                break; /* its interrupt is about to come */
+            }
+            if (take_damage()) {
                 bytes[count++] = HAL_STREAM_LOST;
+                fresh++; /* the byte stays */
                 continue;
             }
-            *line_period = line->period;
+            *line_period = receive.ends[receive.lines_read % LINES].period;
             receive.lines_read++;
             receive.read++;
             bytes[count++] = byte;
             break;
+        }
+        if (byte == '\r' && take_damage()) {
+            bytes[count++] = HAL_STREAM_LOST;
+            fresh++;
+            continue;
         }
         bytes[count++] = byte;
         receive.read++;

@@ -17,6 +17,9 @@ size_t serial_line_write(const uint8_t *bytes, size_t count);
 /* Background, all the time: what has been written goes on its way. */
 void serial_line_continue(void);
 
+/* Before serial_line_configure, instead of it: sends a text at the clock of reset, and waits. */
+void serial_line_tell(const char *text);
+
 void serial_line_interrupt(void);
 
 #endif

@@ -24,7 +24,7 @@ __attribute__((section(".ccm.vectors"), used, aligned(512))) const struct {
     vector interrupts[INTERRUPTS];
 } vectors = {
     .stack = &stack_top,
-    .core = {[0] = reset_handler, [1 ... CORE_VECTORS - 2] = crash_exception},
+    .core = {[0] = reset_handler, [1] = nmi_exception, [2 ... CORE_VECTORS - 2] = crash_exception},
     .interrupts =
         {
             [0 ... INTERRUPT_ADC1_2 - 1] = crash_exception,
@@ -37,13 +37,13 @@ __attribute__((section(".ccm.vectors"), used, aligned(512))) const struct {
         },
 };
 
-/* What the core reads at reset. A fault before the table above is in place ends here, too. */
+/* What the core reads at reset. A fault before the table above is in place ends here. */
 __attribute__((section(".start_vectors"), used)) static const struct {
     const uint32_t *stack;
     vector core[CORE_VECTORS - 1];
 } start_vectors = {
     .stack = &stack_top,
-    .core = {[0] = reset_handler, [1 ... CORE_VECTORS - 2] = crash_exception},
+    .core = {[0] = reset_handler, [1 ... CORE_VECTORS - 2] = start_exception},
 };
 
 static void copy(uint32_t *to, const uint32_t *end, const uint32_t *from)

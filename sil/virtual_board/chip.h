@@ -55,6 +55,11 @@ class Chip
 
     /* Level of an interrupt line into the NVIC. */
     virtual void interrupt(unsigned line, bool level) = 0;
+    /* Requests the non-maskable interrupt. */
+    virtual void non_maskable_interrupt()
+    {
+        fail("a non-maskable interrupt, which this chip does not pass on");
+    }
 
     /* The bus as a DMA channel sees it: 1, 2 or 4 bytes, memory and peripherals. */
     virtual std::uint32_t load(std::uint32_t address, unsigned bytes) = 0;
@@ -103,6 +108,12 @@ class FlashMemory
     virtual void store(std::uint32_t address, unsigned size, std::uint32_t value) = 0;
     /* End of the operation that a read of this address has to wait for; now or earlier: none. */
     virtual Ticks busy_until(std::uint32_t address) const = 0;
+    /* The core reads here, as data: cells that fail the memory's own check tell so. */
+    virtual void core_reads(std::uint32_t address, unsigned size)
+    {
+        static_cast<void>(address);
+        static_cast<void>(size);
+    }
 };
 
 /* All peripherals of a chip around its core. */

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 namespace virtual_board
@@ -82,8 +81,11 @@ class Reader
 
 ElfImage ElfImage::read(const std::string &file)
 {
-    std::ifstream stream(file, std::ios::binary);
-    const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
+    std::ifstream stream(file, std::ios::binary | std::ios::ate);
+    const std::streamoff size = stream ? static_cast<std::streamoff>(stream.tellg()) : 0;
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(std::max(size, std::streamoff{0})));
+    stream.seekg(0);
+    stream.read(reinterpret_cast<char *>(bytes.data()), size);
     if (!stream) {
         throw std::invalid_argument(file + ": cannot be read");
     }

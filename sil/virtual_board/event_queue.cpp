@@ -7,10 +7,12 @@ namespace virtual_board
 
 void EventQueue::schedule(Event &event, Ticks at)
 {
-    const auto known = std::find_if(entries_.begin(), entries_.end(),
-                                    [&](const Entry &entry) { return entry.event == &event; });
-    if (known != entries_.end()) {
-        entries_.erase(known);
+    if (event.at == Event::never && at == Event::never) {
+        return;
+    }
+    if (event.at != Event::never) {
+        entries_.erase(std::find_if(entries_.begin(), entries_.end(),
+                                    [&](const Entry &entry) { return entry.event == &event; }));
     }
     event.at = at;
     if (at != Event::never) {

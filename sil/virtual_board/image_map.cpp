@@ -61,25 +61,35 @@ CostRules rules_of(const Json &json)
     return rules;
 }
 
-/* One run of instructions, one behind the other. */
-void read_run(const Json &run, const Json &kinds, InstructionCosts &costs)
+/* What instructions of a kind cost; their stage depends on the place. */
+InstructionCost kind_of(const Json &row)
 {
+    InstructionCost cost;
+    cost.bytes = row.at(0);
+    cost.nominal_after = row.at(1);
+    cost.nominal = row.at(2);
+    cost.worst_after = row.at(3);
+    cost.worst = row.at(4);
+    cost.literals = row.at(5);
+    return cost;
+}
+
+/* One run of instructions, one behind the other. */
+void read_run(const Json &run, const std::vector<InstructionCost> &kinds, InstructionCosts &costs)
+{
+    const Json &stages = run.at("stages");
     std::uint32_t address = run.at("address");
     std::size_t stage = 0, left = 0;
     for (const std::size_t kind : run.at("costs")) {
         while (left == 0) {
-            left = run.at("stages").at(stage++).at(1);
+            left = stages.at(stage++).at(1);
         }
         --left;
-        const Json &row = kinds.at(kind);
-        InstructionCost cost;
-        cost.bytes = row.at(0);
-        cost.nominal_after = row.at(1);
-        cost.nominal = row.at(2);
-        cost.worst_after = row.at(3);
-        cost.worst = row.at(4);
-        cost.literals = row.at(5);
-        const std::size_t named = run.at("stages").at(stage - 1).at(0);
+        if (kind >= kinds.size()) {
+            throw std::invalid_argument("names a kind of instruction that it does not describe");
+        }
+        InstructionCost cost = kinds[kind];
+        const std::size_t named = stages.at(stage - 1).at(0);
         cost.stage =
             named < costs.stages.size() ? static_cast<std::uint8_t>(named) : inherited_stage;
         InstructionCost *const entry = costs.find(address);
@@ -102,8 +112,12 @@ ImageMap parse(const Json &json, const ElfImage &image, InstructionCosts &costs)
     costs.stand_in = false;
     costs.rules = rules_of(json);
     costs.stages = json.at("stages").get<std::vector<std::string>>();
+    std::vector<InstructionCost> kinds;
+    for (const Json &row : json.at("costs")) {
+        kinds.push_back(kind_of(row));
+    }
     for (const Json &run : json.at("code")) {
-        read_run(run, json.at("costs"), costs);
+        read_run(run, kinds, costs);
     }
     ImageMap map;
     map.core = json.at("core");

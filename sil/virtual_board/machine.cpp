@@ -30,12 +30,20 @@ Machine::Machine(const ChipDescription &description)
         ram_.push_back({range, std::vector<std::uint8_t>(range.bytes, garbage)});
     }
     for (Ram &ram : ram_) {
-        core_.map_memory({ram.range.base, ram.range.bytes}, ram.bytes.data(), true);
-        if (ram.range.alias != 0) {
-            core_.map_memory({ram.range.alias, ram.range.bytes}, ram.bytes.data(), true);
+        const bool holds_code =
+            description.fast_code.bytes == 0 || description.fast_code.contains(ram.range.base);
+        for (const std::uint32_t base : {ram.range.base, ram.range.alias}) {
+            if (base == 0) {
+                continue;
+            }
+            if (holds_code) {
+                core_.map_memory({base, ram.range.bytes}, ram.bytes.data(), true);
+            } else {
+                core_.map_data({base, ram.range.bytes}, ram.bytes.data());
+            }
         }
     }
-    core_.map_registers({0x40000000, 0x20000000});
+    core_.map_registers(peripherals);
     core_.map_registers({SystemControl::base, SystemControl::bytes});
     core_.map_registers(description.data_flash);
 }
@@ -72,6 +80,9 @@ void Machine::load(const ElfImage &image)
     account_.set_stages(costs_.stages);
     entry_stage_ = stage_named(costs_.stages, "sampling");
     exit_stage_ = stage_named(costs_.stages, "outputs");
+    if (!costs_.stand_in) { /* without a map nothing is known of what a block consists of */
+        core_.watch_blocks({});
+    }
 }
 
 void Machine::power_on()
@@ -111,7 +122,7 @@ void Machine::start()
     pc_ = entry & ~1u;
     instruction_end_ = now_;
     next_address_ = 0;
-    conditional_left_ = 0;
+    conditional_ = {0, 0};
     to_enter_ = 0;
     above_control_ = 0;
     floating_point_begun_ = false;
@@ -136,6 +147,11 @@ void Machine::schedule(Event &event, Ticks at)
 void Machine::interrupt(unsigned line, bool level)
 {
     interrupts_.set_line(line, level);
+}
+
+void Machine::non_maskable_interrupt()
+{
+    interrupts_.set_pending(exception::nmi);
 }
 
 void Machine::reset(const std::string &cause)
@@ -202,6 +218,9 @@ void Machine::run()
             start();
             return;
         }
+        if (to_be_watched_.bytes > 0) {
+            watch_by_instruction(to_be_watched_);
+        }
         act_on(core_.run(core_.get(CoreRegister::pc)));
     }
 }
@@ -249,6 +268,7 @@ void Machine::act_on(Stopped stopped)
 /* WFI: time jumps from event to event until something wakes the core. */
 void Machine::sleep()
 {
+    pc_ = next_address_ - 2; /* of a block the last instruction */
     const std::uint8_t *const code = memory(pc_, 2);
     if (code == nullptr || code[0] != 0x30 || code[1] != 0xbf) {
         fail("the core has stopped without WFI");

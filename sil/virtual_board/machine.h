@@ -5,6 +5,7 @@
 #ifndef STEADYSTEP_VIRTUAL_BOARD_MACHINE_H
 #define STEADYSTEP_VIRTUAL_BOARD_MACHINE_H
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "sil/virtual_board/block_costs.h"
 #include "sil/virtual_board/elf_image.h"
 #include "sil/virtual_board/event_queue.h"
 #include "sil/virtual_board/instruction_costs.h"
@@ -104,6 +106,7 @@ class Machine final : public Chip, private CoreObserver
     void set_core_cycle(Ticks ticks) override;
     void schedule(Event &event, Ticks at) override;
     void interrupt(unsigned line, bool level) override;
+    void non_maskable_interrupt() override;
     std::uint32_t load(std::uint32_t address, unsigned bytes) override;
     void store(std::uint32_t address, unsigned bytes, std::uint32_t value) override;
     void reset(const std::string &cause) override;
@@ -114,17 +117,37 @@ class Machine final : public Chip, private CoreObserver
         MemoryRange range;
         std::vector<std::uint8_t> bytes;
     };
-    struct Window; /* registers on the bus */
+    static constexpr AddressRange peripherals = {0x40000000, 0x20000000};
 
     bool before_instruction(std::uint32_t address, unsigned bytes) override;
+    bool before_block(std::uint32_t address, unsigned bytes) override;
     std::uint32_t read(std::uint32_t address, unsigned bytes) override;
     void write(std::uint32_t address, unsigned bytes, std::uint32_t value) override;
 
+    bool may_go_on(std::uint32_t address);
+    unsigned conditional_bytes(std::uint32_t address);
     const InstructionCost &visit(std::uint32_t address, unsigned bytes);
+    void refill_behind_branch(bool straight);
+    void charge_block(const BlockCost &block, bool straight);
+    void watch_by_instruction(AddressRange range);
+    const BlockCost &visit_block(std::uint32_t address, unsigned bytes);
+    void note_write()
+    {
+        if (in_block_ && interrupts_.running() != 0) {
+            to_be_watched_ = {pc_, next_address_ - pc_};
+        }
+    }
+    /* Whether the program came here past the instruction at next_address_, in an IT block. */
+    bool skipped_by_condition(std::uint32_t address)
+    {
+        return conditional_.contains(next_address_) && address > next_address_ &&
+               address - conditional_.base <= conditional_.bytes &&
+               costs_.find(next_address_)->bytes > 0;
+    }
     void charge(std::uint32_t address, unsigned bytes);
     void add_time(const Cycles &cycles);
     void account(const Cycles &cycles);
-    void inject(std::uint32_t address);
+    void inject(std::uint32_t address, unsigned instructions);
     void serve_events();
     void finish_instruction()
     {
@@ -157,11 +180,13 @@ class Machine final : public Chip, private CoreObserver
     Device *device_ = nullptr;
     FlashMemory *flash_ = nullptr;
     std::vector<Mapping> mappings_;
+    mutable std::array<std::size_t, 64> mapping_at_ = {}; /* found, by bits of the address */
 
     EventQueue events_;
     InterruptController interrupts_;
     SystemControl system_;
     InstructionCosts costs_;
+    BlockCosts blocks_;
     InterruptAccount account_;
     UnicornCore core_;
     unsigned control_exception_;
@@ -175,8 +200,14 @@ class Machine final : public Chip, private CoreObserver
     std::uint32_t next_address_ = 0; /* 0: the program does not come from an instruction */
     std::uint32_t flash_line_ = 0;
     unsigned stage_ = 0, entry_stage_ = 0, exit_stage_ = 0;
-    unsigned conditional_left_ = 0;
+    AddressRange conditional_ = {0, 0}; /* instructions of the last IT block */
     bool floating_point_begun_ = false;
+
+    /* code that writes registers in an exception, as it shows: watched by the instruction, all
+       other by the block */
+    std::vector<AddressRange> by_instruction_;
+    AddressRange to_be_watched_ = {0, 0}; /* a block that is to become so; 0 bytes: none */
+    bool in_block_ = false;
 
     /* what the core is to do before the next instruction */
     unsigned to_enter_ = 0;

@@ -8,12 +8,15 @@ namespace virtual_board
 
 const Mapping &Machine::mapping(std::uint32_t address, unsigned bytes, const char *what) const
 {
-    for (const Mapping &mapping : mappings_) {
-        if (address - mapping.base < mapping.bytes) {
+    std::size_t &quick = mapping_at_[address >> 8 & 63]; /* the last that was found there */
+    for (std::size_t i = 0; i <= mappings_.size(); ++i) {
+        const std::size_t place = i == 0 ? quick : i - 1;
+        if (address - mappings_[place].base < mappings_[place].bytes) {
             if (address % bytes != 0) {
                 refuse_access(address, bytes, what, "is not aligned");
             }
-            return mapping;
+            quick = place;
+            return mappings_[place];
         }
     }
     refuse_access(address, bytes, what, "finds no peripheral that is modelled");
@@ -63,6 +66,7 @@ std::uint32_t Machine::read(std::uint32_t address, unsigned bytes)
             const std::uint64_t cycles = (free - now_ + core_cycle_ - 1) / core_cycle_;
             add_time({cycles, cycles, cycles});
         }
+        flash_->core_reads(address, bytes);
         return little_endian(memory(address, bytes), bytes);
     }
     const bool own = address - SystemControl::base < SystemControl::bytes;
@@ -79,6 +83,7 @@ void Machine::write(std::uint32_t address, unsigned bytes, std::uint32_t value)
         flash_->store(address, bytes, value);
         return;
     }
+    note_write();
     const bool own = address - SystemControl::base < SystemControl::bytes;
     if (own && address < 0xe0040000) {
         const bool allowed = system_.floating_point_allowed();
@@ -95,6 +100,9 @@ void Machine::write(std::uint32_t address, unsigned bytes, std::uint32_t value)
 /* What DMA channels see: memory or peripherals. */
 std::uint32_t Machine::load(std::uint32_t address, unsigned bytes)
 {
+    if (peripherals.contains(address)) {
+        return bus_read(address, bytes, Master::dma);
+    }
     const std::uint8_t *const plain = memory(address, bytes);
     return plain != nullptr ? little_endian(plain, bytes) : bus_read(address, bytes, Master::dma);
 }

@@ -148,7 +148,7 @@ void Machine::enter_handler(unsigned exception, std::uint32_t link)
     }
     core_.set(CoreRegister::pc, vector);
     next_address_ = 0;
-    conditional_left_ = 0;
+    conditional_ = {0, 0};
 }
 
 void Machine::pop_frame(std::uint32_t exception_return)
@@ -229,7 +229,7 @@ void Machine::leave(std::uint32_t exception_return)
         pop_frame(exception_return);
         check_stack(core_.get(CoreRegister::sp));
         next_address_ = 0;
-        conditional_left_ = 0;
+        conditional_ = {0, 0};
         if (system_.sleeps_on_exit() && interrupts_.running() == 0) {
             fail("SCR.SLEEPONEXIT is not modelled");
         }

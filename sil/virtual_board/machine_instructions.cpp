@@ -1,6 +1,8 @@
 /* What happens before every instruction: time, costs, events, and whether an exception comes. */
 #include "sil/virtual_board/machine.h"
 
+#include <algorithm>
+
 namespace virtual_board
 {
 
@@ -24,6 +26,23 @@ inline void Machine::account(const Cycles &cycles)
     }
 }
 
+/* Bytes of the IT block that the instruction at this address opens; 0: it is no IT. */
+unsigned Machine::conditional_bytes(std::uint32_t address)
+{
+    std::uint32_t next = address;
+    unsigned left = 1;
+    for (bool first = true; left > 0; first = false, --left) {
+        const std::uint8_t *const code = memory(next, 2);
+        if (code == nullptr) {
+            break;
+        }
+        const unsigned halfword = code[0] | static_cast<unsigned>(code[1]) << 8;
+        left += first ? conditional_block(halfword) : 0;
+        next += halfword >= 0xe800 ? 4 : 2;
+    }
+    return next - address - 2;
+}
+
 /* A first visit: what is known of the instruction, and whether it is what the map says. */
 const InstructionCost &Machine::visit(std::uint32_t address, unsigned bytes)
 {
@@ -39,13 +58,19 @@ const InstructionCost &Machine::visit(std::uint32_t address, unsigned bytes)
     } else if (cost->bytes != bytes) {
         fail("an instruction of another size than the image's map says");
     }
-    const std::uint8_t *const code = memory(address, 2);
-    if (code != nullptr && bytes == 2) {
-        const unsigned halfword = code[0] | static_cast<unsigned>(code[1]) << 8;
-        cost->conditional = static_cast<std::uint8_t>(conditional_block(halfword));
+    if (bytes == 2) {
+        cost->conditional = static_cast<std::uint8_t>(conditional_bytes(address));
     }
     cost->visited = 1;
     return *cost;
+}
+
+inline void Machine::refill_behind_branch(bool straight)
+{
+    if (!straight && next_address_ != 0) {
+        account(costs_.rules.refill); /* belongs to the branch */
+        now_ += costs_.rules.refill.nominal * core_cycle_;
+    }
 }
 
 /* This and what it calls run before every instruction: nearly all of the simulation's time. */
@@ -56,12 +81,11 @@ inline void Machine::charge(std::uint32_t address, unsigned bytes)
     const InstructionCost &cost =
         known != nullptr && known->visited != 0 ? *known : visit(address, bytes);
     const bool straight = address == next_address_;
-    if (!straight && next_address_ != 0) {
-        account(rules.refill); /* belongs to the branch */
-        now_ += rules.refill.nominal * core_cycle_;
-    }
+    refill_behind_branch(straight);
     next_address_ = address + bytes;
-    conditional_left_ = conditional_left_ > 0 ? conditional_left_ - 1 : cost.conditional;
+    if (cost.conditional > 0) {
+        conditional_ = {next_address_, cost.conditional};
+    }
     const unsigned nominal = straight ? cost.nominal_after : cost.nominal;
     instruction_end_ = now_ + nominal * core_cycle_;
     if (above_control_ == 0) {
@@ -86,30 +110,41 @@ inline void Machine::charge(std::uint32_t address, unsigned bytes)
     account(cycles);
 }
 
-bool Machine::before_instruction(std::uint32_t address, unsigned bytes)
+/* Time, events, and whether nothing comes before the instruction at this address. */
+inline bool Machine::may_go_on(std::uint32_t address)
 {
     finish_instruction();
     if (now_ >= events_.next()) {
         serve_events();
     }
     to_enter_ = 0;
-    /* Never inside an IT block: the emulator does not know there what it would have to go on with.
-     */
-    if (conditional_left_ == 0) {
-        if (stop_wanted_ || reset_wanted_) {
-            return false;
-        }
-        if (interrupts_.may_preempt()) {
-            to_enter_ = interrupts_.to_enter(masks());
-            if (to_enter_ != 0) {
-                return false;
-            }
-        }
+    /* Never inside an IT block: the emulator stops behind it only, with its time not charged. */
+    if (conditional_.contains(address)) {
+        return true;
+    }
+    if (stop_wanted_ || reset_wanted_ || to_be_watched_.bytes > 0) {
+        return false;
+    }
+    if (interrupts_.may_preempt()) {
+        to_enter_ = interrupts_.to_enter(masks());
+    }
+    return to_enter_ == 0;
+}
+
+bool Machine::before_instruction(std::uint32_t address, unsigned bytes)
+{
+    in_block_ = false;
+    if (!may_go_on(address)) {
+        return false;
+    }
+    while (skipped_by_condition(address)) { /* costs what it costs when it is executed */
+        charge(next_address_, costs_.find(next_address_)->bytes);
+        finish_instruction();
     }
     pc_ = address;
     charge(address, bytes);
     if (above_control_ == 1) {
-        inject(address);
+        inject(address, 1);
     }
     return true;
 }
@@ -121,7 +156,7 @@ void Machine::add_time(const Cycles &cycles)
 }
 
 /* In the control interrupt: its first instruction, code out of place, and what a test injects. */
-void Machine::inject(std::uint32_t address)
+void Machine::inject(std::uint32_t address, unsigned instructions)
 {
     if (first_of_control_) {
         first_of_control_ = false;
@@ -130,11 +165,115 @@ void Machine::inject(std::uint32_t address)
     if (description_.fast_code.bytes > 0 && !description_.fast_code.contains(address)) {
         account_.count_outside_fast_code();
     }
-    if (stall_cycles_ > 0 && control_instructions_++ == stall_at_) {
+    control_instructions_ += instructions;
+    if (stall_cycles_ > 0 && control_instructions_ > stall_at_) {
         const Cycles stall = {stall_cycles_, stall_cycles_, stall_cycles_};
         stall_cycles_ = 0;
         add_time(stall);
     }
+}
+
+bool Machine::before_block(std::uint32_t address, unsigned bytes)
+{
+    in_block_ = false;
+    const InstructionCost *const cost = costs_.find(address);
+    const BlockCost *block = &blocks_[cost == nullptr ? 0 : cost->block];
+    if (block->bytes != bytes) {
+        block = &visit_block(address, bytes);
+    }
+    if (block->by_instruction) {
+        return true;
+    }
+    if (!may_go_on(address)) {
+        return false;
+    }
+    in_block_ = true;
+    pc_ = address;
+    const bool straight = address == next_address_;
+    refill_behind_branch(straight);
+    next_address_ = address + bytes;
+    if (block->conditional.bytes > 0) {
+        conditional_ = block->conditional;
+    }
+    charge_block(*block, straight);
+    if (above_control_ == 1) {
+        inject(address, block->instructions);
+    }
+    return true;
+}
+
+void Machine::charge_block(const BlockCost &block, bool straight)
+{
+    const Cycles &first = straight ? block.first_after : block.first;
+    instruction_end_ = now_ + (first.nominal + block.nominal_of_others) * core_cycle_;
+    if (above_control_ == 0) {
+        return;
+    }
+    flash_line_ = block.last_line;
+    const BlockPart *const parts = blocks_.parts(block);
+    stage_ = parts[0].stage != inherited_stage ? parts[0].stage : stage_;
+    account(first);
+    for (unsigned i = 0; i < block.parts; ++i) {
+        stage_ = parts[i].stage != inherited_stage ? parts[i].stage : stage_;
+        account(parts[i].cycles);
+    }
+}
+
+/* What runs in the block at this address, whose instructions the map names. */
+const BlockCost &Machine::visit_block(std::uint32_t address, unsigned bytes)
+{
+    std::vector<InstructionCost> instructions;
+    AddressRange conditional = {0, 0};
+    std::uint32_t next = address;
+    while (next < address + bytes) {
+        const InstructionCost *const known = costs_.find(next);
+        instructions.push_back(visit(next, known == nullptr ? 0 : known->bytes));
+        next += instructions.back().bytes;
+        if (instructions.back().conditional > 0) {
+            conditional = {next, instructions.back().conditional};
+        }
+    }
+    if (next != address + bytes) {
+        fail("an instruction of another size than the image's map says");
+    }
+    BlockCost block = blocks_.sum(address, instructions, costs_.rules);
+    block.conditional = conditional;
+    for (const AddressRange &range : by_instruction_) {
+        const bool begins = range.contains(address), ends = range.contains(next - 1);
+        if (begins && ends) {
+            block.by_instruction = true;
+        } else if (begins || ends || range.base - address < bytes) {
+            to_be_watched_ = {address, bytes}; /* one of both, all of it */
+        }
+    }
+    InstructionCost &first = *costs_.find(address);
+    first.block = blocks_.set(first.block, block);
+    return blocks_[first.block];
+}
+
+/*
+ * Code that has written a register in an exception, or runs into such code: from now on it is
+ * watched by the instruction, so that what it does comes at its own time. Ranges that nearly touch
+ * become one.
+ */
+void Machine::watch_by_instruction(AddressRange range)
+{
+    constexpr std::uint32_t near = 32; /* bytes: costs less than one range more */
+    to_be_watched_ = {0, 0};
+    std::vector<AddressRange> apart;
+    for (const AddressRange &other : by_instruction_) {
+        const std::uint32_t end = range.base + range.bytes, other_end = other.base + other.bytes;
+        if (other.base > end + near || range.base > other_end + near) {
+            apart.push_back(other);
+        } else {
+            range.base = std::min(range.base, other.base);
+            range.bytes = std::max(end, other_end) - range.base;
+        }
+    }
+    apart.push_back(range);
+    by_instruction_ = apart;
+    blocks_.forget();
+    core_.watch_blocks(by_instruction_);
 }
 
 } // namespace virtual_board

@@ -14,20 +14,12 @@ namespace
 enum : std::uint32_t {
     ICTR = 0xe000e004,
     ACTLR = 0xe000e008,
-    NVIC_ISER = 0xe000e100,
-    NVIC_ICER = 0xe000e180,
-    NVIC_ISPR = 0xe000e200,
-    NVIC_ICPR = 0xe000e280,
-    NVIC_IABR = 0xe000e300,
-    NVIC_IPR = 0xe000e400,
     CPUID = 0xe000ed00,
     ICSR = 0xe000ed04,
     VTOR = 0xe000ed08,
     AIRCR = 0xe000ed0c,
     SCR = 0xe000ed10,
     CCR = 0xe000ed14,
-    SHPR1 = 0xe000ed18,
-    SHPR_END = 0xe000ed24,
     SHCSR = 0xe000ed24,
     CFSR = 0xe000ed28,
     HFSR = 0xe000ed2c,
@@ -43,14 +35,8 @@ enum : std::uint32_t {
     FPDSCR = 0xe000ef3c
 };
 
-constexpr std::uint32_t bank_bytes = 0x20;        /* of the registers with one bit per interrupt */
 constexpr std::uint32_t fault_enables = 7u << 16; /* of SHCSR */
 constexpr std::uint32_t key_write = 0x05fau << 16, key_read = 0xfa05u << 16;
-
-bool in(std::uint32_t address, std::uint32_t first, std::uint32_t length)
-{
-    return address - first < length;
-}
 
 } // namespace
 
@@ -80,19 +66,6 @@ void SystemControl::refuse(const char *what, std::uint32_t address) const
     std::abort(); /* not reached; gcc forgets that a virtual function does not return */
 }
 
-/* One byte of priority per exception: interrupts, then the system handlers 4...15. */
-bool SystemControl::is_priority(std::uint32_t address) const
-{
-    return in(address, NVIC_IPR, description_.core.interrupt_lines) ||
-           in(address, SHPR1, SHPR_END - SHPR1);
-}
-
-unsigned SystemControl::exception_of_priority(std::uint32_t address) const
-{
-    return in(address, SHPR1, SHPR_END - SHPR1) ? exception::memory_fault + (address - SHPR1)
-                                                : exception::first_interrupt + (address - NVIC_IPR);
-}
-
 std::uint32_t SystemControl::read(std::uint32_t offset, unsigned size, Master master)
 {
     const std::uint32_t address = base + offset;
@@ -110,15 +83,7 @@ void SystemControl::write(std::uint32_t offset, unsigned size, std::uint32_t val
         refuse("DMA access", address);
     }
     if (is_priority(address)) {
-        if (!full() && size != 4) {
-            chip_.fail("priorities of a Cortex-M0+ are written as whole words only");
-        }
-        for (unsigned i = 0; i < size; ++i) {
-            if (is_priority(address + i)) {
-                interrupts_.set_priority(exception_of_priority(address + i),
-                                         value >> (8 * i) & 0xff);
-            }
-        }
+        write_priorities(address, size, value);
     } else if (size == 4) {
         write_word(address, value);
     } else if ((address & ~3u) == CFSR) {
@@ -128,41 +93,13 @@ void SystemControl::write(std::uint32_t offset, unsigned size, std::uint32_t val
     }
 }
 
-std::uint32_t SystemControl::interrupt_bits(std::uint32_t word,
-                                            bool (InterruptController::*is)(unsigned) const) const
-{
-    std::uint32_t bits = 0;
-    for (unsigned i = 0; i < 32; ++i) {
-        const unsigned line = word * 32 + i;
-        if (line < description_.core.interrupt_lines &&
-            (interrupts_.*is)(exception::first_interrupt + line)) {
-            bits |= 1u << i;
-        }
-    }
-    return bits;
-}
-
 std::uint32_t SystemControl::read_word(std::uint32_t address)
 {
     if (CoreTimers::owns(address)) {
         return timers_.read(address);
     }
-    const std::uint32_t word = (address % bank_bytes) / 4;
-    if (in(address, NVIC_ISER, bank_bytes) || in(address, NVIC_ICER, bank_bytes)) {
-        return interrupt_bits(word, &InterruptController::enabled);
-    }
-    if (in(address, NVIC_ISPR, bank_bytes) || in(address, NVIC_ICPR, bank_bytes)) {
-        return interrupt_bits(word, &InterruptController::pending);
-    }
-    if (in(address, NVIC_IABR, bank_bytes)) {
-        return interrupt_bits(word, &InterruptController::active);
-    }
-    if (is_priority(address)) {
-        std::uint32_t priorities = 0;
-        for (unsigned i = 0; i < 4 && is_priority(address + i); ++i) {
-            priorities |= interrupts_.priority(exception_of_priority(address + i)) << (8 * i);
-        }
-        return priorities;
+    if (is_interrupts(address)) {
+        return read_interrupts(address);
     }
     switch (address) {
     case ICTR:
@@ -215,32 +152,8 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value)
         timers_.write(address, value);
         return;
     }
-    const std::uint32_t first_line = (address % bank_bytes) / 4 * 32;
-    const auto each = [&](auto act) {
-        for (unsigned i = 0; i < 32; ++i) {
-            if ((value >> i & 1) == 0) {
-                continue;
-            }
-            if (first_line + i >= description_.core.interrupt_lines) {
-                chip_.fail("interrupt " + std::to_string(first_line + i) + " does not exist");
-            }
-            act(exception::first_interrupt + first_line + i);
-        }
-    };
-    if (in(address, NVIC_ISER, bank_bytes)) {
-        each([&](unsigned exception) { interrupts_.set_enabled(exception, true); });
-        return;
-    }
-    if (in(address, NVIC_ICER, bank_bytes)) {
-        each([&](unsigned exception) { interrupts_.set_enabled(exception, false); });
-        return;
-    }
-    if (in(address, NVIC_ISPR, bank_bytes)) {
-        each([&](unsigned exception) { interrupts_.set_pending(exception); });
-        return;
-    }
-    if (in(address, NVIC_ICPR, bank_bytes)) {
-        each([&](unsigned exception) { interrupts_.clear_pending(exception); });
+    if (is_interrupts(address)) {
+        write_interrupts(address, value);
         return;
     }
     switch (address) {

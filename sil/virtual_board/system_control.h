@@ -70,6 +70,10 @@ class SystemControl : public Peripheral
     void write_word(std::uint32_t address, std::uint32_t value);
     std::uint32_t interrupt_bits(std::uint32_t word,
                                  bool (InterruptController::*is)(unsigned) const) const;
+    bool is_interrupts(std::uint32_t address) const;
+    std::uint32_t read_interrupts(std::uint32_t address) const;
+    void write_interrupts(std::uint32_t address, std::uint32_t value);
+    void write_priorities(std::uint32_t address, unsigned size, std::uint32_t value);
     void control_state(std::uint32_t value);
     void request_reset(std::uint32_t value);
     std::uint32_t control_state() const;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <exception>
 #include <list>
+#include <vector>
 
 #include "sil/virtual_board/chip_description.h"
 
@@ -22,9 +23,12 @@ class CoreObserver
   public:
     virtual ~CoreObserver() = default;
 
-    /* Before every instruction; false: stop before it. */
+    /* Before every instruction that is watched by itself; false: stop before it. */
     virtual bool before_instruction(std::uint32_t address, unsigned bytes) = 0;
-    /* An access of the present instruction to registers. */
+    /* Before a straight run of instructions, if watched by the block; false: stop before it. It
+       may contain instructions that are watched by themselves, too. */
+    virtual bool before_block(std::uint32_t address, unsigned bytes) = 0;
+    /* An access of the present instruction, or of one of the present block's, to registers. */
     virtual std::uint32_t read(std::uint32_t address, unsigned bytes) = 0;
     virtual void write(std::uint32_t address, unsigned bytes, std::uint32_t value) = 0;
 };
@@ -72,7 +76,12 @@ class UnicornCore
 
     /* `host`: the memory's contents; they stay the caller's. Whole kilobytes times 4. */
     void map_memory(AddressRange range, std::uint8_t *host, bool writable);
+    /* Memory that is never run, with quick stores. */
+    void map_data(AddressRange range, std::uint8_t *host);
     void map_registers(AddressRange range);
+    /* Every instruction is watched by itself, until this is called: from then on all blocks are,
+       and instructions in these ranges only, which must not overlap. While the core stands. */
+    void watch_blocks(const std::vector<AddressRange> &by_instruction);
     /* Contents of memory with code have changed behind the core's back. */
     void forget_code(AddressRange range);
 
@@ -88,15 +97,24 @@ class UnicornCore
         UnicornCore *core;
         std::uint32_t base;
     };
+    struct Data {
+        AddressRange range;
+        std::uint8_t *host;
+    };
     struct Callbacks;
     friend struct Callbacks;
 
     void check(int error, const char *what) const;
     void stop();
+    void watch_instructions(std::uint64_t first, std::uint64_t last);
 
     CoreObserver &observer_;
     uc_struct *engine_ = nullptr;
     std::list<Window> windows_; /* their addresses are given away */
+    std::list<Data> data_;
+    std::vector<std::size_t> instruction_hooks_;
+    bool watches_blocks_ = false;
+    std::uint32_t stopped_before_ = 0; /* this block; 0: the emulator itself knows where */
     std::exception_ptr thrown_;
     Stopped reason_ = Stopped::by_itself;
 };

@@ -22,11 +22,14 @@ constexpr std::size_t parameter_pages = 4;
 /* Of a period, after S(k), the last byte of a typed line arrives; the control interrupt is over. */
 constexpr Ticks arrival_in_period = ticks_per_s / 1'000'000 * 60;
 
-/* Where in a period a leg is shorted, and how soon the bridge must be open then. */
+/* Where in a period a leg is shorted; the bridge is open so soon behind that, or a deadline. */
 constexpr Ticks short_in_period = ticks_per_s / 1'000'000 * 60;
-constexpr Ticks trip_time = ticks_per_s / 1'000'000;
+constexpr Ticks opening_time = ticks_per_s / 1'000'000;
 
-constexpr std::uint32_t stalled_instruction = 300; /* of the control interrupt: in its midst */
+/* Where in a period a control interrupt is held up: it has read its samples. */
+constexpr Ticks stall_in_period = ticks_per_s / 10'000'000 * 65;
+constexpr Ticks first_stall_end = ticks_per_s / 1'000'000 * 89; /* of one beyond the deadline */
+constexpr Ticks stall_piece = ticks_per_s / 10'000'000;
 
 /* Longest time without a control interrupt: start-up designs the gains. */
 constexpr Ticks patience = ticks_per_s;
@@ -47,11 +50,9 @@ struct VirtualBoard::Impl {
           map(ImageMap::read(map_file_of(image_file), elf, machine.costs())),
           facts(facts_of(config)),
           timeout([this] { machine.fail("no control interrupt for a second"); }),
-          trip_check([this] {
-              if (device.power_stage().bridge_on()) {
-                  machine.fail("the bridge is closed 1 us after a leg was shorted");
-              }
-          })
+          trip_check([this] { require_open_bridge("after a leg was shorted"); }),
+          deadline_check([this] { require_open_bridge("after the control interrupt's deadline"); }),
+          stall([this] { hold_up(); })
     {
         machine.attach(device);
         machine.load(elf);
@@ -71,6 +72,8 @@ struct VirtualBoard::Impl {
         }
     }
     void check_bridge(std::int64_t k);
+    void hold_up();
+    void require_open_bridge(const std::string &when);
     void run();
     void send_typed();
 
@@ -80,7 +83,8 @@ struct VirtualBoard::Impl {
     ImageMap map;
     hal_facts facts;
     std::optional<DriveMemory> memory;
-    Event timeout, trip_check;
+    Event timeout, trip_check, deadline_check, stall;
+    Ticks stall_end = 0;
 
     Ticks sampled_at = 0;
     std::int64_t sampled_period = -1; /* k of the last S(k) */
@@ -149,6 +153,27 @@ void VirtualBoard::Impl::check_bridge(std::int64_t k)
     }
 }
 
+/* In one piece until just before the deadline, then in small ones: an instruction is not
+   interrupted, and what is above the control interrupt is to have its way. */
+void VirtualBoard::Impl::hold_up()
+{
+    const Ticks now = machine.now();
+    if (now >= stall_end) {
+        return;
+    }
+    const Ticks before_deadline = std::min(stall_end, sampled_at + first_stall_end);
+    const Ticks piece = now < before_deadline ? before_deadline - now : stall_piece;
+    machine.stall_control_interrupt(0, piece / machine.core_cycle());
+    machine.schedule(stall, now + piece);
+}
+
+void VirtualBoard::Impl::require_open_bridge(const std::string &when)
+{
+    if (device.power_stage().bridge_on()) {
+        machine.fail("the bridge is closed 1 us " + when);
+    }
+}
+
 /* Until something stops it; a reset that nobody asked for is a failure. */
 void VirtualBoard::Impl::run()
 {
@@ -182,8 +207,8 @@ void VirtualBoard::control()
     board.hash = drive_hash_add(board.hash, row);
     Impl::Duties &computed = board.computed[board.signals.period % board.computed.size()];
     computed.period = board.signals.period;
-    computed.high_counts = {row.words[0] >> 16, row.words[0] & 0xffff, row.words[1] >> 16,
-                            row.words[1] & 0xffff};
+    computed.high_counts = {row.word[0] >> 16, row.word[0] & 0xffff, row.word[1] >> 16,
+                            row.word[1] & 0xffff};
     board.send_typed();
 }
 
@@ -242,16 +267,22 @@ void VirtualBoard::short_circuit(int leg, double current_A)
     const Ticks at = std::max(board.machine.now(), board.sampled_at + short_in_period);
     board.device.power_stage().short_circuit(at, leg, current_A);
     if (current_A > sil::comparator_trip_A) {
-        board.machine.schedule(board.trip_check, at + trip_time);
+        board.machine.schedule(board.trip_check, at + opening_time);
     }
 }
 
-void VirtualBoard::stall_control_interrupt(double duration_s)
+void VirtualBoard::stall_control_interrupt(double until_s)
 {
-    Machine &machine = impl_->machine;
-    const auto ticks = static_cast<Ticks>(duration_s * static_cast<double>(ticks_per_s));
-    machine.stall_control_interrupt(stalled_instruction,
-                                    static_cast<std::uint64_t>(ticks / machine.core_cycle()));
+    Impl &board = *impl_;
+    const auto end = static_cast<Ticks>(until_s * static_cast<double>(ticks_per_s));
+    if (end > stall_in_period) {
+        board.stall_end = board.sampled_at + end;
+        board.machine.schedule(board.stall, board.sampled_at + stall_in_period);
+    }
+    if (until_s > sil::control_deadline_s) {
+        const auto deadline = static_cast<Ticks>(sil::control_deadline_s * ticks_per_s);
+        board.machine.schedule(board.deadline_check, board.sampled_at + deadline + opening_time);
+    }
 }
 
 const drive_signals &VirtualBoard::signals() const

@@ -26,9 +26,9 @@ struct BoardReport {
     InterruptAccount::Summary interrupt;
     std::optional<std::uint32_t> stack_used_bytes;
     std::vector<std::string> resets;
-    std::uint64_t bytes_received = 0, bytes_sent = 0; /* on the serial line, moved by DMA */
+    std::uint64_t bytes_received = 0, bytes_sent = 0;   /* on the serial line, moved by DMA */
     std::uint64_t flash_erases = 0, flash_programs = 0; /* pages, double words */
-    double simulated_s = 0; /* from power-on, start-up included */
+    double simulated_s = 0;                             /* from power-on, start-up included */
 };
 
 class VirtualBoard : public sil::DriveBoard
@@ -46,7 +46,7 @@ class VirtualBoard : public sil::DriveBoard
     void type(const std::string &line) override;
     void power_cycle() override;
     void short_circuit(int leg, double current_A) override;
-    void stall_control_interrupt(double duration_s) override;
+    void stall_control_interrupt(double until_s) override;
     /* These two throw virtual_board::Failure when the firmware misuses the hardware, is reset or
        stops controlling. */
     void control() override;
@@ -69,6 +69,8 @@ class VirtualBoard : public sil::DriveBoard
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
+
+constexpr double core_Hz = 170e6;
 
 /* Most cycles of the control interrupt in the worst column: 90 us at 170 MHz. */
 constexpr std::uint64_t control_interrupt_budget = 15300;

@@ -97,7 +97,9 @@ std::uint32_t Adc::fetch(std::uint32_t offset, Master master)
 {
     if (offset == DR) {
         at(ISR) &= ~EOC;
-        interrupt_((at(ISR) & at(IER)) != 0);
+        if (at(IER) != 0) {
+            interrupt_((at(ISR) & at(IER)) != 0);
+        }
     } else if (offset == JDR1 && master == Master::core && (at(IER) & (JEOC | JEOS)) != 0) {
         inputs_.injected_result_taken(number_);
     }
@@ -225,7 +227,9 @@ void Adc::ready()
 void Adc::flag(std::uint32_t flags)
 {
     at(ISR) |= flags;
-    interrupt_((at(ISR) & at(IER)) != 0);
+    if (at(IER) != 0) {
+        interrupt_((at(ISR) & at(IER)) != 0);
+    }
 }
 
 } // namespace virtual_board

@@ -83,7 +83,7 @@ bool injected_source(unsigned number, Trigger *source)
 
 void Adc::triggered(Trigger source, TriggerEdge edge)
 {
-    if (!clocked() || edge != TriggerEdge::rising) {
+    if (edge != TriggerEdge::rising || (at(CR) & (ADSTART | JADSTART)) == 0 || !clocked()) {
         return;
     }
     Trigger chosen;
@@ -128,6 +128,9 @@ void Adc::start_regular()
 {
     if (regular_.running) {
         counters.ignored_triggers++;
+        require(number_ < 3, CR, at(CR),
+                "trigger during the conversions of the one before: ignored, the leg voltages that "
+                "follow are out of step");
         return;
     }
     require(!injected_.running, CR, at(CR),

@@ -99,6 +99,7 @@ void Rcc::record_cause(const std::string &cause)
 {
     /* Every reset of the chip pulls the reset pin too. */
     const std::uint32_t pin = 1u << 26;
+    causes_ = cause == "power-on" ? 0u : causes_; /* it forgets what was before */
     causes_ |= cause == "power-on"   ? pin | (1u << 27)
                : cause == "software" ? pin | (1u << 28)
                : cause == "watchdog" ? pin | (1u << 29)

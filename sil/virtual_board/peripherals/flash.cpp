@@ -8,8 +8,9 @@ namespace virtual_board
 namespace
 {
 
-enum : std::uint32_t { ACR = 0x00, KEYR = 0x08, SR = 0x10, CR = 0x14, OPTR = 0x20 };
+enum : std::uint32_t { ACR = 0x00, KEYR = 0x08, SR = 0x10, CR = 0x14, ECCR = 0x18, OPTR = 0x20 };
 enum : std::uint32_t { PG = 1u << 0, PER = 1u << 1, STRT = 1u << 16, LOCK = 1u << 31 };
+enum : std::uint32_t { DCEN = 1u << 10, ECCD = 1u << 31, BK_ECC = 1u << 21 };
 enum : std::uint32_t { EOP = 1u << 0, ERRORS = 0xc3fau, BSY = 1u << 16, EOPIE = 1u << 24 };
 
 constexpr Ticks erase_time = ticks_per_s / 1000 * 22;
@@ -23,17 +24,19 @@ Flash::Flash(Chip &chip, Rcc &rcc)
                      {KEYR, "KEYR", 0xffffffff},
                      {SR, "SR", 0, 0, EOP | ERRORS | BSY},
                      {CR, "CR", 0xc3000bfb & ~0x40000000u, 0xc0000000, STRT | 0x40000000u},
-                     {0x18, "ECCR", 0},
+                     {ECCR, "ECCR", 0, 0, 0xf1000000u | BK_ECC | 0x7ffffu},
                      {OPTR, "OPTR", 0, 0xffeff8aa}}),
-      rcc_(rcc), memory_(bytes, 0xff), done_([this] { finish(); })
+      rcc_(rcc), memory_(bytes, 0xff), damaged_(bytes / 8), done_([this] { finish(); })
 {
 }
 
 void Flash::reset()
 {
     if (busy_) {
-        /* The operation is cut short: the cells of the page or double word are undefined. */
+        /* The operation is cut short: the cells of the page or double word are undefined, and what
+           the ECC makes of them, too; here they all fail it. */
         std::fill_n(memory_.begin() + target_, length_, std::uint8_t{0});
+        std::fill_n(damaged_.begin() + target_ / 8, length_ / 8, true);
         busy_ = false;
         chip_.schedule(done_, Event::never);
         if (on_change) {
@@ -63,6 +66,9 @@ void Flash::put(std::uint32_t offset, std::uint32_t value, Master)
                 "ICRST while the instruction cache is enabled");
         require((value & at(ACR) & 0x400u) == 0 || (value & 0x1000u) == 0, offset, value,
                 "DCRST while the data cache is enabled");
+        require(
+            !busy_ || (value & DCEN) == 0, offset, value,
+            "DCEN during an operation: reads while writing may corrupt the cache (ES0430, 2.2.2)");
         keep(ACR, value);
         rcc_.wait_states = field(value, 0, 4);
         rcc_.check();
@@ -76,6 +82,10 @@ void Flash::put(std::uint32_t offset, std::uint32_t value, Master)
         return;
     case CR:
         control(value);
+        return;
+    case ECCR:
+        require((value & ~(at(ECCR) | ECCD)) == 0, offset, value, "only ECCD is modelled");
+        at(ECCR) &= ~(value & ECCD);
         return;
     default:
         refuse(offset, value, "not modelled");
@@ -98,6 +108,9 @@ void Flash::control(std::uint32_t value)
 {
     require((at(CR) & LOCK) == 0, CR, value, "written while locked");
     require(!busy_, CR, value, "written while BSY");
+    require((value & (PG | STRT)) == 0 || (at(ACR) & DCEN) == 0, CR, value,
+            "PG or STRT while the data cache is on: reads while writing may corrupt it (ES0430, "
+            "2.2.2)");
     keep(CR, value);
     at(CR) &= ~STRT;
     first_word_ = false;
@@ -172,6 +185,7 @@ void Flash::finish()
 {
     if (length_ == page_bytes) {
         std::fill_n(memory_.begin() + target_, length_, std::uint8_t{0xff});
+        std::fill_n(damaged_.begin() + target_ / 8, length_ / 8, false);
     } else {
         std::copy_n(result_, length_, memory_.begin() + target_);
     }
@@ -188,6 +202,17 @@ void Flash::finish()
 void Flash::interrupt()
 {
     chip_.interrupt(interrupt_line, (at(SR) & EOP) != 0 && (at(CR) & EOPIE) != 0);
+}
+
+void Flash::core_reads(std::uint32_t address, unsigned)
+{
+    const std::uint32_t word = (address - base) / 8;
+    if (damaged_[word]) {
+        const std::uint32_t bank = word * 8 / bank_bytes;
+        counters_.double_errors++;
+        at(ECCR) = ECCD | (bank != 0 ? BK_ECC : 0u) | word * 8 % bank_bytes;
+        chip_.non_maskable_interrupt();
+    }
 }
 
 Ticks Flash::busy_until(std::uint32_t address) const

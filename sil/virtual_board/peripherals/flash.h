@@ -1,7 +1,9 @@
 /*
  * FLASH: 512 KB in two banks of 128 pages of 2 KB; erase 22 ms, double word 85 us. The contents
- * stay over resets. The core's bus calls `store` for writes into the memory and `busy_until` for
- * reads and fetches of a bank (read while write: only the same bank stalls).
+ * stay over resets; double words whose operation a reset or a loss of power cut short read as a
+ * double error of the ECC. The core's bus calls `store` for writes into the memory, `busy_until`
+ * for reads and fetches of a bank (read while write: only the same bank stalls) and `core_reads`.
+ * Operations while the data cache is on are refused (erratum ES0430 2.2.2).
  */
 #ifndef STEADYSTEP_VIRTUAL_BOARD_FLASH_H
 #define STEADYSTEP_VIRTUAL_BOARD_FLASH_H
@@ -30,9 +32,11 @@ class Flash : public RegisterBlock, public FlashMemory
     void store(std::uint32_t address, unsigned size, std::uint32_t value) override;
     /* End of the operation on the bank of this address; now or earlier if there is none. */
     Ticks busy_until(std::uint32_t address) const override;
+    /* Of a damaged double word: sets ECCR.ECCD and raises the non-maskable interrupt. */
+    void core_reads(std::uint32_t address, unsigned size) override;
 
     struct Counters {
-        unsigned erases = 0, programs = 0;
+        unsigned erases = 0, programs = 0, double_errors = 0; /* double words read damaged */
     };
     const Counters &counters() const
     {
@@ -54,6 +58,7 @@ class Flash : public RegisterBlock, public FlashMemory
 
     Rcc &rcc_;
     std::vector<std::uint8_t> memory_;
+    std::vector<bool> damaged_; /* double words that two and more bits of the check tell wrong */
     unsigned key_step_ = 0;
     unsigned bank_ = 0; /* of the present operation */
     bool busy_ = false;

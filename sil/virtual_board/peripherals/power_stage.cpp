@@ -99,8 +99,9 @@ void PowerStage::injected_result_taken(unsigned adc)
 
 void PowerStage::rewrite()
 {
+    const std::uint32_t codes[legs] = {leg_code(0), leg_code(1), leg_code(2), leg_code(3)};
     for (const Group &group : open_) {
-        chip_.store(group.address, 2, scaled(leg_code(group.leg), group.factor, group.shift));
+        chip_.store(group.address, 2, scaled(codes[group.leg], group.factor, group.shift));
     }
     open_.clear();
 }

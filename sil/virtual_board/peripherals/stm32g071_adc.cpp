@@ -48,7 +48,7 @@ G071Adc::G071Adc(Chip &chip, Triggers &triggers, Dmamux &dmamux)
 void G071Adc::reset()
 {
     RegisterBlock::reset();
-    busy_ = calibrated_ = false;
+    busy_ = calibrated_ = deaf_ = false;
     regulator_ready_ = ready_at_ = Event::never;
     calibration_end_ = 0;
     counters = {};
@@ -139,7 +139,7 @@ void G071Adc::control(std::uint32_t value)
 void G071Adc::triggered(Trigger source, TriggerEdge edge)
 {
     if (source != Trigger::tim3 || edge != TriggerEdge::rising || !clocked() ||
-        (at(CR) & ADSTART) == 0) {
+        (at(CR) & ADSTART) == 0 || deaf_) {
         return;
     }
     if (busy_) {

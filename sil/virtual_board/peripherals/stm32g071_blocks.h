@@ -175,6 +175,16 @@ class G071Adc : public RegisterBlock
     /* A result has been moved by DMA: to this address. */
     std::function<void(unsigned channel, std::uint32_t address)> moved;
 
+    /* For a test: no trigger arrives any more, until the next reset. */
+    void lose_triggers()
+    {
+        deaf_ = true;
+    }
+    bool deaf() const
+    {
+        return deaf_;
+    }
+
     struct Counters {
         std::uint64_t sequences = 0, overruns = 0, missed_triggers = 0;
     };
@@ -193,7 +203,7 @@ class G071Adc : public RegisterBlock
 
     Dmamux &dmamux_;
     unsigned rank_ = 0;
-    bool busy_ = false, calibrated_ = false;
+    bool busy_ = false, calibrated_ = false, deaf_ = false;
     Ticks regulator_ready_ = Event::never, calibration_end_ = 0, ready_at_ = Event::never;
     Event end_;
 };

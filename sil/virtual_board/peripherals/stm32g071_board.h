@@ -53,6 +53,11 @@ class G071Board final : public Device
     }
     /* The bridge's own overcurrent protection: FAULT low, half-bridges open until RESET is low. */
     void trip();
+    /* The converter, to be disturbed. */
+    G071Adc &converter()
+    {
+        return adc_;
+    }
     const Watchdog &watchdog() const
     {
         return watchdog_;
@@ -73,7 +78,7 @@ class G071Board final : public Device
     void outputs_enabled() const;
     void rewrite();
     std::uint32_t code(unsigned channel);
-    std::uint32_t current(unsigned channel);
+    std::uint32_t current(int leg);  /* code of the amplified shunt of a leg, 0...3 */
     int difference(int phase) const; /* of the legs' codes, mean over the last period */
 
     Chip &chip_;
@@ -84,7 +89,7 @@ class G071Board final : public Device
     Pins pins_;
     AdvancedTimer timer1_;
     G071Timer1 timer1_pins_;
-    Timer timer2_, timer3_, timer14_;
+    Timer timer2_, timer3_;
     Dma dma_, no_dma_;
     Dmamux dmamux_;
     G071Dmamux dmamux_numbers_;

@@ -143,9 +143,7 @@ void Stm32g474Device::map()
 
 void Stm32g474Device::reset(const std::string &cause)
 {
-    if (cause != "power-on") {
-        rcc_.record_cause(cause);
-    }
+    rcc_.record_cause(cause);
     for (const Mapping &mapping : mappings_) {
         if (mapping.peripheral != &rcc_) {
             mapping.peripheral->reset();

@@ -289,8 +289,8 @@ void Timer::triggered(Trigger source, TriggerEdge edge)
 {
     const unsigned mode = field(at(SMCR), 0, 3);
     const unsigned input = field(at(SMCR), 4, 3);
-    if (edge != TriggerEdge::rising || !clocked() || (mode != 4 && mode != 6) ||
-        internal_triggers[input & 3u] != source) {
+    if (edge != TriggerEdge::rising || (mode != 4 && mode != 6) ||
+        internal_triggers[input & 3u] != source || !clocked()) {
         return;
     }
     chip_.schedule(trigger_event_, chip_.now() + slave_delay_cycles * clock_());

@@ -26,8 +26,9 @@ void Timer::take_flags()
     if (!kind_.general || !counting() || encoder_mode() || now <= flags_until_) {
         return;
     }
+    const Ticks count_time = count_ticks();
     for (int channel = 0; channel < 4; channel++) {
-        const Ticks match = origin_ + compare_[static_cast<std::size_t>(channel)] * count_ticks();
+        const Ticks match = origin_ + compare_[static_cast<std::size_t>(channel)] * count_time;
         if (output(channel) && match > flags_until_ && match <= now) {
             at(SR) |= 2u << channel;
         }
@@ -38,9 +39,10 @@ void Timer::take_flags()
 void Timer::schedule_compare()
 {
     Ticks next = Event::never;
+    const Ticks count_time = count_ticks();
     for (int channel = 0; kind_.general && counting() && channel < 4; channel++) {
         const std::uint32_t compare = compare_[static_cast<std::size_t>(channel)];
-        const Ticks match = origin_ + compare * count_ticks();
+        const Ticks match = origin_ + compare * count_time;
         if (bit(at(DIER), static_cast<unsigned>(1 + channel)) && match > chip_.now() &&
             compare <= top()) {
             next = std::min(next, match);

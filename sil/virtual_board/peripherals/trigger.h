@@ -20,8 +20,12 @@ class Triggers
     {
         listeners_.push_back(std::move(listener));
     }
+    /* Nothing that listens acts on a falling edge: registers that ask for it are refused. */
     void edge(Trigger source, TriggerEdge edge)
     {
+        if (edge == TriggerEdge::falling) {
+            return;
+        }
         for (auto &listener : listeners_) {
             listener(source, edge);
         }

@@ -1,0 +1,66 @@
+#include "sil/virtual_board/block_costs.h"
+
+namespace virtual_board
+{
+
+namespace
+{
+
+Cycles cycles_of(unsigned nominal, unsigned worst, unsigned waits, const CostRules &rules)
+{
+    return {nominal, worst, worst + waits * rules.flash_wait};
+}
+
+} // namespace
+
+std::uint32_t BlockCosts::set(std::uint32_t number, const BlockCost &block)
+{
+    if (number == 0) {
+        number = static_cast<std::uint32_t>(blocks_.size());
+        blocks_.emplace_back();
+    }
+    blocks_[number] = block;
+    return number;
+}
+
+void BlockCosts::forget()
+{
+    for (BlockCost &block : blocks_) {
+        block = BlockCost();
+    }
+    parts_.clear();
+}
+
+BlockCost BlockCosts::sum(std::uint32_t address, const std::vector<InstructionCost> &instructions,
+                          const CostRules &rules)
+{
+    BlockCost block;
+    block.instructions = static_cast<std::uint32_t>(instructions.size());
+    block.first_part = static_cast<std::uint32_t>(parts_.size());
+    std::uint32_t line_before = (address - 1) >> rules.flash_line_shift;
+    for (const InstructionCost &cost : instructions) {
+        const bool first = block.bytes == 0;
+        const std::uint32_t begin = address + block.bytes, last = begin + cost.bytes - 1;
+        const std::uint32_t first_line = begin >> rules.flash_line_shift;
+        const std::uint32_t last_line = last >> rules.flash_line_shift;
+        const unsigned beside = (last_line != first_line ? 1u : 0u) + cost.literals;
+        const unsigned waits = (first_line != line_before ? 1u : 0u) + beside;
+        const Cycles after = cycles_of(cost.nominal_after, cost.worst_after, waits, rules);
+        if (first || (cost.stage != inherited_stage && cost.stage != parts_.back().stage)) {
+            parts_.push_back({cost.stage, Cycles()});
+            ++block.parts;
+        }
+        if (first) {
+            block.first_after = after;
+            block.first = cycles_of(cost.nominal, cost.worst, 1 + beside, rules);
+        } else {
+            parts_.back().cycles += after;
+            block.nominal_of_others += after.nominal;
+        }
+        block.bytes += cost.bytes;
+        block.last_line = line_before = last_line;
+    }
+    return block;
+}
+
+} // namespace virtual_board
