@@ -12,7 +12,11 @@
 
 #define BOARD_NAME "NUCLEO-G071RB with integrated double bridge"
 
-/* 20 mOhm, amplified 13.75 times about 1.65 V: 1.65 V + 0.275 V/A, 12 A over 4096 codes. */
+/*
+ * 20 mOhm, amplified 13.75 times about 1.65 V: 1.65 V + 0.275 V/A, 12 A over 4096 codes. A positive
+ * current flows through the motor from leg plus to leg minus, and while all low sides conduct, down
+ * the shunt of leg minus and up that of leg plus: so the shunts are those of A- and B-.
+ */
 #define CURRENT_A_PER_CODE (12.0 / 4096.0)
 /* Dividers of the supply and of the legs: 17.8 kOhm over 2.10 kOhm, 31.2 V over 4096 codes. */
 #define BUS_V_PER_CODE (31.2 / 4096.0)

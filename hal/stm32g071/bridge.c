@@ -6,7 +6,12 @@ static struct {
     volatile uint32_t flags; /* HAL_FLAG_...: a trip until bridge_disable, a missed deadline until
                                 the next sample set */
     volatile bool allowed;   /* between bridge_enable and bridge_disable, no trip */
-    bool asked;              /* for the bridge, with the duties now in force */
+    volatile enum {
+        DEMAND_NONE,
+        DEMAND_ASKED,
+        DEMAND_CLOSED
+    } demand;  /* for the bridge, with the duties now in force */
+    bool held; /* `allowed` before bridge_hold_open */
 } bridge;
 
 void bridge_start(void)
@@ -20,12 +25,6 @@ void bridge_start(void)
     TIM1->af1 = TIM_AF1_BKINE;
     TIM1->cr2 = TIM_CR2_MMS(TIM_MASTER_ENABLE);
     TIM1->cr1 = TIM_CR1_CMS(TIM_CENTRE_ALIGNED_1) | TIM_CR1_ARPE | TIM_CR1_URS;
-
-    TIM14->arr = BRIDGE_GUARD_COUNTS - 1;
-    TIM14->cr1 = TIM_CR1_URS | TIM_CR1_OPM;
-    TIM14->egr = TIM_EGR_UG;
-    TIM14->dier = TIM_DIER_UIE;
-    interrupt_enable(INTERRUPT_TIM14, PRIORITY_GUARD);
 }
 
 /*
@@ -57,6 +56,26 @@ bool bridge_run(void)
     return true;
 }
 
+/* Both timers count core cycles. */
+static inline uint32_t deadline_of_next_peak(void)
+{
+    const uint32_t now = TIM2->cnt;
+    const bool down = (TIM1->cr1 & TIM_CR1_DIR) != 0;
+    const uint32_t count = TIM1->cnt;
+    const uint32_t since_peak =
+        down ? BRIDGE_HALF_PERIOD_COUNTS - count : BRIDGE_HALF_PERIOD_COUNTS + count;
+
+    return now - since_peak + BRIDGE_PERIOD_COUNTS + BRIDGE_DEADLINE_COUNTS;
+}
+
+void bridge_guard_start(void)
+{
+    TIM2->ccr1 = deadline_of_next_peak();
+    TIM2->sr = 0;
+    TIM2->dier = TIM_DIER_CC1IE;
+    interrupt_enable(INTERRUPT_TIM2, PRIORITY_GUARD);
+}
+
 bool bridge_enable(void)
 {
     if ((bridge.flags & HAL_FLAG_OVERCURRENT_TRIP) != 0 || (TIM1->sr & TIM_SR_BIF) != 0) {
@@ -73,6 +92,7 @@ void bridge_disable(void)
 {
     bridge.allowed = false;
     bridge_open();
+    bridge.demand = DEMAND_NONE;
     if ((bridge.flags & HAL_FLAG_OVERCURRENT_TRIP) != 0) {
         TIM1->sr = ~TIM_SR_BIF; /* RESET is low now, which ends the bridge's own fault */
         if ((TIM1->sr & TIM_SR_BIF) == 0) {
@@ -82,17 +102,38 @@ void bridge_disable(void)
     }
 }
 
-bool bridge_is_on(void)
+static bool on_or_asked(void)
 {
-    return (TIM1->bdtr & TIM_BDTR_MOE) != 0;
+    return bridge.demand != DEMAND_NONE || (TIM1->bdtr & TIM_BDTR_MOE) != 0;
+}
+
+bool bridge_hold_open(void)
+{
+    if (on_or_asked()) {
+        return false;
+    }
+    bridge.held = bridge.allowed;
+    bridge.allowed = false;
+    if (on_or_asked()) { /* in between */
+        bridge.allowed = bridge.held;
+        return false;
+    }
+    return true;
+}
+
+/* Deadlines that passed meanwhile are told with the samples, a trip still forbids. */
+void bridge_release(void)
+{
+    bridge.allowed = bridge.held;
+    if ((bridge.flags & HAL_FLAG_OVERCURRENT_TRIP) != 0) {
+        bridge.allowed = false;
+    }
 }
 
 uint32_t bridge_begin_period(void)
 {
     const uint32_t flags = bridge.flags;
 
-    TIM14->cnt = 0;
-    TIM14->cr1 = TIM_CR1_URS | TIM_CR1_OPM | TIM_CR1_CEN;
     if (flags != 0) {
         interrupts_disable(); /* FAULT may come in between */
         bridge.flags &= HAL_FLAG_OVERCURRENT_TRIP;
@@ -107,19 +148,27 @@ void bridge_end_period(const struct hal_outputs *outputs)
     TIM1->ccr2 = outputs->high_counts[HAL_LEG_A_MINUS];
     TIM1->ccr3 = outputs->high_counts[HAL_LEG_B_PLUS];
     TIM1->ccr4 = outputs->high_counts[HAL_LEG_B_MINUS];
-    TIM14->cr1 = TIM_CR1_URS | TIM_CR1_OPM;
     if (!outputs->bridge_on || !bridge.allowed) {
         bridge_open();
-        bridge.asked = false;
-    } else if (!bridge.asked) {
-        bridge.asked = true;
-    } else {
+        bridge.demand = DEMAND_NONE;
+    } else if (bridge.demand == DEMAND_NONE) {
+        bridge.demand = DEMAND_ASKED;
+    } else if (bridge.demand == DEMAND_ASKED) {
+        bridge.demand = DEMAND_CLOSED;
         TIM1->bdtr = BRIDGE_ON;
         BRIDGE_RESET_PORT->bsrr = BIT(BRIDGE_RESET_PIN);
-        if (!bridge.allowed) { /* FAULT came in between */
+        if (!bridge.allowed) { /* FAULT or the deadline came in between */
             bridge_open();
         }
     }
+}
+
+void bridge_deadline_met(uint32_t now)
+{
+    const uint32_t deadline = TIM2->ccr1 + BRIDGE_PERIOD_COUNTS;
+
+    /* Behind periods without an interrupt it is found anew. */
+    TIM2->ccr1 = (int32_t)(deadline - now) > 0 ? deadline : deadline_of_next_peak();
 }
 
 /* FAULT: the hardware has taken away the main output already. Its level keeps the request up. */
@@ -127,15 +176,17 @@ IN_RAM(break_interrupt) void tim1_brk_up_trg_com_handler(void)
 {
     bridge_open();
     bridge.allowed = false;
+    bridge.demand = DEMAND_NONE;
     bridge.flags |= HAL_FLAG_OVERCURRENT_TRIP;
     TIM1->dier = 0;
 }
 
-/* The control interrupt has not ended in time. */
-IN_RAM(deadline_interrupt) void tim14_handler(void)
+/* The control interrupt has not ended in time, or has not come. */
+IN_RAM(deadline_interrupt) void tim2_handler(void)
 {
     bridge_open();
     bridge.allowed = false;
+    bridge.demand = DEMAND_NONE;
     bridge.flags |= HAL_FLAG_DEADLINE_MISSED;
-    TIM14->sr = 0;
+    TIM2->sr = ~TIM_SR_CC1IF;
 }

@@ -1,12 +1,16 @@
 /*
  * The bridge: TIM1 with one channel per half-bridge, the bridge's RESET and FAULT, and the guard of
- * the deadline (TIM14).
+ * the deadline.
  *
  * TIM1 counts up and down between 0 and BRIDGE_HALF_PERIOD_COUNTS; a leg is high around the valley,
  * while the counter is below its compare value. Compares act from the next peak on.
  *
  * The bridge is on while TIM1's main output is enabled and RESET is high. It is opened through
  * both: without the main output the legs' inputs are low, which alone would close the low sides.
+ *
+ * The guard: a compare of the cycle counter TIM2 lies 90 us behind the next peak, and the end of
+ * each control interrupt moves it on by a period. If it is reached, because the interrupt takes too
+ * long or does not come, the bridge opens.
  */
 #ifndef STEADYSTEP_STM32G071_BRIDGE_H
 #define STEADYSTEP_STM32G071_BRIDGE_H
@@ -21,8 +25,7 @@
 enum {
     BRIDGE_HALF_PERIOD_COUNTS = 3200,
     BRIDGE_PERIOD_COUNTS = 2 * BRIDGE_HALF_PERIOD_COUNTS,
-    /* From the start of the control interrupt, 3 us behind the peak, to 90 us behind it. */
-    BRIDGE_GUARD_COUNTS = 5560
+    BRIDGE_DEADLINE_COUNTS = 5760 /* behind the peak: 90 us */
 };
 
 /* Dead time is the bridge's own, so DTG is 0. Break: FAULT, low, no filter, without the clock. */
@@ -34,10 +37,17 @@ void bridge_start(void);
 /* Starts TIM1 and, with it, TIM3. false: compares do not load at the peak. */
 bool bridge_run(void);
 
+/* In the half period behind a peak: the control interrupt of the next is the first to be guarded.
+ */
+void bridge_guard_start(void);
+
 /* As hal.h says. */
 bool bridge_enable(void);
 void bridge_disable(void);
-bool bridge_is_on(void);
+
+/* The background: keeps the bridge open until bridge_release; false: it is on, or about to be. */
+bool bridge_hold_open(void);
+void bridge_release(void);
 
 /* All gates off; nothing else changes. From anywhere, faults included. */
 static inline void bridge_open(void)
@@ -47,11 +57,13 @@ static inline void bridge_open(void)
 }
 
 /*
- * The control interrupt. bridge_begin_period starts the guard and returns the flags of the sample
- * set. bridge_end_period writes duties that act from the next peak on; it opens the bridge at once
- * and closes it a period after that was asked for, when the duties computed with the demand act.
+ * The control interrupt. bridge_begin_period returns the flags of the sample set. bridge_end_period
+ * writes duties that act from the next peak on; it opens the bridge at once and closes it a period
+ * after that was asked for, when the duties computed with the demand act. bridge_deadline_met moves
+ * the guard on; `now` is the cycle count.
  */
 uint32_t bridge_begin_period(void);
 void bridge_end_period(const struct hal_outputs *outputs);
+void bridge_deadline_met(uint32_t now);
 
 #endif

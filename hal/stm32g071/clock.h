@@ -19,4 +19,7 @@ uint32_t clock_cycles(void);
 
 void clock_wait_us(uint32_t us);
 
+/* Until these bits of a register are as expected; false: they are not within 12 ms. */
+bool clock_wait_for(const volatile uint32_t *status, uint32_t mask, uint32_t expected);
+
 #endif

@@ -22,16 +22,6 @@ static const uint8_t channels[RANKS] = {
     CHANNEL_LEG_A_PLUS,  CHANNEL_LEG_B_PLUS,  CHANNEL_CURRENT_A, CHANNEL_CURRENT_B,
     CHANNEL_LEG_B_MINUS, CHANNEL_LEG_A_MINUS, CHANNEL_BUS,       CHANNEL_TEMPERATURE};
 
-static bool wait_for(const volatile uint32_t *status, uint32_t mask, uint32_t expected)
-{
-    for (int tries = 0; tries < 100000; tries++) {
-        if ((*status & mask) == expected) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static bool adc_start(void)
 {
     uint32_t sequence = 0;
@@ -40,13 +30,13 @@ static bool adc_start(void)
     ADC1->cr = ADC_CR_ADVREGEN;
     clock_wait_us(20); /* start of the regulator, RM0444 and data sheet: 20 us */
     ADC1->cr = ADC_CR_ADVREGEN | ADC_CR_ADCAL;
-    if (!wait_for(&ADC1->cr, ADC_CR_ADCAL, 0)) {
+    if (!clock_wait_for(&ADC1->cr, ADC_CR_ADCAL, 0)) {
         return false;
     }
     clock_wait_us(1); /* the ADC may be enabled two of its cycles after calibration */
     ADC1->isr = ADC_ISR_ADRDY;
     ADC1->cr = ADC_CR_ADVREGEN | ADC_CR_ADEN;
-    if (!wait_for(&ADC1->isr, ADC_ISR_ADRDY, ADC_ISR_ADRDY)) {
+    if (!clock_wait_for(&ADC1->isr, ADC_ISR_ADRDY, ADC_ISR_ADRDY)) {
         return false;
     }
     for (unsigned rank = 0; rank < RANKS; rank++) {
@@ -54,13 +44,13 @@ static bool adc_start(void)
     }
     ADC1->cfgr1 = ADC_CFGR1_CHSELRMOD | ADC_CFGR1_OVRMOD | ADC_CFGR1_DMAEN | ADC_CFGR1_DMACFG |
                   ADC_CFGR1_EXTEN(ADC_RISING_EDGE) | ADC_CFGR1_EXTSEL(ADC_TRIGGER_TIM3_TRGO);
-    if (!wait_for(&ADC1->isr, ADC_ISR_CCRDY, ADC_ISR_CCRDY)) {
+    if (!clock_wait_for(&ADC1->isr, ADC_ISR_CCRDY, ADC_ISR_CCRDY)) {
         return false;
     }
     ADC1->isr = ADC_ISR_CCRDY;
     ADC1->smpr = ADC_SMPR_SAMPLE_TIME1(ADC_SAMPLING_3_5_CYCLES);
     ADC1->chselr = sequence;
-    return wait_for(&ADC1->isr, ADC_ISR_CCRDY, ADC_ISR_CCRDY);
+    return clock_wait_for(&ADC1->isr, ADC_ISR_CCRDY, ADC_ISR_CCRDY);
 }
 
 static void dma_start(void)

@@ -1,5 +1,6 @@
 #include "hal/stm32g071/crash.h"
 
+#include "firmware/design/text.h"
 #include "hal/stm32g071/board.h"
 #include "hal/stm32g071/bridge.h"
 #include "hal/stm32g071/core.h"
@@ -81,39 +82,13 @@ __attribute__((naked)) void crash_exception(void)
                      ".ltorg\n");
 }
 
-static char *put_text(char *at, const char *text)
+static void put_address(struct text *text, const char *name, uint32_t address)
 {
-    while (*text != '\0' && at < &cause[sizeof cause - 1]) {
-        *at++ = *text++;
-    }
-    return at;
+    text_put(text, name);
+    text_hexadecimal(text, address, 8);
 }
 
-static char *put_hexadecimal(char *at, uint32_t value)
-{
-    at = put_text(at, "0x");
-    for (int shift = 28; shift >= 0; shift -= 4) {
-        const char digit[2] = {"0123456789abcdef"[(value >> shift) & 15u], '\0'};
-
-        at = put_text(at, digit);
-    }
-    return at;
-}
-
-static char *put_decimal(char *at, uint32_t value)
-{
-    char digits[11];
-    char *digit = &digits[10];
-
-    *digit = '\0';
-    do {
-        *--digit = (char)('0' + value % 10u);
-        value /= 10u;
-    } while (value > 0);
-    return put_text(at, digit);
-}
-
-static char *put_crash(char *at)
+static void put_crash(struct text *text)
 {
     static const char *const faults[BOARD_FAULT_COUNT] = {"none",
 #define FAULT_TEXT(name, text) text,
@@ -121,21 +96,23 @@ static char *put_crash(char *at)
 #undef FAULT_TEXT
     };
 
-    at = put_text(at, "crash: ");
+    text_put(text, "crash: ");
     if (record.exception == 0) {
-        return put_text(at, record.fault < BOARD_FAULT_COUNT ? faults[record.fault] : "unknown");
+        text_put(text, record.fault < BOARD_FAULT_COUNT ? faults[record.fault] : "unknown");
+        return;
     }
     if (record.exception == 3) {
-        at = put_text(at, "hard fault");
+        text_put(text, "hard fault");
     } else {
-        at = put_decimal(put_text(at, "unexpected exception "), record.exception);
+        text_put(text, "unexpected exception ");
+        text_unsigned(text, record.exception);
     }
-    at = put_hexadecimal(put_text(at, " at "), record.pc);
-    at = put_hexadecimal(put_text(at, " lr "), record.lr);
+    put_address(text, " at 0x", record.pc);
+    put_address(text, " lr 0x", record.lr);
     if (record.period != UINT32_MAX) {
-        at = put_decimal(put_text(at, " in period "), record.period);
+        text_put(text, " in period ");
+        text_unsigned(text, record.period);
     }
-    return at;
 }
 
 static const char *reset_cause(uint32_t csr)
@@ -155,18 +132,17 @@ static const char *reset_cause(uint32_t csr)
 void crash_read_cause(void)
 {
     const uint32_t csr = RCC->csr;
-    char *at = cause;
+    struct text text = text_in(cause, sizeof cause);
 
     RCC->csr = csr | RCC_CSR_RMVF;
     if ((csr & RCC_CSR_PWRRSTF) != 0 || record.valid != RECORD_VALID) {
         record = (struct crash_record){.valid = RECORD_VALID};
     }
     if (record.exception != 0 || record.fault != BOARD_FAULT_NONE) {
-        at = put_crash(at);
+        put_crash(&text);
     } else {
-        at = put_text(at, reset_cause(csr));
+        text_put(&text, reset_cause(csr));
     }
-    *at = '\0';
     record.exception = 0;
     record.fault = BOARD_FAULT_NONE;
 }

@@ -14,6 +14,7 @@
     FAULT(ADC_START, "ADC does not calibrate or get ready")                                        \
     FAULT(PWM_PHASE, "PWM timer does not load its compares at the peak")                           \
     FAULT(ADC_PHASE, "ADC out of step with the PWM timer")                                         \
+    FAULT(WATCHDOG, "watchdog does not take its period")                                           \
     FAULT(SETTINGS_REFUSED, "drive refuses its default settings")
 
 enum board_fault {

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "firmware/application/application.h"
+#include "firmware/design/text.h"
 #include "hal/stm32g071/board.h"
 #include "hal/stm32g071/bridge.h"
 #include "hal/stm32g071/clock.h"
@@ -57,7 +58,9 @@ IN_RAM(control_interrupt) void control_interrupt(void)
 
     const struct hal_outputs outputs = application_control_interrupt(&application, &samples);
     bridge_end_period(&outputs);
-    control.end = clock_cycles();
+    const uint32_t end = clock_cycles();
+    bridge_deadline_met(end);
+    control.end = end;
     SCB->icsr = SCB_ICSR_PENDSVSET;
 }
 
@@ -81,9 +84,33 @@ static void watchdog_start(void)
     IWDG->kr = IWDG_UNLOCK;
     IWDG->pr = IWDG_DIV32;
     IWDG->rlr = WATCHDOG_ms;
-    while ((IWDG->sr & (IWDG_SR_PVU | IWDG_SR_RVU)) != 0) {
+    if (!clock_wait_for(&IWDG->sr, IWDG_SR_PVU | IWDG_SR_RVU, 0)) { /* LSI: 0.3 ms */
+        board_fault(BOARD_FAULT_WATCHDOG);
     }
     IWDG->kr = IWDG_FEED;
+}
+
+/* No pins read an encoder: stored settings that ask for one are not in force. Kept apart for the
+   stack of the settings. */
+__attribute__((noinline)) static bool start_without_encoder(char error[DRIVE_ERROR_TEXT])
+{
+    const uint32_t asked = application.facts.encoder_counts_per_turn;
+    struct drive_settings settings;
+
+    if (asked == 0) {
+        return true;
+    }
+    drive_settings_default(&settings, &motor_default);
+    if (!application_init_with(&application, &board, &settings, error)) {
+        return false;
+    }
+    application.settings_from = APPLICATION_SETTINGS_DEFAULT;
+    application.stored_refused = true;
+    struct text text = text_in(application.stored_refusal, sizeof application.stored_refusal);
+    text_put(&text, "encoder counts per turn=");
+    text_unsigned(&text, asked);
+    text_put(&text, ": this board reads no encoder, expected 0");
+    return true;
 }
 
 int main(void)
@@ -97,7 +124,8 @@ int main(void)
     bridge_start();
     pins_connect();
     serial_start();
-    if (!application_init(&application, &board, &motor_default, error)) {
+    if (!application_init(&application, &board, &motor_default, error) ||
+        !start_without_encoder(error)) {
         (void)serial_write((const uint8_t *)error, strlen(error));
         clock_wait_us(100000); /* for the text to leave */
         board_fault(BOARD_FAULT_SETTINGS_REFUSED);
@@ -113,6 +141,7 @@ int main(void)
     if (!converter_synchronise()) {
         board_fault(BOARD_FAULT_ADC_PHASE);
     }
+    bridge_guard_start();
     watchdog_start();
     for (;;) {
         application_background(&application);

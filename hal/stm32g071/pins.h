@@ -20,7 +20,7 @@
     /* FAULT, open drain; RESET_AB and RESET_CD joined, low: all half-bridges open */              \
     PIN(A, 6, ALTERNATE, 2, UP, TIM1, BK)                                                          \
     PIN(B, 13, OUTPUT, 0, DOWN, GPIOB, RESET)                                                      \
-    /* amplified shunts of A+ and B+ */                                                            \
+    /* amplified shunts of A- and B- */                                                            \
     PIN(A, 0, ANALOG, 0, NONE, ADC1, IN0)                                                          \
     PIN(A, 1, ANALOG, 0, NONE, ADC1, IN1)                                                          \
     /* leg voltages A+, A-, B+, B- */                                                              \

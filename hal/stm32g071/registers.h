@@ -27,7 +27,7 @@ enum interrupt {
     INTERRUPT_DMA1_CHANNEL1 = 9,
     INTERRUPT_DMA1_CHANNEL2_3 = 10,
     INTERRUPT_TIM1_BRK_UP_TRG_COM = 13,
-    INTERRUPT_TIM14 = 19,
+    INTERRUPT_TIM2 = 15,
     INTERRUPT_USART3_4_LPUART1 = 29,
     INTERRUPTS = 31
 };
@@ -62,7 +62,6 @@ struct rcc_registers {
 #define RCC_APBENR1_LPUART1EN     BIT(20)
 #define RCC_APBENR1_PWREN         BIT(28)
 #define RCC_APBENR2_TIM1EN        BIT(11)
-#define RCC_APBENR2_TIM14EN       BIT(15)
 #define RCC_APBENR2_ADCEN         BIT(20)
 #define RCC_CSR_LSION             BIT(0)
 #define RCC_CSR_LSIRDY            BIT(1)
@@ -115,23 +114,22 @@ struct tim_registers {
     volatile uint32_t cr1, cr2, smcr, dier, sr, egr, ccmr1, ccmr2, ccer, cnt, psc, arr, rcr;
     volatile uint32_t ccr1, ccr2, ccr3, ccr4, bdtr, dcr, dmar, or1, ccmr3, ccr5, ccr6, af1, af2;
 };
-#define TIM1  ((struct tim_registers *)0x40012c00u)
-#define TIM2  ((struct tim_registers *)0x40000000u)
-#define TIM3  ((struct tim_registers *)0x40000400u)
-#define TIM14 ((struct tim_registers *)0x40002000u)
+#define TIM1 ((struct tim_registers *)0x40012c00u)
+#define TIM2 ((struct tim_registers *)0x40000000u)
+#define TIM3 ((struct tim_registers *)0x40000400u)
 
 #define TIM_CR1_CEN          BIT(0)
 #define TIM_CR1_URS          BIT(2)
-#define TIM_CR1_OPM          BIT(3)
 #define TIM_CR1_DIR          BIT(4)
 #define TIM_CR1_CMS(value)   FIELD(value, 5, 2)
 #define TIM_CR1_ARPE         BIT(7)
 #define TIM_CR2_MMS(value)   FIELD(value, 4, 3)
 #define TIM_SMCR_SMS(value)  FIELD(value, 0, 3)
 #define TIM_SMCR_TS(value)   FIELD(value, 4, 3)
-#define TIM_DIER_UIE         BIT(0)
+#define TIM_DIER_CC1IE       BIT(1)
 #define TIM_DIER_BIE         BIT(7)
 #define TIM_SR_UIF           BIT(0)
+#define TIM_SR_CC1IF         BIT(1)
 #define TIM_SR_BIF           BIT(7)
 #define TIM_EGR_UG           BIT(0)
 #define TIM_CCMR_OC1PE       BIT(3) /* CCMR1, and of channels 3 and 4 in CCMR2 */
@@ -241,6 +239,7 @@ struct lpuart_registers {
 #define LPUART_ISR_FE         BIT(1)
 #define LPUART_ISR_NE         BIT(2)
 #define LPUART_ISR_ORE        BIT(3)
+#define LPUART_ISR_RXNE       BIT(5)
 #define LPUART_ISR_CMF        BIT(17)
 #define LPUART_ICR_PE         BIT(0)
 #define LPUART_ICR_FE         BIT(1)

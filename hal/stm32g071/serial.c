@@ -7,16 +7,33 @@
 #include "hal/stm32g071/clock.h"
 #include "hal/stm32g071/core.h"
 
-enum { LINES = 16 };
+enum {
+    LINES = 16,
+    /* What comes while the background reads must not reach what it reads. */
+    LINES_KEPT = LINES - 4,
+    BYTES_KEPT = SERIAL_RECEIVED_BYTES - 16,
+    MOVE_TRIES = 100 /* DMA takes a byte within some cycles */
+};
 
+/* Positions count bytes since start-up. */
+struct line_end {
+    uint32_t behind;      /* position behind the line feed */
+    uint32_t period;      /* of the control interrupt */
+    volatile bool harmed; /* bytes of the line came with an error */
+};
+
+/* The interrupt writes what has come, the background what it has read. */
 static struct {
     uint8_t bytes[SERIAL_RECEIVED_BYTES]; /* written by DMA, round and round */
     volatile uint32_t rounds;             /* completed by DMA */
-    uint32_t read;                        /* bytes since start-up */
-    volatile uint32_t line_period[LINES]; /* stamps of the line feeds, in order */
-    volatile uint32_t lines;              /* stamped since start-up */
-    uint32_t lines_read;
-    volatile bool harmed; /* a byte came with an error */
+    struct line_end line[LINES];          /* in order */
+    volatile uint32_t lines;              /* ended since start-up */
+    uint32_t searched;                    /* line feeds up to here are among them */
+    volatile bool harmed;                 /* the line that is coming in */
+
+    uint32_t read, lines_read;
+    uint32_t lost_period;                       /* of the last line that was dropped */
+    bool tell_lost, tell_lost_end, tell_harmed; /* HAL_STREAM_LOST, its '\n'; for a beginning */
 } receiver;
 
 static struct {
@@ -50,52 +67,105 @@ void serial_start(void)
     interrupt_enable(INTERRUPT_USART3_4_LPUART1, PRIORITY_LINE);
 }
 
+/* Position of DMA. A round that the interrupt has not counted yet, masked or about to, is added. */
 static uint32_t received(void)
 {
-    uint32_t rounds, left;
+    uint32_t rounds, uncounted, left;
 
     do {
         rounds = receiver.rounds;
         left = DMA_RECEIVER->ndtr;
-    } while (rounds != receiver.rounds || (DMA1->isr & DMA_ISR_TCIF2) != 0);
-    return rounds * SERIAL_RECEIVED_BYTES + (SERIAL_RECEIVED_BYTES - left);
+        uncounted = (DMA1->isr & DMA_ISR_TCIF2) != 0 ? 1u : 0u;
+        if (uncounted != 0) {
+            left = DMA_RECEIVER->ndtr; /* of the round that has begun */
+        }
+    } while (rounds != receiver.rounds); /* counted meanwhile */
+    return (rounds + uncounted) * SERIAL_RECEIVED_BYTES + (SERIAL_RECEIVED_BYTES - left);
 }
 
-/* Drops everything and tells it with a byte that spoils the line it belongs to. */
-static size_t lose(uint8_t *bytes)
+/*
+ * What DMA has overwritten, or is about to, is dropped by lines; whole lines behind it stay.
+ * Dropped lines are told by one of HAL_STREAM_LOST alone; a line of which only the end is left gets
+ * one, too.
+ */
+static void drop_what_is_lost(uint32_t end)
 {
-    const uint32_t primask = interrupts_save_and_disable();
+    const uint32_t lines = receiver.lines;
+    bool dropped = false;
 
-    receiver.harmed = false;
-    receiver.read = received();
-    receiver.lines_read = receiver.lines;
-    interrupts_restore(primask);
-    bytes[0] = HAL_STREAM_LOST;
-    return 1;
+    compiler_barrier();
+    while (receiver.lines_read != lines &&
+           (end - receiver.read > BYTES_KEPT || lines - receiver.lines_read > LINES_KEPT)) {
+        if (lines - receiver.lines_read > LINES_KEPT) {
+            receiver.lines_read = lines - LINES_KEPT;
+        }
+        const struct line_end *line = &receiver.line[receiver.lines_read++ % LINES];
+
+        receiver.read = line->behind;
+        receiver.lost_period = line->period;
+        dropped = true;
+    }
+    if (dropped) {
+        receiver.tell_lost = receiver.tell_lost_end = true;
+        receiver.tell_harmed = false;
+    }
+    if (end - receiver.read > BYTES_KEPT) {
+        receiver.read = end;
+        receiver.tell_harmed = true;
+    }
 }
 
 size_t serial_read(uint8_t *bytes, size_t capacity, uint32_t *line_period)
 {
-    const uint32_t available = received() - receiver.read;
+    const uint32_t end = received();
     size_t moved = 0;
 
-    if (capacity == 0) {
-        return 0;
-    }
-    if (receiver.harmed || available > SERIAL_RECEIVED_BYTES ||
-        receiver.lines - receiver.lines_read > LINES) {
-        return lose(bytes);
-    }
-    while (moved < capacity && moved < available) {
+    drop_what_is_lost(end);
+    while (moved < capacity) {
+        if (receiver.tell_lost) {
+            receiver.tell_lost = false;
+            bytes[moved++] = HAL_STREAM_LOST;
+            continue;
+        }
+        if (receiver.tell_lost_end) {
+            receiver.tell_lost_end = false;
+            *line_period = receiver.lost_period;
+            bytes[moved++] = '\n';
+            break;
+        }
+        if (receiver.tell_harmed) {
+            receiver.tell_harmed = false;
+            bytes[moved++] = HAL_STREAM_LOST;
+            continue;
+        }
+        if (receiver.read == end) {
+            break;
+        }
         const uint8_t byte = receiver.bytes[receiver.read % SERIAL_RECEIVED_BYTES];
 
-        if (byte == '\n' && receiver.lines == receiver.lines_read) {
-            break; /* its stamp comes in a moment */
+        if (byte == '\n' || byte == '\r') {
+            const bool ended = receiver.lines != receiver.lines_read;
+
+            if (byte == '\n' && !ended) {
+                break; /* its stamp comes in a moment */
+            }
+            compiler_barrier();
+            struct line_end *line = &receiver.line[receiver.lines_read % LINES];
+            volatile bool *harmed = ended ? &line->harmed : &receiver.harmed;
+
+            if (*harmed) {
+                *harmed = false;
+                receiver.tell_harmed = true;
+                continue;
+            }
+            if (byte == '\n') {
+                *line_period = line->period;
+                receiver.lines_read++;
+            }
         }
         bytes[moved++] = byte;
         receiver.read++;
         if (byte == '\n') {
-            *line_period = receiver.line_period[receiver.lines_read++ % LINES];
             break;
         }
     }
@@ -153,18 +223,41 @@ void dma1_channel2_3_handler(void)
     }
 }
 
+/* One character match may stand for several line feeds that came while it could not be served. */
+static void search_line_ends(uint32_t period)
+{
+    const uint32_t end = received();
+
+    if (end - receiver.searched > SERIAL_RECEIVED_BYTES) {
+        receiver.searched = end - SERIAL_RECEIVED_BYTES;
+    }
+    while (receiver.searched != end) {
+        if (receiver.bytes[receiver.searched++ % SERIAL_RECEIVED_BYTES] == '\n') {
+            receiver.line[receiver.lines % LINES] =
+                (struct line_end){receiver.searched, period, receiver.harmed};
+            receiver.harmed = false;
+            compiler_barrier();
+            receiver.lines++;
+        }
+    }
+}
+
 /* Within a byte's time (87 us) of the line feed, the control interrupt notwithstanding. */
 void usart3_4_lpuart1_handler(void)
 {
+    const uint32_t period = board_period();
     const uint32_t status = LPUART1->isr;
 
-    if ((status & LPUART_ISR_CMF) != 0) {
-        LPUART1->icr = LPUART_ICR_CMF;
-        receiver.line_period[receiver.lines % LINES] = board_period();
-        receiver.lines++;
-    }
     if ((status & (LPUART_ISR_FE | LPUART_ISR_NE | LPUART_ISR_ORE)) != 0) {
         LPUART1->icr = LPUART_ICR_FE | LPUART_ICR_NE | LPUART_ICR_ORE;
         receiver.harmed = true;
+    }
+    if ((status & LPUART_ISR_CMF) != 0) {
+        LPUART1->icr = LPUART_ICR_CMF;
+        /* The line feed itself may still be on its way to memory. */
+        for (int tries = 0; (LPUART1->isr & LPUART_ISR_RXNE) != 0 && tries < MOVE_TRIES; tries++) {
+        }
+        compiler_barrier();
+        search_line_ends(period);
     }
 }

@@ -17,7 +17,7 @@ enum { EXCEPTIONS = 16 + INTERRUPTS };
                                 LINE(DMA1_CHANNEL1) = control_interrupt,                           \
                                 LINE(DMA1_CHANNEL2_3) = dma1_channel2_3_handler,                   \
                                 LINE(TIM1_BRK_UP_TRG_COM) = tim1_brk_up_trg_com_handler,           \
-                                LINE(TIM14) = tim14_handler,                                       \
+                                LINE(TIM2) = tim2_handler,                                         \
                                 LINE(USART3_4_LPUART1) = usart3_4_lpuart1_handler                  \
     }
 

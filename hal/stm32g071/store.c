@@ -33,7 +33,7 @@ static bool finished(void)
 
 static bool unlock(void)
 {
-    if (bridge_is_on()) {
+    if (!bridge_hold_open()) {
         return false;
     }
     if ((FLASH->cr & FLASH_CR_LOCK) != 0) {
@@ -42,6 +42,12 @@ static bool unlock(void)
     }
     (void)finished(); /* forgets old errors */
     return true;
+}
+
+static void lock(void)
+{
+    FLASH->cr = FLASH_CR_LOCK;
+    bridge_release();
 }
 
 bool store_erase(uint32_t page)
@@ -53,7 +59,7 @@ bool store_erase(uint32_t page)
     FLASH->cr = FLASH_CR_PER | FLASH_CR_PNB(FIRST_PAGE + page);
     FLASH->cr |= FLASH_CR_STRT;
     const bool good = finished();
-    FLASH->cr = FLASH_CR_LOCK;
+    lock();
     return good;
 }
 
@@ -80,7 +86,7 @@ bool store_program(uint32_t offset, const void *data, size_t count)
         place[1] = word[1];
         good = finished() && place[0] == word[0] && place[1] == word[1];
     }
-    FLASH->cr = FLASH_CR_LOCK;
+    lock();
     return good;
 }
 

@@ -17,7 +17,7 @@ import check_registers as check
 PORT = Path("hal/stm32g071")
 check.PORT = PORT
 check.FAMILIES = {
-    "TIM": ["TIM1", "TIM2", "TIM3", "TIM14"],
+    "TIM": ["TIM1", "TIM2", "TIM3"],
     "GPIO": ["GPIOA", "GPIOB", "GPIOC"],
     "ADC": ["ADC1"],
     "DMA": ["DMA1"],
@@ -42,7 +42,7 @@ def members():
     }
     ports = {"afrl": "afr[0]", "afrh": "afr[1]"}
     return {
-        **{f"TIM{n}": {**tim, "or1": "or"} for n in (1, 2, 3, 14)},
+        **{f"TIM{n}": {**tim, "or1": "or"} for n in (1, 2, 3)},
         "DMA1": channels,
         **{f"GPIO{port}": ports for port in "ABC"},
     }
@@ -148,7 +148,7 @@ check.PLANTED = [
         "ADC_CFGR1_EXTSEL(value) FIELD(value, 6, 3)",
         "ADC_CFGR1_EXTSEL(value) FIELD(value, 5, 3)",
     ),
-    ("registers.h", "INTERRUPT_TIM14 = 19", "INTERRUPT_TIM14 = 20"),
+    ("registers.h", "INTERRUPT_TIM2 = 15", "INTERRUPT_TIM2 = 16"),
     ("registers.h", "DMA_REQUEST_LPUART1_RX = 14", "DMA_REQUEST_LPUART1_RX = 34"),
     ("registers.h", "ADC_TRIGGER_TIM3_TRGO = 3", "ADC_TRIGGER_TIM3_TRGO = 4"),
     ("registers.h", "kr, pr, rlr", "kr, rlr, pr"),

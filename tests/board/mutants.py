@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Mutants of the board port: each is a mistake in a register or in the order of things that no unit
-test could see. The virtual board must refuse each, loudly or by a drive_hash that is not the
-simulator's.
+test could see. The virtual board must catch each, for its own reason: by what it refuses, or by a
+drive_hash that is not the simulator's.
 
 usage: mutants.py ROOT BUILD SIMULATOR [--only TEXT]
 
@@ -11,17 +11,27 @@ sources of hal/stm32g474 and links them to the firmware as it is.
 
 import argparse
 import json
+import re
 import shlex
 import shutil
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
 PORT = Path("hal/stm32g474")
-SCENARIO = ["bendjedia-fig12", "--set", "duration_s=0.05"]
-SHORT_CIRCUIT = ["--inject", "short-circuit:A+:30:0.01"]
+# What is run: a shorted leg; an interrupt held up; motion; a fast sine, which the background plans
+# all the time.
+SHORT_CIRCUIT = ["board-overcurrent"]
+OVERRUN = ["board-overrun"]
+MOVE = ["board-short-stall"]
+PLANNED = [
+    "reference-sine",
+    "--set",
+    "event=[{time_s=0.0,command='sine',amplitude_rad=0.3,frequency_Hz=14.0,cycles=10,ramp_s=0.2}]",
+]
 
 
 @dataclass
@@ -31,7 +41,8 @@ class Mutant:
     text: str
     instead: str
     run: list  # of the simulator: scenario and options
-    expected: str  # in what it prints; "" a drive_hash that differs, whatever is printed
+    expected: str  # in the failure of the run; "" a drive_hash that is not the simulator's
+    numeric: str = ""  # the number format it is a mistake in; "" any
 
 
 MUTANTS = [
@@ -40,16 +51,16 @@ MUTANTS = [
         "pwm.c",
         "TIM1->ccr5 = PWM_HALF_PERIOD - 1;",
         "TIM1->ccr5 = 1;",
-        SCENARIO,
-        "",
+        MOVE,
+        "the current is sampled before the peak",
     ),
     Mutant(
         "the phases are swapped",
         "pwm.h",
         "TIM1->ccr[leg] = high_counts[leg];",
         "TIM1->ccr[leg ^ 2] = high_counts[leg];",
-        SCENARIO,
-        "",
+        MOVE,
+        "the drive computed",
     ),
     Mutant(
         "the duties load a period late",
@@ -60,15 +71,15 @@ MUTANTS = [
         "    for (int leg = 0; leg < HAL_LEGS; leg++) {\n"
         "        late[leg] = outputs->high_counts[leg];\n"
         "    }\n",
-        SCENARIO,
-        "",
+        MOVE,
+        "the drive computed",
     ),
     Mutant(
         "the voltage mean is one period old",
         "phase_voltage_sampling.c",
         "stored_a < HALF ? HALF : 0;",
         "stored_a < HALF ? 0 : HALF;",
-        SCENARIO,
+        MOVE,
         "",
     ),
     Mutant(
@@ -76,15 +87,23 @@ MUTANTS = [
         "pwm.h",
         "TIM_BDTR_BKE | ",
         "",
-        SCENARIO + SHORT_CIRCUIT,
-        "overcurrent",
+        SHORT_CIRCUIT,
+        "the bridge is closed 1 us after a leg was shorted",
+    ),
+    Mutant(
+        "the deadline guard leaves the bridge closed",
+        "deadline_guard.c",
+        "    pwm_open_bridge();\n",
+        "",
+        OVERRUN,
+        "the bridge is closed 1 us after the control interrupt's deadline",
     ),
     Mutant(
         "the dead time is zero",
         "pwm.h",
         "TIM_BDTR_DTG(0x80 | (DEAD_TIME_CYCLES / 2 - 64))",
         "TIM_BDTR_DTG(0)",
-        SCENARIO,
+        MOVE,
         "dead time",
     ),
     Mutant(
@@ -93,15 +112,16 @@ MUTANTS = [
         "    SCB->cpacr |= ",
         "    *(volatile uint32_t *)0xe000ef34u = 0; /* FPCCR: no automatic state preservation */\n"
         "    SCB->cpacr |= ",
-        SCENARIO,
+        PLANNED,
         "",
+        numeric="float",
     ),
     Mutant(
         "the watchdog is not fed",
         "board_hal.c",
         "    watchdog_feed();",
         "",
-        SCENARIO,
+        MOVE,
         "watchdog",
     ),
     Mutant(
@@ -109,8 +129,8 @@ MUTANTS = [
         "startup.c",
         "SCB->vtor = (uint32_t)&vectors;",
         "SCB->vtor = (uint32_t)&vectors + 64;",
-        SCENARIO,
-        "",
+        MOVE,
+        "VTOR",
     ),
 ]
 
@@ -139,7 +159,21 @@ def link_command(build):
 def compile_commands(build):
     """{source below the root: words}"""
     listed = json.loads((build / "compile_commands.json").read_text())
-    return {Path(one["file"]): (shlex.split(one["command"]), Path(one["directory"])) for one in listed}
+    return {
+        Path(one["file"]): (shlex.split(one["command"]), Path(one["directory"])) for one in listed
+    }
+
+
+def numeric_of(build):
+    return json.loads((build / "steadystep.map.json").read_text(encoding="utf-8"))["numeric"]
+
+
+def reads(changed, source):
+    """Whether a file of the port is, or includes, the changed one."""
+    if source == changed:
+        return True
+    included = re.findall(rf'#include "{PORT}/(\w+\.h)"', source.read_text(encoding="utf-8"))
+    return any(reads(changed, source.parent / name) for name in included)
 
 
 def build_mutant(mutant, root, build, folder):
@@ -149,11 +183,11 @@ def build_mutant(mutant, root, build, folder):
     changed = port / mutant.file
     text = changed.read_text()
     if text.count(mutant.text) != 1:
-        raise RuntimeError(f"{mutant.name}: {PORT / mutant.file} has not exactly one\n{mutant.text}")
+        raise RuntimeError(f"{mutant.name}: {PORT / mutant.file}: not exactly one\n{mutant.text}")
     changed.write_text(text.replace(mutant.text, mutant.instead))
     objects = {}
     for source, (words, directory) in compile_commands(build).items():
-        if root / PORT not in source.parents:
+        if root / PORT not in source.parents or not reads(changed, port / source.name):
             continue
         target = folder / (source.stem + ".obj")
         at = words.index("-o")
@@ -168,7 +202,7 @@ def build_mutant(mutant, root, build, folder):
     words = link_command(build)
     words = [objects.get(str((build / word).resolve()), word) for word in words]
     words[words.index("-o") + 1] = str(image)
-    words = [word if not word.startswith("-Wl,-Map=") else f"-Wl,-Map={image}.map" for word in words]
+    words = [f"-Wl,-Map={image}.map" if word.startswith("-Wl,-Map=") else word for word in words]
     done = subprocess.run(words, cwd=build, capture_output=True, text=True, check=False)
     if done.returncode:
         raise RuntimeError(f"{mutant.name}: {done.stderr}")
@@ -176,23 +210,34 @@ def build_mutant(mutant, root, build, folder):
     return image
 
 
-def drive_hash(text):
+def summary(simulator, *options):
+    done = output_of(simulator, "run", "--json", *options, check=False)
     try:
-        return json.loads(text)[0]["drive_hash"]
+        return json.loads(done.stdout)[0]
     except (ValueError, LookupError):
-        return None
+        raise RuntimeError(f"{shlex.join(map(str, options))}: {done.stdout}{done.stderr}") from None
 
 
-def judge(mutant, image, simulator):
-    """None if the mutant was caught, else what happened instead."""
-    done = output_of(simulator, "run", "--image", image, "--json", *mutant.run, check=False)
-    text = done.stdout + done.stderr
+def judge(mutant, image, simulator, numeric):
+    """(whether the mutant was caught for its reason, what happened)"""
+    options = ["--numeric", numeric, *mutant.run]
+    run = summary(simulator, "--image", image, *options)
+    wanted = summary(simulator, "--typed", *options)["drive_hash"]
+    if run["drive_hash"] == wanted:
+        happened = f"drive_hash {wanted}, as the simulator's"
+    else:
+        happened = f"drive_hash {run['drive_hash']}, the simulator's {wanted}"
+    if run["failure"]:
+        happened = f"{run['failure']}; {happened}"
     if mutant.expected:
-        return None if done.returncode and mutant.expected in text else text
-    wanted = drive_hash(output_of(simulator, "run", "--typed", "--json", *mutant.run, check=False).stdout)
-    if wanted is None:
-        raise RuntimeError("the simulator itself gives no drive_hash")
-    return None if drive_hash(done.stdout) != wanted else text
+        return mutant.expected in (run["failure"] or ""), happened
+    return run["drive_hash"] != wanted, happened
+
+
+def try_mutant(mutant, options):
+    with tempfile.TemporaryDirectory() as folder:
+        image = build_mutant(mutant, options.root, options.build, Path(folder))
+        return judge(mutant, image, options.simulator, options.numeric)
 
 
 def main():
@@ -202,20 +247,30 @@ def main():
     parser.add_argument("root", type=lambda text: Path(text).resolve())
     parser.add_argument("build", type=lambda text: Path(text).resolve())
     parser.add_argument("simulator", type=lambda text: Path(text).resolve())
-    parser.add_argument("--only", metavar="TEXT", default="", help="mutants whose name contains TEXT")
+    parser.add_argument("--only", metavar="TEXT", default="", help="mutants whose name has TEXT")
     options = parser.parse_args()
-    survivors = 0
-    chosen = [mutant for mutant in MUTANTS if options.only in mutant.name]
-    for mutant in chosen:
-        with tempfile.TemporaryDirectory() as folder:
-            image = build_mutant(mutant, options.root, options.build, Path(folder))
-            survived = judge(mutant, image, options.simulator)
-        print(f"{'SURVIVED' if survived else 'caught':9} {mutant.name}", flush=True)
-        if survived:
-            survivors += 1
-            print(survived)
-    print(f"{len(chosen) - survivors} of {len(chosen)} caught")
-    return 1 if survivors or not chosen else 0
+    built = (options.build / "steadystep.elf").stat().st_mtime
+    newer = [file for file in (options.root / PORT).iterdir() if file.stat().st_mtime > built]
+    if newer:
+        sys.exit(f"{newer[0]} is newer than the image: build it first")
+    options.numeric = numeric_of(options.build)
+    chosen = [
+        mutant
+        for mutant in MUTANTS
+        if options.only in mutant.name and mutant.numeric in ("", options.numeric)
+    ]
+    caught = 0
+    with ThreadPoolExecutor(max_workers=2) as pool:
+        for mutant, (right, happened) in zip(
+            chosen, pool.map(lambda mutant: try_mutant(mutant, options), chosen)
+        ):
+            caught += right
+            verdict = "caught" if right else "NOT CAUGHT"
+            print(f"{verdict:10} {mutant.name}\n{'':10} {happened}", flush=True)
+            if not right and mutant.expected:
+                print(f"{'':10} expected: {mutant.expected}")
+    print(f"{caught} of {len(chosen)} caught")
+    return 0 if caught == len(chosen) > 0 else 1
 
 
 if __name__ == "__main__":

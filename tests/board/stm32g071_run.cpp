@@ -19,19 +19,19 @@
 #include "sil/virtual_board/image_map.h"
 #include "sil/virtual_board/machine.h"
 #include "sil/virtual_board/peripherals/stm32g071_board.h"
+#include "tests/board/stm32g071_motor.h"
 
 namespace
 {
 
 using namespace virtual_board;
 
-constexpr double host_baud = 115200, core_Hz = 64e6;
+using stm32g071::host_baud, stm32g071::motor, stm32g071::plant_config;
+
+constexpr double core_Hz = 64e6;
 constexpr std::uint64_t must_cycles = 2880;     /* 45 us */
 constexpr std::uint64_t deadline_cycles = 5760; /* 90 us */
 constexpr std::uint32_t periods = 6400, trip_period = 6000;
-
-/* sil/motors/bendjedia-2012.toml */
-constexpr motor_params motor = {0.37, 0.9e-3, 0.157, 0.000307, 15.62e-5, 3.0, 24.0, 50};
 
 /* As hal/stm32g071/board.c tells them. */
 hal_facts board_facts()
@@ -48,18 +48,6 @@ hal_facts board_facts()
     facts.has_phase_voltages = true;
     facts.bridge_resistance_ohm = 0.18;
     return facts;
-}
-
-/* The motor at this bridge: its resistance is in series, its dead time next to none. */
-plant::Config plant_config()
-{
-    plant::Config config;
-    config.motor = {motor.resistance_ohm + 0.18,    motor.inductance_H, motor.torque_constant_Nm_A,
-                    motor.viscous_friction_Nms_rad, motor.inertia_kgm2, motor.rotor_teeth};
-    config.bridge.bus_V = motor.supply_V;
-    config.bridge.half_period_counts = 3200;
-    config.bridge.dead_time_s = 5e-9;
-    return config;
 }
 
 /* The firmware on this machine. */

@@ -34,7 +34,7 @@ ROOMS = {
     "hal/stm32g474/": ["hal/stm32g474/", "hal/hal.h", "firmware/application/application.h",
                        "firmware/motor/motor_params.h"],
     "hal/stm32g071/": ["hal/stm32g071/", "hal/hal.h", "firmware/application/application.h",
-                       "firmware/motor/motor_params.h"],
+                       "firmware/motor/motor_params.h", "firmware/design/text.h"],
     "sil/plant/": ["sil/plant/"],
     "sil/board/": ["sil/board/", "sil/plant/", "hal/", "firmware/drive/drive_interface.h"],
     "sil/virtual_board/": ["sil/virtual_board/", "sil/board/drive_board.h", "sil/plant/",

@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""Holds the runs of the image to the budget of the control interrupt, and to the static bound.
+
+usage: budget.py ROOT IMAGE FOLDER [OPTION]...
+
+FOLDER: summaries of same_as_simulator.py. OPTION: of tools/interrupt_budget, to which the runs and
+what tools/longest_path finds in IMAGE are handed; --update-baseline writes baseline.json. Neither
+the serial line, nor DMA, nor the flash may shift the start of the interrupt by more than 1 us.
+"""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+
+JITTER_CYCLES = 170  # 1 us
+# Their events hold the interrupt up: they say nothing of what it takes.
+HELD_UP = {"board-overrun", "board-short-stall"}
+
+
+def shifted(files):
+    """Prints what a reader wants to know of the start; yields the runs that start too unevenly."""
+    print("start behind S(k), cycles: least, mean, worst; preemptions; bytes in, out; flash writes")
+    for file in files:
+        interrupt = json.loads(file.read_text(encoding="utf-8"))[0]["interrupt"]
+        start, line, flash = (
+            interrupt[key] for key in ("start_latency_cycles", "serial_line", "flash")
+        )
+        print(
+            f"  {file.stem:24} {start['least']} {start['mean']:.2f} {start['worst']};"
+            f" {interrupt['preemptions']}; {line['bytes_in']}, {line['bytes_out']};"
+            f" {flash['pages_erased'] + flash['double_words_programmed']}"
+        )
+        if interrupt["start_jitter_cycles"] > JITTER_CYCLES:
+            yield f"{file.stem}: the start varies by {interrupt['start_jitter_cycles']} cycles"
+
+
+def main():
+    if len(sys.argv) < 4:
+        sys.exit(__doc__)
+    tools, image, folder = Path(sys.argv[1]) / "tools", sys.argv[2], Path(sys.argv[3])
+    runs = [file for file in sorted(folder.glob("*.json")) if file.stem not in HELD_UP]
+    if not runs:
+        sys.exit(f"{folder}: no summaries; run the tests board.run.* first")
+    bound = folder / "bound" / "longest-path.json"
+    bound.parent.mkdir(exist_ok=True)
+    found = subprocess.run(
+        [tools / "longest_path", "--json", image], capture_output=True, text=True, check=False
+    )
+    if found.returncode:
+        sys.exit(f"longest_path: {found.stdout}{found.stderr}")
+    json.loads(found.stdout)
+    bound.write_text(found.stdout, encoding="utf-8")
+    judged = [tools / "interrupt_budget", *runs, "--longest-path", bound, *sys.argv[4:]]
+    wrong = [f"{text}, must be at most {JITTER_CYCLES}" for text in shifted(runs)]
+    sys.stdout.flush()
+    for text in wrong:
+        print(text, file=sys.stderr)
+    return subprocess.run(judged, check=False).returncode or len(wrong) > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,250 @@
+/*
+ * Runs the image of the STM32G071 board on the emulated core and disturbs it: the converter stops,
+ * lines come faster than they are read, the flash is written, the stored settings are not for this
+ * board, the program leaves memory.
+ *
+ * usage: stm32g071_disturbances IMAGE.elf     exit 1 and a line per expectation that does not hold
+ */
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <string>
+
+#include "firmware/application/settings_record.h"
+#include "sil/virtual_board/image_map.h"
+#include "sil/virtual_board/machine.h"
+#include "sil/virtual_board/peripherals/stm32g071_board.h"
+#include "tests/board/stm32g071_motor.h"
+
+namespace
+{
+
+using namespace virtual_board;
+
+constexpr Ticks us = ticks_per_s / 1000000, ms = 1000 * us;
+constexpr std::size_t settings_at = 124 * 1024; /* third page of the store */
+constexpr unsigned pend_sv = 14;
+
+int failures = 0;
+
+void expect(bool held, const char *what)
+{
+    std::printf("%-76s %s\n", what, held ? "held" : "NOT HELD");
+    failures += held ? 0 : 1;
+}
+
+std::size_t count(const std::string &text, const std::string &part)
+{
+    std::size_t found = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+        found++;
+    }
+    return found;
+}
+
+/* A board with the image, powered. */
+class Powered
+{
+  public:
+    explicit Powered(const ElfImage &image, const stored_settings *stored = nullptr)
+        : machine(stm32g071_board()),
+          board(machine, stm32g071::plant_config(), stm32g071::host_baud),
+          alarm_([this] { machine.stop(); }), bridge_opens_([this] { watch_bridge(); })
+    {
+        machine.attach(board);
+        machine.load(image);
+        if (stored != nullptr) {
+            settings_record_encode(stored, 1, &board.flash().memory()[settings_at]);
+        }
+        board.on_sample = [this] { peak_at = machine.now(); };
+        machine.power_on();
+    }
+
+    /* Resets, which end a run early, are counted in machine.resets(). */
+    void run_for(Ticks time)
+    {
+        const Ticks end = machine.now() + time;
+        while (machine.now() < end) {
+            machine.schedule(alarm_, end);
+            machine.run();
+        }
+    }
+    std::string type(const std::string &line, Ticks time)
+    {
+        board.serial().send(machine.now(), line);
+        run_for(time);
+        return board.serial().take_output();
+    }
+    /* From the present peak on until the bridge is open, at most this long. */
+    Ticks bridge_open_after(Ticks most)
+    {
+        opened_at_ = 0;
+        machine.schedule(bridge_opens_, machine.now());
+        run_for(most);
+        machine.schedule(bridge_opens_, Event::never);
+        return opened_at_;
+    }
+
+    Machine machine;
+    G071Board board;
+    Ticks peak_at = 0;
+
+  private:
+    void watch_bridge()
+    {
+        if (!board.bridge_on()) {
+            opened_at_ = machine.now();
+            return;
+        }
+        machine.schedule(bridge_opens_, machine.now() + us);
+    }
+
+    Event alarm_, bridge_opens_;
+    Ticks opened_at_ = 0;
+};
+
+void converter_stops(const ElfImage &image)
+{
+    Powered run(image);
+    run.run_for(600 * ms);
+    const std::string ready = run.type("enable\n", 250 * ms);
+    expect(count(ready, "ready:") == 1 && run.board.bridge_on(), "the drive holds the motor");
+
+    /* Behind a control interrupt that has ended. */
+    run.machine.stops_behind_control_interrupt = true;
+    run.machine.run();
+    run.machine.stops_behind_control_interrupt = false;
+    const Ticks last_peak = run.peak_at;
+    run.board.converter().lose_triggers();
+    const Ticks opened = run.bridge_open_after(300 * us);
+    std::printf("  the bridge opens %.1f us behind the last peak that was sampled\n",
+                static_cast<double>(opened - last_peak) / static_cast<double>(us));
+    expect(opened != 0 && opened - last_peak <= 192 * us,
+           "without samples the bridge opens at the next deadline");
+    run.run_for(900 * ms);
+    expect(run.machine.resets().size() == 1 && run.machine.resets().front() == "watchdog",
+           "and the watchdog resets the board");
+    const std::string text = run.board.serial().take_output();
+    expect(count(text, "started by: watchdog") == 1, "which tells it");
+}
+
+void lines_overflow(const ElfImage &image)
+{
+    Powered run(image);
+    run.run_for(50 * ms);
+    std::string lines;
+    for (int i = 0; i < 200; i++) {
+        lines += "cycles\n"; /* 121 ms, while start-up designs the gains */
+    }
+    run.board.serial().send(run.machine.now(), lines);
+    run.run_for(1000 * ms);
+    const std::string text = run.board.serial().take_output();
+    const std::size_t kept = count(text, "ok cycles");
+    std::printf("  %zu lines of 200 are answered\n", kept);
+    expect(count(text, "error: bytes of the line were lost") == 1, "lost lines are told once");
+    expect(kept >= 10 && kept <= 16 && count(text, "error") == 1,
+           "whole lines behind them are kept");
+    expect(count(run.type("cycles\n", 30 * ms), "ok cycles") == 1, "the next line is obeyed");
+    expect(run.type("disable", 20 * ms).empty(), "a line without an end waits");
+    expect(count(run.type("\n", 20 * ms), "ok disable") == 1, "until its end comes");
+    expect(count(run.type("cycles\r", 30 * ms), "ok cycles") == 1, "a line ended by CR is obeyed");
+    expect(count(run.type("cycles\r\ncycles\n", 40 * ms), "ok cycles") == 2, "and by CR and LF");
+    expect(count(run.type(std::string(700, 'x') + "\ncycles\n", 150 * ms), "ok cycles") == 1,
+           "a line behind one that is too long is obeyed");
+}
+
+void beginning_lost(const ElfImage &image)
+{
+    Powered probe(image);
+    probe.machine.stops_behind_control_interrupt = true;
+    probe.machine.run();
+    const Ticks first_read = probe.machine.now();
+
+    /* 550 bytes of the line have come when it is read for the first time, 50 follow. */
+    Powered run(image);
+    run.run_for(first_read - 48 * ms);
+    run.board.serial().send(run.machine.now(), std::string(600, ' ') + "disable\ncycles\n");
+    run.run_for(1000 * ms);
+    const std::string text = run.board.serial().take_output();
+    expect(count(text, "ok disable") == 0 && count(text, "error: bytes of the line were lost") == 1,
+           "a line that has lost its beginning is not obeyed");
+    expect(count(text, "ok cycles") == 1, "but the one behind it is");
+}
+
+void flash_is_written(const ElfImage &image)
+{
+    Powered run(image);
+    run.run_for(600 * ms);
+    expect(count(run.type("save\n", 300 * ms), "ok save") == 1, "save is obeyed, bridge open");
+    expect(count(run.type("enable\n", 250 * ms), "ready:") == 1 && run.board.bridge_on(),
+           "the bridge closes behind it");
+    const std::string refused = run.type("save\n", 300 * ms);
+    expect(count(refused, "error: ") == 1 && run.board.bridge_on(),
+           "save is refused while the bridge is on, which stays on");
+    expect(count(run.type("disable\n", 20 * ms), "ok disable") == 1 && !run.board.bridge_on(),
+           "disable opens the bridge");
+    expect(count(run.type("save\n", 300 * ms), "ok save") == 1, "save is obeyed again");
+    expect(run.machine.resets().empty(), "no reset");
+}
+
+void settings_with_encoder(const ElfImage &image)
+{
+    stored_settings stored = {};
+    drive_settings_default(&stored.drive, &stm32g071::motor);
+    stored.drive.motor.rated_current_A = 2.5;
+    {
+        Powered run(image, &stored);
+        run.run_for(1000 * ms);
+        expect(count(run.board.serial().take_output(), "settings: stored") == 1,
+               "stored settings are in force");
+    }
+    stored.encoder_counts_per_turn = 4000;
+    Powered run(image, &stored);
+    run.run_for(1500 * ms);
+    const std::string text = run.board.serial().take_output();
+    expect(count(text, "settings: default") == 1 &&
+               count(text,
+                     "not in force: encoder counts per turn=4000: this board reads no encoder, "
+                     "expected 0") == 1,
+           "stored settings that ask for an encoder are refused");
+}
+
+void program_leaves_memory(const ElfImage &image)
+{
+    Powered run(image);
+    run.run_for(600 * ms);
+    (void)run.type("enable\n", 250 * ms);
+    const std::uint32_t vectors = *image.symbol("ram_code_start");
+    const std::uint8_t nowhere[4] = {1, 0, 0, 0x30};
+    std::copy(nowhere, nowhere + 4, run.machine.memory(vectors + 4 * pend_sv, 4));
+    const Ticks opened = run.bridge_open_after(200 * us);
+    expect(opened != 0, "a fault opens the bridge");
+    run.run_for(800 * ms);
+    const std::string text = run.board.serial().take_output();
+    expect(count(text, "started by: crash: hard fault at 0x") == 1 && count(text, " lr 0x") == 1 &&
+               count(text, " in period ") == 1,
+           "and is told at the next start");
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    if (argc != 2) {
+        std::fprintf(stderr, "usage: stm32g071_disturbances IMAGE.elf\n");
+        return 2;
+    }
+    try {
+        const ElfImage image = ElfImage::read(argv[1]);
+        converter_stops(image);
+        lines_overflow(image);
+        beginning_lost(image);
+        flash_is_written(image);
+        settings_with_encoder(image);
+        program_leaves_memory(image);
+    } catch (const std::exception &error) {
+        std::fprintf(stderr, "stm32g071_disturbances: %s\n", error.what());
+        return 1;
+    }
+    return failures > 0 ? 1 : 0;
+}
