@@ -135,9 +135,9 @@ void Board::short_circuit(int, double current_A)
     impl_->shorted = current_A > comparator_trip_A;
 }
 
-void Board::stall_control_interrupt(double duration_s)
+void Board::stall_control_interrupt(double until_s)
 {
-    impl_->stalled = duration_s > control_deadline_s;
+    impl_->stalled = until_s > control_deadline_s;
 }
 
 void Board::type(const std::string &line)

@@ -36,7 +36,7 @@ class Board : public DriveBoard
     void type(const std::string &line) override;
     void power_cycle() override;
     void short_circuit(int leg, double current_A) override;
-    void stall_control_interrupt(double duration_s) override;
+    void stall_control_interrupt(double until_s) override;
     void control() override;
     void advance() override;
     const drive_signals &signals() const override;

@@ -34,13 +34,14 @@ class DriveBoard
        it was, while rotor and encoder go on. The coming control() is that of period 0. */
     virtual void power_cycle() = 0;
 
-    /* Faults from outside, in the period of the coming control(). The current of a leg's shunt, 0...3:
-       A+, A-, B+, B-, towards ground: beyond the comparator's trip it opens the bridge 60 us behind
-       S(k), whatever the firmware does. */
+    /* Faults from outside, in the period of the coming control(). The current of a leg's shunt,
+       0...3: A+, A-, B+, B-, towards ground: beyond the comparator's trip it opens the bridge 60 us
+       behind S(k), whatever the firmware does. */
     virtual void short_circuit(int leg, double current_A) = 0;
-    /* Something holds the control interrupt up: for longer than 90 us, and the bridge opens before
-       the period is over. What the interrupt itself takes counts, where it takes any time. */
-    virtual void stall_control_interrupt(double duration_s) = 0;
+    /* Something holds the control interrupt up, its samples read, until then behind S(k): beyond
+       control_deadline_s the bridge opens before the period is over. On a board whose interrupt
+       takes time its rest follows, and counts. */
+    virtual void stall_control_interrupt(double until_s) = 0;
 
     /* One PWM period: the control interrupt with the samples of the present S(k); signals() and
        plant().state() then both belong to S(k) until advance() takes the plant to S(k+1). */

@@ -87,12 +87,9 @@ void write_run(const Options &options, const Result &result, const Record &recor
     write_file(folder / "serial.txt", result.serial);
 }
 
-/* The format asked for, or else that of the image, or the first that the scenario names. */
+/* The format asked for, or else the first that the scenario names. */
 const firmware_image &image(const Options &options, const Scenario &scenario)
 {
-    if (options.numeric.empty() && !options.given.image.empty()) {
-        return *image_of(virtual_board::VirtualBoard::numeric_of(options.given.image));
-    }
     return *image_of(options.numeric.empty() ? scenario.numerics.front() : options.numeric);
 }
 
@@ -154,8 +151,11 @@ void run_all(const Options &options, const Scenarios &scenarios, bool write, Del
         });
 }
 
-int run_command(const Options &options)
+int run_command(Options options)
 {
+    if (options.numeric.empty() && !options.given.image.empty()) {
+        options.numeric = virtual_board::VirtualBoard::numeric_of(options.given.image);
+    }
     const std::vector<Scenario> scenarios = read_scenarios(options);
     std::vector<const Scenario *> pointers;
     for (const Scenario &scenario : scenarios) {

@@ -134,9 +134,17 @@ Json interrupt_json(const Result &result)
     json["start_latency_cycles"]["mean"] = interrupt.latency.mean;
     json["start_latency_cycles"]["worst"] = interrupt.latency.worst;
     json["start_jitter_cycles"] = interrupt.latency.worst - interrupt.latency.least;
+    const auto us = [](double cycles) { return cycles * 1e6 / virtual_board::core_Hz; };
+    json["start_latency_us"]["least"] = us(static_cast<double>(interrupt.latency.least));
+    json["start_latency_us"]["mean"] = us(interrupt.latency.mean);
+    json["start_latency_us"]["worst"] = us(static_cast<double>(interrupt.latency.worst));
     json["preemptions"] = interrupt.preemptions;
     json["preempting_cycles"] = interrupt.preempting_cycles;
     json["instructions_outside_ccm"] = interrupt.outside_fast_code;
+    json["serial_line"]["bytes_in"] = result.board->bytes_received;
+    json["serial_line"]["bytes_out"] = result.board->bytes_sent;
+    json["flash"]["pages_erased"] = result.board->flash_erases;
+    json["flash"]["double_words_programmed"] = result.board->flash_programs;
     json["stack_used_bytes"] =
         result.board->stack_used_bytes ? Json(*result.board->stack_used_bytes) : Json();
     json["resets"] = result.board->resets;

@@ -18,6 +18,7 @@ constexpr double longest_ramp_s = 600;
 constexpr double largest_bound = 1e12; /* of an expectation; any finite number in practice */
 constexpr double largest_position_rad = 1e7;
 constexpr double largest_short_circuit_A = 100;
+constexpr double shortest_stall_us = 10; /* what the interrupt takes anyway */
 constexpr double longest_stall_us = 120; /* the next control interrupt still gets its samples */
 
 /* A number of a command: what it is called, where it goes, its range. */
@@ -217,7 +218,7 @@ Event read_event(const Value &table, const std::string &path, double duration_s)
     const bool has_load = reader.any("load_torque_Nm") != nullptr;
     const bool has_short_circuit = reader.any("short_circuit") != nullptr;
     double stall_us = 0;
-    if (reader.number("stall_us", stall_us, 1, longest_stall_us)) {
+    if (reader.number("stall_us", stall_us, shortest_stall_us, longest_stall_us)) {
         event.stall_us = stall_us;
     }
     std::string typed, expected;

@@ -41,7 +41,7 @@ struct Event {
     std::optional<double> load_torque_Nm;
     std::optional<int> shorted_leg; /* A+, A-, B+, B- */
     double short_circuit_A = 0;
-    std::optional<double> stall_us;
+    std::optional<double> stall_us; /* holds the control interrupt up until then behind S(k) */
     double PlantScales::*drift = nullptr; /* this scale goes to drift_to within drift_ramp_s */
     double drift_to = 1;
     double drift_ramp_s = 0;

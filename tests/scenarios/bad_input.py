@@ -13,6 +13,8 @@ def replaced(old, new, text=SMALL):
     return text.replace(old, new)
 
 
+EVENT = "[[event]]\ntime_s = 0.02\n"
+
 # name, text of the scenario, line of the complaint, what the complaint must contain
 SCENARIOS = [
     ("no TOML", replaced("duration_s = 0.05", "duration_s = = 0.05"), 3, ["not valid TOML"]),
@@ -73,6 +75,12 @@ SCENARIOS = [
      ["event[1].time_s", "0...0.05"]),
     ("event of two kinds", replaced("time_s = 0.0", "time_s = 0.0\nload_torque_Nm = 1.0"), None,
      ["event[1].command", "exactly one of"]),
+    ("short circuit without a current", SMALL + EVENT + 'short_circuit = "A+"\n', 21,
+     ["event[2].short_circuit_A", "missing"]),
+    ("short circuit of no leg", SMALL + EVENT + 'short_circuit = "C+"\nshort_circuit_A = 9\n', 23,
+     ["event[2].short_circuit", "A+, A-, B+, B-"]),
+    ("stall beyond the next period", SMALL + EVENT + "stall_us = 200\n", 23,
+     ["event[2].stall_us", "10...120"]),
     ("drift of nothing", replaced("position_rad = 0.05\nduration_s = 0.02\nramp_s = 0.01",
                                   "").replace('command = "move-trapezoid"', "plant = {}"), None,
      ["event[1].plant", "expected a scale"]),

@@ -51,6 +51,10 @@ class FakeChip : public Chip
         }
         lines[line] = level;
     }
+    void non_maskable_interrupt() override
+    {
+        non_maskable_interrupts++;
+    }
     std::uint32_t load(std::uint32_t address, unsigned bytes) override
     {
         return access(address, bytes, nullptr, Master::dma);
@@ -111,6 +115,7 @@ class FakeChip : public Chip
     std::map<unsigned, bool> lines;
     std::function<void(unsigned)> on_interrupt;
     std::string reset_cause;
+    unsigned non_maskable_interrupts = 0;
     static constexpr std::uint32_t ram = 0x20000000;
     std::vector<std::uint8_t> memory = std::vector<std::uint8_t>(4096);
 

@@ -90,6 +90,12 @@ void unlock(Bench &bench)
     bench.chip.write(flash_registers + 0x08, 0xcdef89ab);
 }
 
+/* ACR with the data cache off: nothing is written while it is on. */
+void data_cache_off(Bench &bench)
+{
+    bench.chip.write(flash_registers, 0x304);
+}
+
 bool busy(Bench &bench)
 {
     return (bench.chip.read(flash_registers + 0x10) & 1 << 16) != 0;
@@ -104,9 +110,13 @@ void test_flash_erases_in_22_ms_programs_in_85_us_and_keeps_its_contents()
     flash.memory()[page - Flash::base] = 0x12;
     bench.refused("locked", flash_registers + 0x14, 1);
     unlock(bench);
+    bench.refused("data cache", flash_registers + 0x14, 1);
+    bench.refused("data cache", flash_registers + 0x14, 2 | 1 << 16);
+    data_cache_off(bench);
     bench.chip.write(flash_registers + 0x14, 2 | 124 << 3 | 1 << 11 | 1 << 16);
     TEST_ASSERT_TRUE(flash.busy_until(page) == bench.chip.now() + 22000 * microsecond);
     TEST_ASSERT_TRUE(flash.busy_until(0x08000000) == bench.chip.now()); /* the other bank */
+    bench.refused("DCEN", flash_registers, 0x704);
     bench.chip.run_for(22000 * microsecond - 1);
     TEST_ASSERT_TRUE(busy(bench));
     bench.chip.run_for(1);
@@ -147,12 +157,55 @@ void test_flash_refuses_what_silicon_refuses()
     expect_store_refused(bench, "locked", page, 4);
     unlock(bench);
     expect_store_refused(bench, "PG", page, 4);
+    data_cache_off(bench);
     bench.chip.write(flash_registers + 0x14, 1);
     expect_store_refused(bench, "SIZERR", page, 2);
     expect_store_refused(bench, "PGAERR", page + 4, 4);
     bench.device.flash_controller().memory()[page - Flash::base + 3] = 0;
     bench.device.flash_controller().store(page, 4, 1);
     expect_store_refused(bench, "not erased", page + 4, 4);
+}
+
+void test_cells_that_a_reset_cut_off_raise_the_nmi_until_they_are_erased()
+{
+    Bench bench;
+    const std::uint32_t page = 0x08000000 + 256 * 1024 + 124 * 2048;
+    Flash &flash = bench.device.flash_controller();
+    const auto begin = [&bench](std::uint32_t operation) {
+        bench.start_clocks();
+        unlock(bench);
+        data_cache_off(bench);
+        bench.chip.write(flash_registers + 0x14, operation);
+    };
+    begin(1);
+    flash.store(page + 8, 4, 1);
+    flash.store(page + 12, 4, 2);
+    bench.chip.run_for(40 * microsecond);
+    flash.core_reads(page, 4); /* whole so far */
+    TEST_ASSERT_EQUAL_UINT(0, bench.chip.non_maskable_interrupts);
+    bench.device.reset("power-on");
+
+    flash.core_reads(page + 4, 4);
+    flash.core_reads(page + 16, 4);
+    TEST_ASSERT_EQUAL_UINT(0, bench.chip.non_maskable_interrupts);
+    flash.core_reads(page + 12, 1);
+    TEST_ASSERT_EQUAL_UINT(1, bench.chip.non_maskable_interrupts);
+    bench.start_clocks();
+    TEST_ASSERT_EQUAL_HEX32(1u << 31 | 1u << 21 | (124 * 2048 + 8),
+                            bench.chip.read(flash_registers + 0x18));
+    bench.chip.write(flash_registers + 0x18, 1u << 31);
+    TEST_ASSERT_EQUAL_HEX32(0, bench.chip.read(flash_registers + 0x18) >> 31);
+    bench.device.reset("software");
+
+    begin(2 | 124 << 3 | 1 << 11 | 1 << 16);
+    bench.device.reset("power-on"); /* cut off as well: the whole page */
+    flash.core_reads(page + 2040, 4);
+    TEST_ASSERT_EQUAL_UINT(2, bench.chip.non_maskable_interrupts);
+    begin(2 | 124 << 3 | 1 << 11 | 1 << 16);
+    bench.chip.run_for(22000 * microsecond);
+    flash.core_reads(page + 2040, 4);
+    flash.core_reads(page + 8, 4);
+    TEST_ASSERT_EQUAL_UINT(2, bench.chip.non_maskable_interrupts);
 }
 
 void test_the_watchdog_resets_after_its_time()
@@ -198,6 +251,7 @@ int main()
     RUN_TEST(test_the_cause_of_a_reset_stays_until_it_is_removed);
     RUN_TEST(test_flash_erases_in_22_ms_programs_in_85_us_and_keeps_its_contents);
     RUN_TEST(test_flash_refuses_what_silicon_refuses);
+    RUN_TEST(test_cells_that_a_reset_cut_off_raise_the_nmi_until_they_are_erased);
     RUN_TEST(test_the_watchdog_resets_after_its_time);
     RUN_TEST(test_resetting_a_block_through_the_clock_tree_clears_it);
     return UNITY_END();

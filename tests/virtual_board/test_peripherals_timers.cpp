@@ -218,6 +218,25 @@ void test_a_prescaler_acts_from_the_update_on()
     TEST_ASSERT_EQUAL_UINT32(25, bench.chip.read(tim3 + 0x24));
 }
 
+void test_rcr_written_behind_the_start_loads_at_peaks_by_either_reading_of_the_manual()
+{
+    for (const bool fills : {false, true}) {
+        Bench bench;
+        bench.start_clocks();
+        bench.device.tim1().rcr_fills_while_stopped = fills;
+        bench.chip.write(tim1, 1 << 5 | 1 << 7);
+        bench.chip.write(tim1 + 0x2c, 8500);
+        bench.chip.write(tim1 + 0x30, 0);
+        bench.chip.write(tim1 + 0x14, 1);
+        bench.chip.write(sr, 0);
+        bench.chip.set(tim1, 1);
+        bench.chip.write(tim1 + 0x30, 1);
+        bench.chip.run_for(half * 9);
+        TEST_ASSERT_TRUE(bench.device.tim1().counters.updates_at_peak == 5);
+        TEST_ASSERT_TRUE(bench.device.tim1().counters.updates_at_valley == 0);
+    }
+}
+
 } // namespace
 
 int main()
@@ -235,5 +254,6 @@ int main()
     RUN_TEST(test_a_slave_starts_with_the_trigger_and_updates_each_period);
     RUN_TEST(test_a_general_timer_compares_over_its_overflow);
     RUN_TEST(test_a_prescaler_acts_from_the_update_on);
+    RUN_TEST(test_rcr_written_behind_the_start_loads_at_peaks_by_either_reading_of_the_manual);
     return UNITY_END();
 }
