@@ -356,7 +356,7 @@ MUTANTS = [
            "line_period + DRIVE_TYPED_DELAY_PERIODS",
            "period_now(application) + DRIVE_TYPED_DELAY_PERIODS"),
     Mutant(APPLICATION + "console.c", "console", "what_the_drive_would_drop_is_refused",
-           "needs_operation(&line->command) && state", "false && state"),
+           "!finds_operation(application, line, line_period, answer)", "false"),
     Mutant(APPLICATION + "console.c", "console",
            "a_later_period_can_be_asked_for_and_an_earlier_one_not",
            "(int32_t)(line->command.at_period - earliest) >= 0", "true"),
