@@ -2,6 +2,7 @@
 
 #include <stdbool.h>
 
+#include "firmware/design/text.h"
 #include "hal/stm32g474/control_interrupt.h"
 #include "hal/stm32g474/core.h"
 #include "hal/stm32g474/linker.h"
@@ -170,35 +171,11 @@ __attribute__((naked)) void start_exception(void)
                      "b 1b\n");
 }
 
-static char *put_text(char *at, const char *text)
+static void put_address(struct text *text, const char *name, uint32_t value)
 {
-    while (*text != '\0' && at < &cause[sizeof cause - 1]) {
-        *at++ = *text++;
-    }
-    return at;
-}
-
-static char *put_hexadecimal(char *at, uint32_t value)
-{
-    at = put_text(at, "0x");
-    for (int shift = 28; shift >= 0; shift -= 4) {
-        const char digit[2] = {"0123456789abcdef"[(value >> shift) & 15u], '\0'};
-        at = put_text(at, digit);
-    }
-    return at;
-}
-
-static char *put_decimal(char *at, uint32_t value)
-{
-    char digits[11];
-    char *digit = &digits[10];
-
-    *digit = '\0';
-    do {
-        *--digit = (char)('0' + value % 10u);
-        value /= 10u;
-    } while (value > 0);
-    return put_text(at, digit);
+    text_put(text, name);
+    text_put(text, "0x");
+    text_hexadecimal(text, value, 8);
 }
 
 static const char *exception_name(uint32_t number)
@@ -214,7 +191,7 @@ static const char *exception_name(uint32_t number)
     return number >= 3 && number < 7 ? names[number] : "unexpected exception ";
 }
 
-static char *put_crash(char *at)
+static void put_crash(struct text *text)
 {
     static const char *const faults[BOARD_FAULT_COUNT] = {"none",
 #define FAULT_TEXT(name, text) text,
@@ -222,21 +199,22 @@ static char *put_crash(char *at)
 #undef FAULT_TEXT
     };
 
-    at = put_text(at, "crash: ");
+    text_put(text, "crash: ");
     if (record.exception == 0) {
-        return put_text(at, record.fault < BOARD_FAULT_COUNT ? faults[record.fault] : "unknown");
+        text_put(text, record.fault < BOARD_FAULT_COUNT ? faults[record.fault] : "unknown");
+        return;
     }
-    at = put_text(at, exception_name(record.exception));
+    text_put(text, exception_name(record.exception));
     if (record.exception >= 7) {
-        at = put_decimal(at, record.exception);
+        text_unsigned(text, record.exception);
     }
-    at = put_hexadecimal(put_text(at, " at "), record.pc);
-    at = put_hexadecimal(put_text(at, " lr "), record.lr);
-    at = put_hexadecimal(put_text(at, " cfsr "), record.cfsr);
+    put_address(text, " at ", record.pc);
+    put_address(text, " lr ", record.lr);
+    put_address(text, " cfsr ", record.cfsr);
     if (record.period != CONTROL_NOT_STARTED) {
-        at = put_decimal(put_text(at, " in period "), record.period);
+        text_put(text, " in period ");
+        text_unsigned(text, record.period);
     }
-    return at;
 }
 
 static const char *reset_cause(uint32_t csr)
@@ -256,7 +234,7 @@ static const char *reset_cause(uint32_t csr)
 void crash_read_cause(void)
 {
     const uint32_t csr = RCC->csr;
-    char *at = cause;
+    struct text text = text_in(cause, sizeof cause);
 
     RCC->csr = csr | RCC_CSR_RMVF;
     if (csr & RCC_CSR_BORRSTF) { /* what memory holds after a loss of power is no record */
@@ -266,11 +244,10 @@ void crash_read_cause(void)
         record.failures = 0;
     }
     if (record.valid == RECORD_VALID && (record.exception != 0 || record.fault != 0)) {
-        at = put_crash(at);
+        put_crash(&text);
     } else {
-        at = put_text(at, reset_cause(csr));
+        text_put(&text, reset_cause(csr));
     }
-    *at = '\0';
     record.valid = RECORD_VALID;
     record.exception = 0;
     record.fault = BOARD_FAULT_NONE;

@@ -45,12 +45,14 @@ ImageRun run_image(const Scenario &scenario, const std::string &numeric, std::ui
     virtual_board::VirtualBoard board(plant_of(scenario, seed), scenario.given.image, numeric,
                                       scenario.drive);
     ImageRun result{run_typed(scenario, board), board.report()};
-    const std::uint64_t worst = result.board.interrupt.total.worst.worst;
+    /* From S(k), as hal.h counts the 90 us. */
+    const virtual_board::InterruptAccount::Summary &interrupt = result.board.interrupt;
+    const std::uint64_t worst = interrupt.latency.worst + interrupt.total.worst.worst;
     const bool stalled = std::any_of(scenario.events.begin(), scenario.events.end(),
                                      [](const Event &event) { return event.stall_us.has_value(); });
     if (result.run.failure.empty() && !stalled && worst > virtual_board::control_interrupt_budget) {
         result.run.failure =
-            format("the control interrupt takes %llu cycles in the worst column; "
+            format("the control interrupt ends %llu cycles behind S(k) in the worst column; "
                    "%llu are 90 us",
                    static_cast<unsigned long long>(worst),
                    static_cast<unsigned long long>(virtual_board::control_interrupt_budget));
@@ -72,8 +74,10 @@ std::string interrupt_table(const virtual_board::BoardReport &board, double cpu_
     const virtual_board::Figures &latency = interrupt.latency;
     const double worst_us = us(static_cast<double>(latency.worst));
     const double least_us = us(static_cast<double>(latency.least));
-    text += format("  of %llu interrupts; budget 15300; %llu instructions outside CCM\n",
-                   count(interrupt.interrupts), count(interrupt.outside_fast_code));
+    text += format("  of %llu interrupts; budget %llu from S(k); %llu instructions outside "
+                   "CCM\n",
+                   count(interrupt.interrupts), count(virtual_board::control_interrupt_budget),
+                   count(interrupt.outside_fast_code));
     text += format("  start after S(k): least %llu, mean %.1f, worst %llu cycles (%.3f, %.3f, %.3f "
                    "us); jitter %.3f us\n",
                    count(latency.least), latency.mean, count(latency.worst), least_us,

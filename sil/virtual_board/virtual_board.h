@@ -72,7 +72,8 @@ class VirtualBoard : public sil::DriveBoard
 
 constexpr double core_Hz = 170e6;
 
-/* Most cycles of the control interrupt in the worst column: 90 us at 170 MHz. */
+/* Most cycles from S(k) to the end of the control interrupt, in the worst column: 90 us at 170 MHz.
+ */
 constexpr std::uint64_t control_interrupt_budget = 15300;
 
 } // namespace virtual_board

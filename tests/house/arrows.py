@@ -32,7 +32,7 @@ ROOMS = {
     "hal/sil/firmware_image.": ["hal/hal.h", "hal/sil/firmware_image.h", "firmware/drive/",
                                 "firmware/application/"],
     "hal/stm32g474/": ["hal/stm32g474/", "hal/hal.h", "firmware/application/application.h",
-                       "firmware/motor/motor_params.h"],
+                       "firmware/motor/motor_params.h", "firmware/design/text.h"],
     "hal/stm32g071/": ["hal/stm32g071/", "hal/hal.h", "firmware/application/application.h",
                        "firmware/motor/motor_params.h", "firmware/design/text.h"],
     "sil/plant/": ["sil/plant/"],
