@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Writes the C file that tells an image its version and its default motor.
 
-usage: board_image.py --root ROOT --motor NAME --version V --board NAME --numeric FORMAT
-                      --flags FLAGS OUTPUT.c
+usage: board_image.py --root ROOT --motor NAME --version V --board NAME --pin-map FILE
+                      --numeric FORMAT --flags FLAGS OUTPUT.c
 
-The hash is of the sources that the image is made of, the motor file and the compiler's flags, so
+The hash is of the sources that the image is made of, motor, pin map and the compiler's flags, so
 that the same sources give the same image, wherever and whenever they are built. OUTPUT.c is left
 alone if nothing has changed.
 """
@@ -34,15 +34,16 @@ def motor_file(root, name):
     return motors[name]
 
 
-def source_hash(root, board, motor, flags):
+def source_hash(root, board, motor, pin_map, flags):
+    """Of the pin maps the one that is used counts, by its name, as it may lie anywhere."""
     digest = hashlib.sha256(flags.encode())
-    folders = ("firmware", f"hal/{board}")
     files = [root / "hal" / "hal.h", motor]
-    for folder in folders:
+    for folder in ("firmware", "hal/cortex_m", f"hal/{board}"):
         files += [p for p in (root / folder).rglob("*") if p.suffix in {".c", ".h", ".ld"}]
-    for path in sorted(files):
+    for path in sorted(p for p in files if p.parent.name != "pin_maps"):
         digest.update(path.relative_to(root).as_posix().encode() + b"\0")
         digest.update(path.read_bytes())
+    digest.update(pin_map.name.encode() + b"\0" + pin_map.read_bytes())
     return digest.hexdigest()[:12]
 
 
@@ -56,18 +57,20 @@ def motor_text(path):
 
 def main():
     parser = argparse.ArgumentParser()
-    for name in ("root", "motor", "version", "board", "numeric", "flags"):
+    for name in ("root", "motor", "version", "board", "pin-map", "numeric", "flags"):
         parser.add_argument(f"--{name}", required=True)
     parser.add_argument("output", type=Path)
     given = parser.parse_args()
     root = Path(given.root)
     motor = motor_file(root, given.motor)
-    digest = source_hash(root, given.board, motor, f"{given.flags} {given.numeric}")
+    pin_map = Path(given.pin_map)
+    digest = source_hash(root, given.board, motor, pin_map, f"{given.flags} {given.numeric}")
     text = (
-        f'#include "hal/{given.board}/image.h"\n\n'
+        '#include "hal/cortex_m/image.h"\n\n'
         f"const struct motor_params motor_default = {{\n{motor_text(motor)}}};\n\n"
-        'const char image_version[] =\n'
-        f'    "steadystep {given.version} {digest} {given.board} {given.numeric} {motor.stem}";\n'
+        "const char image_version[] =\n"
+        f'    "steadystep {given.version} {digest} {given.board} {pin_map.stem} {given.numeric}'
+        f' {motor.stem}";\n'
     )
     if not given.output.exists() or given.output.read_text(encoding="utf-8") != text:
         given.output.write_text(text, encoding="utf-8")

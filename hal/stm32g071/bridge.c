@@ -1,6 +1,7 @@
 #include "hal/stm32g071/bridge.h"
 
-#include "hal/stm32g071/core.h"
+#include "hal/cortex_m/interrupts.h"
+#include "hal/stm32g071/handlers.h"
 
 static struct {
     volatile uint32_t flags; /* HAL_FLAG_...: a trip until bridge_disable, a missed deadline until
@@ -52,7 +53,7 @@ bool bridge_run(void)
     }
     TIM1->sr = 0; /* FAULT read low before its pin was connected */
     TIM1->dier = TIM_DIER_BIE;
-    interrupt_enable(INTERRUPT_TIM1_BRK_UP_TRG_COM, PRIORITY_GUARD);
+    interrupt_enable(TIM1_BRK_UP_TRG_COM_IRQn, PRIORITY_GUARD);
     return true;
 }
 
@@ -73,7 +74,7 @@ void bridge_guard_start(void)
     TIM2->ccr1 = deadline_of_next_peak();
     TIM2->sr = 0;
     TIM2->dier = TIM_DIER_CC1IE;
-    interrupt_enable(INTERRUPT_TIM2, PRIORITY_GUARD);
+    interrupt_enable(TIM2_IRQn, PRIORITY_GUARD);
 }
 
 bool bridge_enable(void)
@@ -135,19 +136,19 @@ uint32_t bridge_begin_period(void)
     const uint32_t flags = bridge.flags;
 
     if (flags != 0) {
-        interrupts_disable(); /* FAULT may come in between */
+        __disable_irq(); /* FAULT may come in between */
         bridge.flags &= HAL_FLAG_OVERCURRENT_TRIP;
-        interrupts_enable();
+        __enable_irq();
     }
     return flags;
 }
 
 void bridge_end_period(const struct hal_outputs *outputs)
 {
-    TIM1->ccr1 = outputs->high_counts[HAL_LEG_A_PLUS];
-    TIM1->ccr2 = outputs->high_counts[HAL_LEG_A_MINUS];
-    TIM1->ccr3 = outputs->high_counts[HAL_LEG_B_PLUS];
-    TIM1->ccr4 = outputs->high_counts[HAL_LEG_B_MINUS];
+    TIM1_COMPARE(CHANNEL_A_PLUS) = outputs->high_counts[HAL_LEG_A_PLUS];
+    TIM1_COMPARE(CHANNEL_A_MINUS) = outputs->high_counts[HAL_LEG_A_MINUS];
+    TIM1_COMPARE(CHANNEL_B_PLUS) = outputs->high_counts[HAL_LEG_B_PLUS];
+    TIM1_COMPARE(CHANNEL_B_MINUS) = outputs->high_counts[HAL_LEG_B_MINUS];
     if (!outputs->bridge_on || !bridge.allowed) {
         bridge_open();
         bridge.demand = DEMAND_NONE;

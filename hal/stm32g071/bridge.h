@@ -19,7 +19,7 @@
 #include <stdint.h>
 
 #include "hal/hal.h"
-#include "hal/stm32g071/pins.h"
+#include "hal/stm32g071/board.h"
 #include "hal/stm32g071/registers.h"
 
 enum {
@@ -27,6 +27,10 @@ enum {
     BRIDGE_PERIOD_COUNTS = 2 * BRIDGE_HALF_PERIOD_COUNTS,
     BRIDGE_DEADLINE_COUNTS = 5760 /* behind the peak: 90 us */
 };
+
+/* Compare of a channel 1...4: TIM1->ccr1... */
+#define TIM1_COMPARE(channel)  TIM1_COMPARE_(channel)
+#define TIM1_COMPARE_(channel) (TIM1->ccr##channel)
 
 /* Dead time is the bridge's own, so DTG is 0. Break: FAULT, low, no filter, without the clock. */
 #define BRIDGE_OFF (TIM_BDTR_OSSI | TIM_BDTR_OSSR | TIM_BDTR_BKE)

@@ -8,18 +8,18 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { CORE_CLOCK_Hz = 64000000, CORE_CYCLES_PER_us = 64 };
+enum { CORE_CLOCK_Hz = 64000000, CORE_CYCLES_PER_us = 64, HSI16_Hz = 16000000 };
 
-/* Start-up: the clocks of everything that the port uses, and the free-running cycle counter.
-   false: an oscillator or the PLL does not start. */
+/* From reset to CORE_CLOCK_Hz; false: the PLL does not start. */
 bool clock_start(void);
+/* The clocks of everything that the port uses. */
+void clock_of_blocks(void);
 
-/* Core cycles since clock_start, wraps at 2^32: TIM2, since this core has no cycle counter. */
+/* TIM2, free-running, since this core has no cycle counter; with its clock on. */
+void cycle_counter_start(void);
+/* Core cycles since cycle_counter_start, wraps at 2^32. */
 uint32_t clock_cycles(void);
 
 void clock_wait_us(uint32_t us);
-
-/* Until these bits of a register are as expected; false: they are not within 12 ms. */
-bool clock_wait_for(const volatile uint32_t *status, uint32_t mask, uint32_t expected);
 
 #endif

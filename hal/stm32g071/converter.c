@@ -1,9 +1,9 @@
 #include "hal/stm32g071/converter.h"
 
+#include "hal/cortex_m/wait.h"
+#include "hal/stm32g071/board.h"
 #include "hal/stm32g071/bridge.h"
 #include "hal/stm32g071/clock.h"
-#include "hal/stm32g071/core.h"
-#include "hal/stm32g071/pins.h"
 
 enum {
     RANKS = 8,
@@ -13,14 +13,15 @@ enum {
     TRIGGER_LEAD_COUNTS = 93,
     /* Behind the start of TIM1 the trigger of TIM3 takes two counts through its input. */
     SLAVE_START_COUNTS = 2,
+    READY_WAIT = 100000, /* passes, > 6 ms; calibration takes 3 us */
 };
 
 struct converter_group converter_groups[LEG_VOLTAGE_SAMPLES];
 
 /* In the order of struct converter_group. */
 static const uint8_t channels[RANKS] = {
-    CHANNEL_LEG_A_PLUS,  CHANNEL_LEG_B_PLUS,  CHANNEL_CURRENT_A, CHANNEL_CURRENT_B,
-    CHANNEL_LEG_B_MINUS, CHANNEL_LEG_A_MINUS, CHANNEL_BUS,       CHANNEL_TEMPERATURE};
+    LEG_A_PLUS_CHANNEL,  LEG_B_PLUS_CHANNEL,  CURRENT_A_CHANNEL, CURRENT_B_CHANNEL,
+    LEG_B_MINUS_CHANNEL, LEG_A_MINUS_CHANNEL, BUS_CHANNEL,       TEMPERATURE_CHANNEL};
 
 static bool adc_start(void)
 {
@@ -30,13 +31,13 @@ static bool adc_start(void)
     ADC1->cr = ADC_CR_ADVREGEN;
     clock_wait_us(20); /* start of the regulator, RM0444 and data sheet: 20 us */
     ADC1->cr = ADC_CR_ADVREGEN | ADC_CR_ADCAL;
-    if (!clock_wait_for(&ADC1->cr, ADC_CR_ADCAL, 0)) {
+    if (!wait_until(&ADC1->cr, ADC_CR_ADCAL, 0, READY_WAIT)) {
         return false;
     }
     clock_wait_us(1); /* the ADC may be enabled two of its cycles after calibration */
     ADC1->isr = ADC_ISR_ADRDY;
     ADC1->cr = ADC_CR_ADVREGEN | ADC_CR_ADEN;
-    if (!clock_wait_for(&ADC1->isr, ADC_ISR_ADRDY, ADC_ISR_ADRDY)) {
+    if (!wait_until(&ADC1->isr, ADC_ISR_ADRDY, ADC_ISR_ADRDY, READY_WAIT)) {
         return false;
     }
     for (unsigned rank = 0; rank < RANKS; rank++) {
@@ -44,13 +45,13 @@ static bool adc_start(void)
     }
     ADC1->cfgr1 = ADC_CFGR1_CHSELRMOD | ADC_CFGR1_OVRMOD | ADC_CFGR1_DMAEN | ADC_CFGR1_DMACFG |
                   ADC_CFGR1_EXTEN(ADC_RISING_EDGE) | ADC_CFGR1_EXTSEL(ADC_TRIGGER_TIM3_TRGO);
-    if (!clock_wait_for(&ADC1->isr, ADC_ISR_CCRDY, ADC_ISR_CCRDY)) {
+    if (!wait_until(&ADC1->isr, ADC_ISR_CCRDY, ADC_ISR_CCRDY, READY_WAIT)) {
         return false;
     }
     ADC1->isr = ADC_ISR_CCRDY;
     ADC1->smpr = ADC_SMPR_SAMPLE_TIME1(ADC_SAMPLING_3_5_CYCLES);
     ADC1->chselr = sequence;
-    return clock_wait_for(&ADC1->isr, ADC_ISR_CCRDY, ADC_ISR_CCRDY);
+    return wait_until(&ADC1->isr, ADC_ISR_CCRDY, ADC_ISR_CCRDY, READY_WAIT);
 }
 
 static void dma_start(void)

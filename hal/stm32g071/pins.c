@@ -1,5 +1,6 @@
 #include "hal/stm32g071/pins.h"
 
+#include "hal/stm32g071/board.h"
 #include "hal/stm32g071/registers.h"
 
 enum { MODE_ALTERNATE = 2, MODE_OUTPUT = 1, MODE_ANALOG = 3 };

@@ -1,9 +1,8 @@
 /*
  * The STM32G071's registers, as far as this port uses them. Names follow the reference manual
- * RM0444; structs mirror the register maps,
- * gaps are `reserved`. Every address, bit position, width, interrupt and request number is compared
- * with an independent register description (tests/board/check_registers_g071.py), so the lines keep
- * to one simple form:
+ * RM0444; structs mirror the register maps, gaps are `reserved`. Every address, bit position,
+ * width, interrupt and request number is compared with an independent register description
+ * (tests/board/check_registers_g071.py), so the lines keep to one simple form:
  *
  *   #define FIELD_NAME BIT(position)              a flag
  *   #define FIELD_NAME(value) FIELD(value, position, width)
@@ -21,16 +20,6 @@
 #define FLASH_BANK_1     0x08000000u
 #define FLASH_BANK_BYTES 0x20000u /* one bank */
 #define FLASH_PAGE_BYTES 2048u
-
-/* Interrupt lines. */
-enum interrupt {
-    INTERRUPT_DMA1_CHANNEL1 = 9,
-    INTERRUPT_DMA1_CHANNEL2_3 = 10,
-    INTERRUPT_TIM1_BRK_UP_TRG_COM = 13,
-    INTERRUPT_TIM2 = 15,
-    INTERRUPT_USART3_4_LPUART1 = 29,
-    INTERRUPTS = 31
-};
 
 /* ---- Reset and clock control ---- */
 struct rcc_registers {
@@ -240,6 +229,7 @@ struct lpuart_registers {
 #define LPUART_ISR_NE         BIT(2)
 #define LPUART_ISR_ORE        BIT(3)
 #define LPUART_ISR_RXNE       BIT(5)
+#define LPUART_ISR_TXE        BIT(7)
 #define LPUART_ISR_CMF        BIT(17)
 #define LPUART_ICR_PE         BIT(0)
 #define LPUART_ICR_FE         BIT(1)

@@ -1,8 +1,8 @@
 #include "hal/stm32g474/adc.h"
 
+#include "hal/cortex_m/crash.h"
+#include "hal/cortex_m/wait.h"
 #include "hal/stm32g474/board.h"
-#include "hal/stm32g474/crash.h"
-#include "hal/stm32g474/wait.h"
 
 enum {
     REGULATOR_START = CORE_Hz / 1000000 * 20, /* cycles; 20 us (data sheet) */

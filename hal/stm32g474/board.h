@@ -1,24 +1,55 @@
 /*
- * Constants of the reference board: what the wiring, the amplifiers and the timer make of volts,
- * amperes and seconds. Another board changes this file and pins.h. The schematic-level reasons are
- * in README.md.
+ * What the drivers know of the board: time, which the port chooses, and the wiring, which the pin
+ * map states. The build names the pin map (-D STEADYSTEP_PIN_MAP): a file of pin_maps/ or one of
+ * your own. It defines, and pin_map_check.c checks:
+ *
+ *   BOARD_NAME
+ *   CRYSTAL_Hz            at OSC_IN: 4...48 MHz, whole multiples of 4 MHz; 0: none, HSI16 (+-1 %)
+ *   BOARD_PINS(PIN)       PIN(port A...C, number, mode, alternate function, pull, peripheral,
+ *                         signal); a test compares them with an independent description of the
+ *                         chip. Analog pins are never pulled.
+ *   BRIDGE                BRIDGE_OF_GATES: TIM1 gives both gates of a leg and their dead time.
+ *                         BRIDGE_INTEGRATED: it gives one signal a leg, whose low level turns the
+ *                         low side on; an output BRIDGE_RESET_PORT, BRIDGE_RESET_PIN that is low
+ *                         opens the bridge; its fault output, low, comes in at TIM1 BKIN
+ *   DEAD_TIME_CYCLES      of TIM1, 1/170 us; 64...127, even 128...254, of 256...504 multiples of
+ *                         8; 0 with BRIDGE_INTEGRATED, whose own is BRIDGE_DEAD_TIME_s
+ *   BRIDGE_RESISTANCE_OHM of both switches that conduct, and what of the shunts is in series; 0:
+ * the hold at enabling measures it with the motor's CHANNEL_A_PLUS...     channel 1...4 of TIM1 of
+ * each leg: A_PLUS, A_MINUS, B_PLUS, B_MINUS AMPLIFIER_A, _B       OPAMP of a phase's shunt, that
+ * of the leg minus: 1 for a, which ADC1 converts, 2 or 3 for b, which ADC2 does; 0: an amplifier
+ * outside AMPLIFIER_A_INPUT...  its input VINP0...2 AMPLIFIER_GAIN        of both: 2, 4, 8, 16, 32
+ * or 64 CURRENT_A_CHANNEL, _B of ADC1 and of ADC2: 13 of OPAMP1, 16 of OPAMP2, 18 of OPAMP3
+ *   CURRENT_A_PER_CODE, CURRENT_ZERO_CODE
+ *   OVERCURRENT_COMPARATORS(COMPARATOR)
+ *                         COMPARATOR(COMP1...7, input INP0 or INP1) of every shunt that trips; may
+ *                         be empty with BRIDGE_INTEGRATED
+ *   OVERCURRENT_mA, COMPARATOR_uV, COMPARATOR_uV_PER_A
+ *                         the trip; voltage at the comparators without current, and per ampere
+ *   LEGS_A_CONVERTER, _B  ADC3, ADC4 or ADC5, and there LEG_A_PLUS_CHANNEL... 1...18
+ *   PHASE_VOLTAGE_V_PER_CODE  of the difference of two legs: a code is two codes of a leg
+ *   BUS_CHANNEL, BUS_V_PER_CODE, TEMPERATURE_CHANNEL   of ADC1, ADC1 and ADC2
+ *   ENCODER_TIMER         4, 5 or 8: its channels 1 and 2; 0: none
+ *   BAUD                  of LPUART1
+ *   LED_PORT, LED_PIN
  */
 #ifndef STEADYSTEP_STM32G474_BOARD_H
 #define STEADYSTEP_STM32G474_BOARD_H
 
 #include <stdint.h>
 
-#define BOARD_NAME "NUCLEO-G474RE with discrete double H-bridge"
+/* Values of BRIDGE. */
+#define BRIDGE_OF_GATES   1
+#define BRIDGE_INTEGRATED 2
+
+#include STEADYSTEP_PIN_MAP
 
 enum {
     CORE_Hz = 170000000,
-    HSE_Hz = 24000000, /* crystal X3 of the NUCLEO-G474RE */
     HSI16_Hz = 16000000,
-    BAUD = 921600,
 
     PWM_HALF_PERIOD = 8500,                   /* counts; 100 us, valley to valley, at 170 MHz */
     PWM_PERIOD = 2 * PWM_HALF_PERIOD,         /* core cycles */
-    DEAD_TIME_CYCLES = 170,                   /* 1 us */
     DEADLINE_CYCLES = CORE_Hz / 1000000 * 90, /* after S(k), for the end of the control interrupt */
     CONTROL_PERIOD_us = 100,
 
@@ -27,26 +58,23 @@ enum {
     LEG_GROUP_CYCLES = PWM_PERIOD / LEG_GROUPS,
     LEG_OVERSAMPLING = 8,
 
-    CURRENT_ZERO_CODE = 2048,
     WATCHDOG_ms = 50,
 };
 
-/*
- * Currents: 40 mOhm; the divider in front of the amplifier passes 0.859 of it and adds 206 mV, the
- * amplifier's gain is 8: 1.65 V + 0.275 V/A, 12 A over 4096 codes.
- */
-#define CURRENT_A_PER_CODE (12.0 / 4096.0)
-/* Dividers of the bus and, beside a bias of 256 codes that cancels, of the legs. */
-#define BUS_V_PER_CODE (31.2 / 4096.0)
-/* Of the difference of two legs: one code is two of a leg. */
-#define PHASE_VOLTAGE_V_PER_CODE (62.4 / 4096.0)
-/* The resistance of the bridge is left to the hold at enabling, which measures it with the motor's:
-   facts.bridge_resistance_ohm is 0. */
+#ifndef BRIDGE_DEAD_TIME_s
+#define BRIDGE_DEAD_TIME_s (DEAD_TIME_CYCLES / (double)CORE_Hz)
+#endif
 
-/*
- * Hardware trip at 7.0 A through a low side: 206.3 mV + 7.0 A x 34.4 mV/A at the comparator, of a
- * reference of 3.3 V and 4096 codes.
- */
-enum { OVERCURRENT_CODE = 555 };
+/* Of 4096 codes of the reference, 3.3 V; rounded. */
+#define OVERCURRENT_uV   (COMPARATOR_uV + (int64_t)(COMPARATOR_uV_PER_A) * (OVERCURRENT_mA) / 1000)
+#define OVERCURRENT_CODE ((4096 * OVERCURRENT_uV + 1650000) / 3300000)
+
+/* How many comparators trip. */
+#define ONE_MORE(number, input) +1
+#define OVERCURRENT_INPUTS      (0 OVERCURRENT_COMPARATORS(ONE_MORE))
+
+/* PERIPHERAL(ADC, LEGS_A_CONVERTER): ADC3. */
+#define JOIN(name, number)       name##number
+#define PERIPHERAL(name, number) JOIN(name, number)
 
 #endif

@@ -2,10 +2,10 @@
 
 #include <stdbool.h>
 
+#include "hal/cortex_m/crash.h"
+#include "hal/cortex_m/wait.h"
 #include "hal/stm32g474/board.h"
-#include "hal/stm32g474/crash.h"
 #include "hal/stm32g474/registers.h"
-#include "hal/stm32g474/wait.h"
 
 /*
  * Both sources are divided to the 4 MHz at which the PLL compares: x 85 / 2 = 170 MHz. Register
@@ -27,6 +27,9 @@ enum {
 
 static bool start_crystal(void)
 {
+    if (CRYSTAL_Hz == 0) {
+        return false;
+    }
     RCC->cr |= RCC_CR_HSEON;
     if (wait_until(&RCC->cr, RCC_CR_HSERDY, RCC_CR_HSERDY, CRYSTAL_WAIT)) {
         return true;
@@ -61,7 +64,7 @@ static void set_flash_latency(void)
 static void start_pll(bool crystal)
 {
     const uint32_t source = crystal ? RCC_PLL_SOURCE_HSE : RCC_PLL_SOURCE_HSI16;
-    const uint32_t division = (crystal ? HSE_Hz : HSI16_Hz) / PLL_INPUT_Hz;
+    const uint32_t division = (crystal ? CRYSTAL_Hz : HSI16_Hz) / PLL_INPUT_Hz;
 
     RCC->pllcfgr = RCC_PLLCFGR_PLLSRC(source) | RCC_PLLCFGR_PLLM(division - 1) |
                    RCC_PLLCFGR_PLLN(PLL_MULTIPLIER) | RCC_PLLCFGR_PLLR(RCC_PLLR_DIV2) |

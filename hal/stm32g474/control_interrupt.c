@@ -1,7 +1,8 @@
 #include "hal/stm32g474/control_interrupt.h"
 
-#include "hal/stm32g474/core.h"
-#include "hal/stm32g474/crash.h"
+#include "hal/cortex_m/crash.h"
+#include "hal/cortex_m/interrupts.h"
+#include "hal/cortex_m/port.h"
 #include "hal/stm32g474/current_sampling.h"
 #include "hal/stm32g474/cycle_counter.h"
 #include "hal/stm32g474/deadline_guard.h"
@@ -10,7 +11,7 @@
 #include "hal/stm32g474/pwm.h"
 
 static struct application *application;
-static volatile uint32_t period = CONTROL_NOT_STARTED;
+static volatile uint32_t period = PORT_NOT_STARTED;
 static volatile bool allowed; /* between bridge_enable and bridge_disable */
 static bool wanted;           /* by the outputs of the last control interrupt */
 
@@ -19,8 +20,8 @@ void control_set_application(struct application *instance)
     application = instance;
 }
 
-IN_CCM(control_period)
-uint32_t control_period(void)
+IN_CCM(port_control_period)
+uint32_t port_control_period(void)
 {
     return period;
 }
@@ -71,11 +72,11 @@ static inline void actuate(const struct hal_outputs *outputs)
     if (!on) {
         pwm_open_bridge();
     } else if (wanted && !pwm_bridge_closed()) {
-        interrupts_disable();
+        __disable_irq();
         if (!deadline_guard_has_missed()) {
             pwm_close_bridge();
         }
-        interrupts_enable();
+        __enable_irq();
     }
     wanted = on;
 }

@@ -3,17 +3,11 @@
 #define STEADYSTEP_STM32G474_CONTROL_INTERRUPT_H
 
 #include <stdbool.h>
-#include <stdint.h>
 
 #include "firmware/application/application.h"
 
-#define CONTROL_NOT_STARTED UINT32_MAX
-
 /* Whose interrupt it is; before it is raised. */
 void control_set_application(struct application *application);
-
-/* Index of the present or last control interrupt; CONTROL_NOT_STARTED before the first. */
-uint32_t control_period(void);
 
 /* Whether the gates may follow the outputs; hal.h. */
 bool control_allow_bridge(void);

@@ -1,19 +1,18 @@
 #include "hal/stm32g474/current_sampling.h"
 
+#include "hal/cortex_m/interrupts.h"
+#include "hal/cortex_m/wait.h"
 #include "hal/stm32g474/adc.h"
 #include "hal/stm32g474/board.h"
-#include "hal/stm32g474/core.h"
-#include "hal/stm32g474/pins.h"
-#include "hal/stm32g474/wait.h"
 
 enum { AMPLIFIER_START = CORE_Hz / 1000000 * 10 }; /* cycles; 10 us, data sheet: 6 us */
 
-/* Amplifier on its first pin, internal gain, output to the converter alone. */
-static void start_amplifier(struct opamp_registers *amplifier)
+/* Internal gain, output to the converter alone. */
+static inline void start_amplifier(struct opamp_registers *amplifier, uint32_t input)
 {
-    const uint32_t csr = OPAMP_CSR_VP_SEL(OPAMP_VP_VINP0) | OPAMP_CSR_VM_SEL(OPAMP_VM_PGA) |
-                         OPAMP_CSR_PGA_GAIN(OPAMP_PGA_GAIN_8) | OPAMP_CSR_OPAHSM |
-                         OPAMP_CSR_OPAINTOEN;
+    const uint32_t gain = OPAMP_PGA_GAIN_2 + (uint32_t)__builtin_ctz(AMPLIFIER_GAIN) - 1u;
+    const uint32_t csr = OPAMP_CSR_VP_SEL(OPAMP_VP_VINP0 + input) | OPAMP_CSR_VM_SEL(OPAMP_VM_PGA) |
+                         OPAMP_CSR_PGA_GAIN(gain) | OPAMP_CSR_OPAHSM | OPAMP_CSR_OPAINTOEN;
 
     amplifier->csr = csr;
     amplifier->csr = csr | OPAMP_CSR_OPAMPEN;
@@ -45,15 +44,19 @@ void current_sampling_configure(void)
 {
     RCC->apb2enr |= RCC_APB2ENR_SYSCFGEN; /* clocks the amplifiers */
     (void)RCC->apb2enr;
-    start_amplifier(OPAMP1);
-    start_amplifier(OPAMP2);
+#if AMPLIFIER_A != 0
+    start_amplifier(PERIPHERAL(OPAMP, AMPLIFIER_A), AMPLIFIER_A_INPUT);
+#endif
+#if AMPLIFIER_B != 0
+    start_amplifier(PERIPHERAL(OPAMP, AMPLIFIER_B), AMPLIFIER_B_INPUT);
+#endif
     wait_cycles(AMPLIFIER_START);
 
     adc_clock(ADC12_COMMON, RCC_AHB2ENR_ADC12EN);
     adc_power_up(ADC1);
     adc_power_up(ADC2);
-    set_sequence(ADC1, CHANNEL_OPAMP1, CHANNEL_BUS);
-    set_sequence(ADC2, CHANNEL_OPAMP2, CHANNEL_TEMPERATURE);
+    set_sequence(ADC1, CURRENT_A_CHANNEL, BUS_CHANNEL);
+    set_sequence(ADC2, CURRENT_B_CHANNEL, TEMPERATURE_CHANNEL);
 }
 
 void current_sampling_start(void)
@@ -61,7 +64,7 @@ void current_sampling_start(void)
     ADC1->isr = ADC_ISR_JEOS | ADC_ISR_JEOC;
     ADC2->isr = ADC_ISR_JEOS | ADC_ISR_JEOC;
     ADC1->ier = ADC_IER_JEOSIE;
-    interrupt_enable(INTERRUPT_ADC1_2, PRIORITY_CONTROL);
+    interrupt_enable(ADC1_2_IRQn, PRIORITY_CONTROL);
     ADC2->cr = ADC_CR_ADVREGEN | ADC_CR_JADSTART;
     ADC1->cr = ADC_CR_ADVREGEN | ADC_CR_JADSTART;
 }

@@ -2,18 +2,20 @@
 #ifndef STEADYSTEP_STM32G474_CYCLE_COUNTER_H
 #define STEADYSTEP_STM32G474_CYCLE_COUNTER_H
 
-#include "hal/stm32g474/core.h"
+#include <stdint.h>
+
+#include "hal/stm32g474/device.h"
 
 static inline void cycle_counter_start(void)
 {
-    COREDEBUG->demcr |= COREDEBUG_DEMCR_TRCENA;
-    DWT->cyccnt = 0;
-    DWT->ctrl |= DWT_CTRL_CYCCNTENA;
+    CoreDebug->DEMCR |= CoreDebug_DEMCR_TRCENA_Msk;
+    DWT->CYCCNT = 0;
+    DWT->CTRL |= DWT_CTRL_CYCCNTENA_Msk;
 }
 
 static inline uint32_t cycle_counter_read(void)
 {
-    return DWT->cyccnt;
+    return DWT->CYCCNT;
 }
 
 #endif

@@ -1,6 +1,6 @@
 #include "hal/stm32g474/deadline_guard.h"
 
-#include "hal/stm32g474/core.h"
+#include "hal/cortex_m/interrupts.h"
 #include "hal/stm32g474/pwm.h"
 
 static volatile bool missed;
@@ -23,7 +23,7 @@ void deadline_guard_start(void)
     TIM2->ccr[0] = count - count % PWM_PERIOD + PWM_PERIOD + DEADLINE_CYCLES;
     TIM2->sr = 0;
     TIM2->dier = TIM_DIER_CC1IE;
-    interrupt_enable(INTERRUPT_TIM2, PRIORITY_GUARD);
+    interrupt_enable(TIM2_IRQn, PRIORITY_GUARD);
 }
 
 IN_CCM(deadline_guard_interrupt)
@@ -32,7 +32,7 @@ void deadline_guard_interrupt(void)
     pwm_open_bridge();
     TIM2->sr = ~TIM_SR_CC1IF;
     missed = true;
-    data_barrier(); /* the flag is down before the interrupt ends */
+    __DSB(); /* the flag is down before the interrupt ends */
 }
 
 IN_CCM(deadline_guard_take_missed)

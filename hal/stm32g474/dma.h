@@ -2,7 +2,7 @@
 #ifndef STEADYSTEP_STM32G474_DMA_H
 #define STEADYSTEP_STM32G474_DMA_H
 
-#include "hal/stm32g474/core.h"
+#include "hal/stm32g474/device.h"
 #include "hal/stm32g474/registers.h"
 
 /* Channels counted from 0, as their multiplexer counts; the manual's channel 1 is 0. */
@@ -21,7 +21,7 @@ static inline void dma_start(uint32_t channel, uint32_t request,
     DMA1->ch[channel].par = (uint32_t)(uintptr_t)peripheral;
     DMA1->ch[channel].mar = (uint32_t)(uintptr_t)memory;
     DMA1->ch[channel].ndtr = count;
-    data_barrier(); /* what it is to send is in memory */
+    __DSB(); /* what it is to send is in memory */
     DMA1->ch[channel].cr = control | DMA_CR_EN;
 }
 

@@ -1,4 +1,5 @@
-/* Quadrature encoder on TIM4, every edge counted. */
+/* Quadrature encoder on the timer of the pin map, every edge counted; without one it counts none.
+ */
 #ifndef STEADYSTEP_STM32G474_ENCODER_H
 #define STEADYSTEP_STM32G474_ENCODER_H
 

@@ -1,25 +1,21 @@
 /* The image: the board's start, the application's loop. */
 #include "firmware/application/application.h"
-#include "hal/stm32g474/board_hal.h"
+#include "hal/cortex_m/board_hal.h"
+#include "hal/cortex_m/crash.h"
+#include "hal/cortex_m/image.h"
+#include "hal/cortex_m/serial_line.h"
 #include "hal/stm32g474/clock.h"
 #include "hal/stm32g474/control_interrupt.h"
-#include "hal/stm32g474/core.h"
-#include "hal/stm32g474/crash.h"
 #include "hal/stm32g474/current_sampling.h"
 #include "hal/stm32g474/cycle_counter.h"
 #include "hal/stm32g474/deadline_guard.h"
 #include "hal/stm32g474/encoder.h"
-#include "hal/stm32g474/image.h"
+#include "hal/stm32g474/flash_errors.h"
 #include "hal/stm32g474/overcurrent_trip.h"
-#include "hal/stm32g474/parameter_flash.h"
 #include "hal/stm32g474/phase_voltage_sampling.h"
 #include "hal/stm32g474/pins.h"
 #include "hal/stm32g474/pwm.h"
-#include "hal/stm32g474/serial_line.h"
-#include "hal/stm32g474/wait.h"
 #include "hal/stm32g474/watchdog.h"
-
-enum { START_DONE = 1000 }; /* control period from which a crash is none of the start */
 
 static struct application application;
 
@@ -47,22 +43,16 @@ static void start_control(void)
     phase_voltage_sampling_configure();
     deadline_guard_configure();
     pwm_start();
-    pwm_clear_break();
+    pwm_watch_fault();
     deadline_guard_start();
     current_sampling_start();
 }
 
-/* Says why, once a second, to whoever listens. */
 static _Noreturn void stay_off(void)
 {
     pwm_configure(); /* holds the gates low; no more is started, as any of it may have failed */
     pins_connect();
-    for (;;) {
-        serial_line_tell("steadystep stays off, three starts failed: ");
-        serial_line_tell(crash_start_cause());
-        serial_line_tell("\r\n");
-        wait_cycles(HSI16_Hz);
-    }
+    crash_tell();
 }
 
 int main(void)
@@ -81,11 +71,9 @@ int main(void)
     watchdog_start();
     pins_led(1);
     for (;;) {
-        if (control_period() - START_DONE < CONTROL_NOT_STARTED / 2) {
-            crash_start_done();
-        }
+        crash_watch_start();
         application_background(&application);
-        serial_line_continue();
-        wait_for_interrupt();
+        (void)serial_line_write(0, 0);
+        __WFI();
     }
 }

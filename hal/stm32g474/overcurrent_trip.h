@@ -1,6 +1,6 @@
 /*
- * Hardware overcurrent trip: a comparator on every low-side shunt opens the bridge through the PWM
- * timer's break input, without software and without clock.
+ * Hardware overcurrent trip: the pin map's comparators on the low-side shunts open the bridge
+ * through the PWM timer's break input, without software and without clock.
  */
 #ifndef STEADYSTEP_STM32G474_OVERCURRENT_TRIP_H
 #define STEADYSTEP_STM32G474_OVERCURRENT_TRIP_H

@@ -1,12 +1,13 @@
-#include "hal/stm32g474/parameter_flash.h"
+#include "hal/cortex_m/parameter_flash.h"
 
 #include <string.h>
 
-#include "hal/stm32g474/board.h"
-#include "hal/stm32g474/core.h"
-#include "hal/stm32g474/crash.h"
+#include "hal/cortex_m/crash.h"
+#include "hal/cortex_m/interrupts.h"
+#include "hal/cortex_m/wait.h"
+#include "hal/stm32g474/flash_errors.h"
+#include "hal/stm32g474/handlers.h"
 #include "hal/stm32g474/registers.h"
-#include "hal/stm32g474/wait.h"
 
 enum {
     BANK_PAGES = FLASH_BANK_BYTES / FLASH_PAGE_BYTES,
@@ -90,7 +91,7 @@ bool parameter_flash_take_error(void)
     }
     FLASH->eccr = FLASH_ECCR_ECCD;
     damaged = true;
-    data_barrier(); /* the request is down before the handler ends */
+    __DSB(); /* the request is down before the handler ends */
     return true;
 }
 
@@ -102,12 +103,12 @@ static bool read_store(uint8_t *to, uint32_t offset, size_t count)
 
     FLASH->acr = acr & ~FLASH_ACR_DCEN;
     damaged = false;
-    compiler_barrier();
+    __COMPILER_BARRIER();
     memcpy(to, (const void *)(uintptr_t)(STORE + offset), count);
-    data_barrier();
+    __DSB();
     const bool late = (FLASH->eccr & FLASH_ECCR_ECCD) != 0; /* by this the NMI has come */
 
-    instruction_barrier();
+    __ISB();
     FLASH->acr = acr;
     return !late && !damaged;
 }
@@ -168,4 +169,17 @@ bool parameter_flash_program(uint32_t offset, const void *data, size_t count)
 bool parameter_flash_read(uint32_t offset, void *data, size_t count)
 {
     return in_store(offset, count) && read_store(data, offset, count);
+}
+
+/* A double error in the parameter store is what a loss of power leaves; any other NMI is a crash.
+ */
+__attribute__((naked)) void nmi_exception(void)
+{
+    __asm__ volatile("push {r4, lr}\n"
+                     "bl parameter_flash_take_error\n"
+                     "pop {r4, lr}\n"
+                     "cmp r0, #0\n"
+                     "it ne\n"
+                     "bxne lr\n"
+                     "b crash_exception\n");
 }

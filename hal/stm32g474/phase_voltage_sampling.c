@@ -2,10 +2,8 @@
 
 #include "hal/stm32g474/adc.h"
 #include "hal/stm32g474/board.h"
-#include "hal/stm32g474/core.h"
 #include "hal/stm32g474/deadline_guard.h"
 #include "hal/stm32g474/dma.h"
-#include "hal/stm32g474/pins.h"
 #include "hal/stm32g474/pwm.h"
 
 enum {
@@ -24,13 +22,17 @@ struct phase {
     uint16_t sums[2 * HALF]; /* of the legs + and - in turn, two periods */
 };
 
+#define ADC_A PERIPHERAL(ADC, LEGS_A_CONVERTER)
+#define ADC_B PERIPHERAL(ADC, LEGS_B_CONVERTER)
+
 static struct phase phase_a, phase_b;
 static uint32_t last_done = UINT32_MAX; /* half of the period before; none at first */
 
 static void start_converter(struct adc_registers *adc, uint32_t plus, uint32_t minus)
 {
     adc_power_up(adc);
-    adc->smpr = ADC_SMPR_SMP(plus, ADC_SAMPLE_2_5) | ADC_SMPR_SMP(minus, ADC_SAMPLE_2_5);
+    adc->smpr = 0; /* ADC_SAMPLE_2_5 of all channels */
+    adc->smpr2 = 0;
     adc->sqr1 = ADC_SQR1_L(LEGS_OF_PHASE - 1) | ADC_SQR1_SQ1(plus) | ADC_SQR1_SQ2(minus);
     adc->cfgr2 = ADC_CFGR2_ROVSE | ADC_CFGR2_OVSR(ADC_OVERSAMPLE_8) | ADC_CFGR2_OVSS(0);
     adc->cfgr = ADC_CFGR_DMAEN | ADC_CFGR_DMACFG | ADC_CFGR_EXTSEL(ADC_TRIGGER_TIM3_TRGO) |
@@ -63,11 +65,11 @@ static void prepare_trigger(void)
 void phase_voltage_sampling_configure(void)
 {
     prepare_trigger();
-    start_transfer(DMA_LEGS_A, DMAMUX_ADC3, ADC3, &phase_a);
-    start_transfer(DMA_LEGS_B, DMAMUX_ADC4, ADC4, &phase_b);
+    start_transfer(DMA_LEGS_A, PERIPHERAL(DMAMUX_ADC, LEGS_A_CONVERTER), ADC_A, &phase_a);
+    start_transfer(DMA_LEGS_B, PERIPHERAL(DMAMUX_ADC, LEGS_B_CONVERTER), ADC_B, &phase_b);
     adc_clock(ADC345_COMMON, RCC_AHB2ENR_ADC345EN);
-    start_converter(ADC3, CHANNEL_LEG_A_PLUS, CHANNEL_LEG_A_MINUS);
-    start_converter(ADC4, CHANNEL_LEG_B_PLUS, CHANNEL_LEG_B_MINUS);
+    start_converter(ADC_A, LEG_A_PLUS_CHANNEL, LEG_A_MINUS_CHANNEL);
+    start_converter(ADC_B, LEG_B_PLUS_CHANNEL, LEG_B_MINUS_CHANNEL);
 }
 
 /* To the nearest code, ties upwards. */
@@ -110,5 +112,5 @@ bool phase_voltage_sampling_read(struct hal_samples *samples)
     samples->phase_voltage_b = mean(&phase_b.sums[done]);
     return other_half && (stored_a < HALF) == (stored_b < HALF) &&
            in_step(stored_a, done, since_peak) && in_step(stored_b, done, since_peak) &&
-           ((ADC3->isr | ADC4->isr) & ADC_ISR_OVR) == 0;
+           ((ADC_A->isr | ADC_B->isr) & ADC_ISR_OVR) == 0;
 }

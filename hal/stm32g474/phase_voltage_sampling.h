@@ -1,8 +1,8 @@
 /*
- * Mean voltage of both phases over S(k-1)...S(k). ADC3 converts the legs A+ and A-, ADC4 the legs
- * B+ and B-, eight times each in a group, added up by hardware; 17 groups in a period, in step with
- * the PWM timer, are 136 samples of each leg. DMA stores the sums of a period in one half of a
- * buffer while the interrupt reads the other.
+ * Mean voltage of both phases over S(k-1)...S(k). One converter has the legs A+ and
+ * A-, another B+ and B-, eight times each in a group, added up by hardware; 17 groups in a period,
+ * in step with the PWM timer, are 136 samples of each leg. DMA stores the sums of a period in one
+ * half of a buffer while the interrupt reads the other.
  */
 #ifndef STEADYSTEP_STM32G474_PHASE_VOLTAGE_SAMPLING_H
 #define STEADYSTEP_STM32G474_PHASE_VOLTAGE_SAMPLING_H

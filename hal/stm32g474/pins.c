@@ -1,5 +1,6 @@
 #include "hal/stm32g474/pins.h"
 
+#include "hal/stm32g474/board.h"
 #include "hal/stm32g474/registers.h"
 
 struct pin {
@@ -11,6 +12,9 @@ struct pin {
     {GPIO##port, number, GPIO_MODE_##mode, alternate, GPIO_PULL_##pull},
 
 static const struct pin pins[] = {BOARD_PINS(PIN_ENTRY)};
+
+#define PORT_CLOCK(port, number, mode, alternate, pull, peripheral, signal)                        \
+    | RCC_AHB2ENR_GPIO##port##EN
 
 static void connect(const struct pin *pin)
 {
@@ -27,7 +31,7 @@ static void connect(const struct pin *pin)
 
 void pins_connect(void)
 {
-    RCC->ahb2enr |= RCC_AHB2ENR_GPIOAEN | RCC_AHB2ENR_GPIOBEN | RCC_AHB2ENR_GPIOCEN;
+    RCC->ahb2enr |= 0 BOARD_PINS(PORT_CLOCK);
     (void)RCC->ahb2enr;
     for (uint32_t i = 0; i < sizeof pins / sizeof pins[0]; i++) {
         connect(&pins[i]);
@@ -36,5 +40,5 @@ void pins_connect(void)
 
 void pins_led(int on)
 {
-    GPIOA->bsrr = on ? BIT(LED_PIN) : BIT(LED_PIN + 16);
+    LED_PORT->bsrr = on ? BIT(LED_PIN) : BIT(LED_PIN + 16);
 }

@@ -1,10 +1,15 @@
 #include "hal/stm32g474/pwm.h"
 
-#include "hal/stm32g474/core.h"
-#include "hal/stm32g474/crash.h"
-#include "hal/stm32g474/wait.h"
+#include "hal/cortex_m/crash.h"
+#include "hal/cortex_m/interrupts.h"
+#include "hal/cortex_m/wait.h"
 
 enum { UPDATE_WAIT = 2 * PWM_PERIOD }; /* passes: more than eight periods */
+
+#define HIGH_SIDES (TIM_CCER_CC1E | TIM_CCER_CC2E | TIM_CCER_CC3E | TIM_CCER_CC4E)
+#define LOW_SIDES  (TIM_CCER_CC1NE | TIM_CCER_CC2NE | TIM_CCER_CC3NE | TIM_CCER_CC4NE)
+
+#define BREAK_BY_COMPARATOR(number, input) | TIM_AF1_BKCMP##number##E
 
 void pwm_configure(void)
 {
@@ -26,12 +31,12 @@ void pwm_configure(void)
     TIM1->ccmr3 = TIM_CCMR3_OC5M(TIM_PWM_MODE_2);
     TIM1->ccr5 = PWM_HALF_PERIOD - 1;
     TIM1->cr2 = TIM_CR2_MMS(TIM_TRGO_UPDATE) | TIM_CR2_MMS2(TIM_TRGO2_OC5REF); /* idle: all low */
-    TIM1->ccer = TIM_CCER_CC1E | TIM_CCER_CC1NE | TIM_CCER_CC2E | TIM_CCER_CC2NE | TIM_CCER_CC3E |
-                 TIM_CCER_CC3NE | TIM_CCER_CC4E | TIM_CCER_CC4NE;
+    TIM1->ccer = HIGH_SIDES | (BRIDGE == BRIDGE_OF_GATES ? LOW_SIDES : 0);
 
-    /* The comparators, not the pin; active high, without filter, so without clock and at once. */
-    TIM1->af1 = TIM_AF1_BKCMP1E | TIM_AF1_BKCMP2E | TIM_AF1_BKCMP3E | TIM_AF1_BKCMP4E;
-    TIM1->bdtr = PWM_BDTR;
+    /* Active high, without filter, so without clock and at once; the fault output is low. */
+    TIM1->af1 = (0 OVERCURRENT_COMPARATORS(BREAK_BY_COMPARATOR)) |
+                (BRIDGE == BRIDGE_INTEGRATED ? TIM_AF1_BKINE | TIM_AF1_BKINP : 0);
+    pwm_open_bridge();
 
     /*
      * A halt by the debugger stops the counter and with it, as OSSI is set, holds the gates low
@@ -74,3 +79,28 @@ void pwm_start(void)
     see_update_at_peak();
     see_update_at_peak();
 }
+
+#if BRIDGE == BRIDGE_INTEGRATED
+
+void pwm_watch_fault(void)
+{
+    pwm_clear_break(); /* the fault output read low before its pin was connected */
+    interrupt_enable(TIM1_BRK_TIM15_IRQn, PRIORITY_GUARD);
+}
+
+IN_CCM(pwm_fault_interrupt)
+void pwm_fault_interrupt(void)
+{
+    pwm_open_bridge();
+    TIM1->dier = 0;
+    __DSB(); /* the request is down before the interrupt ends */
+}
+
+#else
+
+void pwm_watch_fault(void)
+{
+    pwm_clear_break();
+}
+
+#endif

@@ -3,8 +3,9 @@
  * high around the valley; compares load at the peak alone. The peak, S(k), starts the injected
  * conversions (TRGO2, from channel 5) and, once, the timers that keep step (TRGO, update).
  *
- * The gates follow the compares while MOE is set. It is cleared by software, by a comparator
- * (overcurrent_trip.h), by a lockup of the core, a parity error of SRAM (if the option byte
+ * The gates follow the compares while MOE is set, and the reset of an integrated bridge is high. It
+ * is cleared by software, by a comparator (overcurrent_trip.h) or the fault output of an integrated
+ * bridge, by a lockup of the core, a parity error of SRAM (if the option byte
  * SRAM_PE enables the check) or a stop of the crystal; set by pwm_close_bridge alone.
  */
 #ifndef STEADYSTEP_STM32G474_PWM_H
@@ -21,28 +22,44 @@
 void pwm_configure(void);
 /* Starts the counter, and returns at a peak, having seen that compares load there. */
 void pwm_start(void);
+/* Forgets what the break input saw before the pins were connected; from here on the fault of an
+   integrated bridge is followed. */
+void pwm_watch_fault(void);
+/* An integrated bridge says that it has shut down: MOE is clear by then, its reset follows. */
+void pwm_fault_interrupt(void);
 
 /* Break flags, latched: a comparator, or the system (lockup, memory error, crystal). */
 #define PWM_BREAK_FLAGS (TIM_SR_BIF | TIM_SR_SBIF)
 
-/* What never changes in the break and dead-time register; MOE comes and goes. Dead time: above 127
-   cycles it counts in twos, 64 + DTG[5:0] of them. */
-#define PWM_BDTR                                                                                   \
-    (TIM_BDTR_DTG(0x80 | (DEAD_TIME_CYCLES / 2 - 64)) | TIM_BDTR_LOCK(3) | TIM_BDTR_OSSI |         \
-     TIM_BDTR_OSSR | TIM_BDTR_BKE | TIM_BDTR_BKP)
+/* Dead time: above 127 cycles it counts in twos, 64 + DTG[5:0] of them, above 254 in eights, 32 +
+   DTG[4:0] of them. */
+#define PWM_DEAD_TIME_CODE                                                                         \
+    (DEAD_TIME_CYCLES < 128   ? DEAD_TIME_CYCLES                                                   \
+     : DEAD_TIME_CYCLES < 256 ? 0x80 | (DEAD_TIME_CYCLES / 2 - 64)                                 \
+                              : 0xc0 | (DEAD_TIME_CYCLES / 8 - 32))
 
-/* All gates off; one write, from anywhere. */
+/* What never changes in the break and dead-time register; MOE comes and goes. */
+#define PWM_BDTR                                                                                   \
+    (TIM_BDTR_DTG(PWM_DEAD_TIME_CODE) | TIM_BDTR_LOCK(3) | TIM_BDTR_OSSI | TIM_BDTR_OSSR |         \
+     TIM_BDTR_BKE | TIM_BDTR_BKP)
+
+/* All gates off; from anywhere. An integrated bridge first: without MOE its inputs are low, which
+   alone would close the low sides. */
 static inline void pwm_open_bridge(void)
 {
+#if BRIDGE == BRIDGE_INTEGRATED
+    BRIDGE_RESET_PORT->bsrr = BIT(BRIDGE_RESET_PIN + 16);
+#endif
     TIM1->bdtr = PWM_BDTR;
 }
 
 /* Duties, to load at the next peak. */
 static inline void pwm_write(const uint16_t high_counts[HAL_LEGS])
 {
-    for (int leg = 0; leg < HAL_LEGS; leg++) {
-        TIM1->ccr[leg] = high_counts[leg];
-    }
+    TIM1->ccr[CHANNEL_A_PLUS - 1] = high_counts[HAL_LEG_A_PLUS];
+    TIM1->ccr[CHANNEL_A_MINUS - 1] = high_counts[HAL_LEG_A_MINUS];
+    TIM1->ccr[CHANNEL_B_PLUS - 1] = high_counts[HAL_LEG_B_PLUS];
+    TIM1->ccr[CHANNEL_B_MINUS - 1] = high_counts[HAL_LEG_B_MINUS];
 }
 
 static inline bool pwm_break_latched(void)
@@ -56,6 +73,9 @@ static inline void pwm_close_bridge(void)
 {
     if (!pwm_break_latched()) {
         TIM1->bdtr = PWM_BDTR | TIM_BDTR_MOE;
+#if BRIDGE == BRIDGE_INTEGRATED
+        BRIDGE_RESET_PORT->bsrr = BIT(BRIDGE_RESET_PIN);
+#endif
         if (pwm_break_latched()) {
             pwm_open_bridge();
         }
@@ -71,6 +91,9 @@ static inline bool pwm_bridge_closed(void)
 static inline void pwm_clear_break(void)
 {
     TIM1->sr = ~PWM_BREAK_FLAGS;
+#if BRIDGE == BRIDGE_INTEGRATED
+    TIM1->dier = TIM_DIER_BIE;
+#endif
 }
 
 /* Core cycles since S(k), the last peak. */

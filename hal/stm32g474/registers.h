@@ -13,6 +13,8 @@
 
 #include <stdint.h>
 
+#include "hal/stm32g474/device.h" /* first: structs of CMSIS-Core have members named COMP1... */
+
 #define BIT(position)                 (UINT32_C(1) << (position))
 #define FIELD(value, position, width) (((uint32_t)(value) & (BIT(width) - 1u)) << (position))
 
@@ -67,13 +69,16 @@ struct rcc_registers {
 #define RCC_AHB2ENR_ADC12EN         BIT(13)
 #define RCC_AHB2ENR_ADC345EN        BIT(14)
 #define RCC_AHB2ENR_DAC3EN          BIT(18)
+#define RCC_AHB2ENR_DAC4EN          BIT(19)
 #define RCC_APB1ENR1_TIM2EN         BIT(0)
 #define RCC_APB1ENR1_TIM3EN         BIT(1)
 #define RCC_APB1ENR1_TIM4EN         BIT(2)
+#define RCC_APB1ENR1_TIM5EN         BIT(3)
 #define RCC_APB1ENR1_PWREN          BIT(28)
 #define RCC_APB1ENR2_LPUART1EN      BIT(0)
 #define RCC_APB2ENR_SYSCFGEN        BIT(0)
 #define RCC_APB2ENR_TIM1EN          BIT(11)
+#define RCC_APB2ENR_TIM8EN          BIT(13)
 #define RCC_CCIPR_LPUART1SEL(value) FIELD(value, 10, 2)
 #define RCC_CSR_LSION               BIT(0)
 #define RCC_CSR_LSIRDY              BIT(1)
@@ -159,7 +164,7 @@ struct syscfg_registers {
 #define SYSCFG_CFGR2_SPL BIT(1)
 #define SYSCFG_CFGR2_SPF BIT(8)
 
-/* ---- Timers: TIM1 has all of these, TIM2, TIM3 and TIM4 a part of them ---- */
+/* ---- Timers: TIM1 and TIM8 have all of these, TIM2...TIM5 a part of them ---- */
 struct tim_registers {
     volatile uint32_t cr1, cr2, smcr, dier, sr, egr, ccmr_output[2], ccer, cnt, psc, arr, rcr;
     volatile uint32_t ccr[4], bdtr, ccr5, ccr6, ccmr3, dtr2, ecr, tisel, af1, af2;
@@ -168,6 +173,8 @@ struct tim_registers {
 #define TIM2 ((struct tim_registers *)0x40000000u)
 #define TIM3 ((struct tim_registers *)0x40000400u)
 #define TIM4 ((struct tim_registers *)0x40000800u)
+#define TIM5 ((struct tim_registers *)0x40000c00u)
+#define TIM8 ((struct tim_registers *)0x40013400u)
 
 #define TIM_CR1_CEN           BIT(0)
 #define TIM_CR1_DIR           BIT(4)
@@ -178,6 +185,7 @@ struct tim_registers {
 #define TIM_SMCR_SMS(value)   FIELD(value, 0, 3)
 #define TIM_SMCR_TS(value)    FIELD(value, 4, 3)
 #define TIM_DIER_CC1IE        BIT(1)
+#define TIM_DIER_BIE          BIT(7)
 #define TIM_SR_UIF            BIT(0)
 #define TIM_SR_CC1IF          BIT(1)
 #define TIM_SR_BIF            BIT(7)
@@ -208,10 +216,15 @@ struct tim_registers {
 #define TIM_BDTR_BKP          BIT(13)
 #define TIM_BDTR_MOE          BIT(15)
 #define TIM_BDTR_BKF(value)   FIELD(value, 16, 4)
+#define TIM_AF1_BKINE         BIT(0)
 #define TIM_AF1_BKCMP1E       BIT(1)
 #define TIM_AF1_BKCMP2E       BIT(2)
 #define TIM_AF1_BKCMP3E       BIT(3)
 #define TIM_AF1_BKCMP4E       BIT(4)
+#define TIM_AF1_BKCMP5E       BIT(5)
+#define TIM_AF1_BKCMP6E       BIT(6)
+#define TIM_AF1_BKCMP7E       BIT(7)
+#define TIM_AF1_BKINP         BIT(9)
 
 enum { TIM_CENTRE_ALIGNED_1 = 1 };                       /* CMS */
 enum { TIM_TRGO_UPDATE = 2, TIM_TRGO2_OC5REF = 8 };      /* MMS, MMS2 */
@@ -241,6 +254,7 @@ struct adc_registers {
 #define ADC2 ((struct adc_registers *)0x50000100u)
 #define ADC3 ((struct adc_registers *)0x50000400u)
 #define ADC4 ((struct adc_registers *)0x50000500u)
+#define ADC5 ((struct adc_registers *)0x50000600u)
 
 #define ADC_ISR_ADRDY                BIT(0)
 #define ADC_ISR_OVR                  BIT(4)
@@ -284,7 +298,7 @@ struct adc_common_registers {
 
 enum { ADC_CLOCK_HCLK_DIV4 = 3 };                 /* CKMODE */
 enum { ADC_TRIGGER_RISING = 1 };                  /* EXTEN, JEXTEN */
-enum { ADC_TRIGGER_TIM3_TRGO = 4 };               /* EXTSEL of ADC3 and ADC4 */
+enum { ADC_TRIGGER_TIM3_TRGO = 4 };               /* EXTSEL of ADC3, 4, 5 */
 enum { ADC_TRIGGER_TIM1_TRGO2 = 8 };              /* JEXTSEL of ADC1 and ADC2 */
 enum { ADC_OVERSAMPLE_8 = 2 };                    /* OVSR */
 enum { ADC_SAMPLE_2_5 = 0, ADC_SAMPLE_24_5 = 3 }; /* SMP, in ADC clocks */
@@ -295,6 +309,7 @@ struct opamp_registers {
 };
 #define OPAMP1 ((struct opamp_registers *)0x40010300u)
 #define OPAMP2 ((struct opamp_registers *)0x40010304u)
+#define OPAMP3 ((struct opamp_registers *)0x40010308u)
 
 #define OPAMP_CSR_OPAMPEN         BIT(0)
 #define OPAMP_CSR_VP_SEL(value)   FIELD(value, 2, 2)
@@ -303,7 +318,7 @@ struct opamp_registers {
 #define OPAMP_CSR_OPAINTOEN       BIT(8)
 #define OPAMP_CSR_PGA_GAIN(value) FIELD(value, 14, 5)
 
-enum { OPAMP_VP_VINP0 = 0, OPAMP_VM_PGA = 2, OPAMP_PGA_GAIN_8 = 2 };
+enum { OPAMP_VP_VINP0 = 0, OPAMP_VM_PGA = 2, OPAMP_PGA_GAIN_2 = 0 }; /* the next gains double */
 
 /* ---- Comparators ---- */
 struct comp_registers {
@@ -313,17 +328,20 @@ struct comp_registers {
 #define COMP2 ((struct comp_registers *)0x40010204u)
 #define COMP3 ((struct comp_registers *)0x40010208u)
 #define COMP4 ((struct comp_registers *)0x4001020cu)
+#define COMP5 ((struct comp_registers *)0x40010210u)
+#define COMP6 ((struct comp_registers *)0x40010214u)
+#define COMP7 ((struct comp_registers *)0x40010218u)
 
 #define COMP_CSR_EN            BIT(0)
 #define COMP_CSR_INMSEL(value) FIELD(value, 4, 3)
+#define COMP_CSR_INPSEL        BIT(8)
 #define COMP_CSR_HYST(value)   FIELD(value, 16, 3)
 #define COMP_CSR_LOCK          BIT(31)
 
-enum {
-    COMP_MINUS_DAC3 = 4,
-    COMP_HYSTERESIS_10_MV = 1
-}; /* DAC3: channel 1 of COMP1 and COMP3,
-      channel 2 of COMP2 and COMP4 */
+/* INMSEL: channel 1 of DAC3 at COMP1 and COMP3, channel 2 at COMP2 and COMP4; channel 1 of DAC4 at
+   COMP5 and COMP7, channel 2 at COMP6. */
+enum { COMP_MINUS_DAC3_OR_4 = 4 };
+enum { COMP_HYSTERESIS_10_MV = 1 };
 
 /* ---- Converters to analog ---- */
 struct dac_registers {
@@ -331,6 +349,7 @@ struct dac_registers {
     volatile uint32_t dhr12ld, dhr8rd, dor1, dor2, sr, ccr, mcr;
 };
 #define DAC3 ((struct dac_registers *)0x50001000u)
+#define DAC4 ((struct dac_registers *)0x50001400u)
 
 #define DAC_CR_EN1           BIT(0)
 #define DAC_CR_EN2           BIT(16)
@@ -374,7 +393,8 @@ struct dmamux_registers {
 
 #define DMAMUX_CCR_DMAREQ_ID(value) FIELD(value, 0, 8)
 
-enum { DMAMUX_LPUART1_RX = 34, DMAMUX_LPUART1_TX = 35, DMAMUX_ADC3 = 37, DMAMUX_ADC4 = 38 };
+enum { DMAMUX_LPUART1_RX = 34, DMAMUX_LPUART1_TX = 35 };
+enum { DMAMUX_ADC3 = 37, DMAMUX_ADC4 = 38, DMAMUX_ADC5 = 39 };
 
 /* ---- Serial line ---- */
 struct lpuart_registers {
@@ -428,13 +448,5 @@ struct dbgmcu_registers {
 #define DBGMCU_APB1LFZR_TIM3 BIT(1)
 #define DBGMCU_APB1LFZR_IWDG BIT(12)
 #define DBGMCU_APB2FZR_TIM1  BIT(11)
-
-/* ---- Interrupt numbers ---- */
-enum interrupt {
-    INTERRUPT_ADC1_2 = 18,
-    INTERRUPT_TIM2 = 28,
-    INTERRUPT_LPUART1 = 91,
-    INTERRUPTS = 102,
-};
 
 #endif

@@ -1,13 +1,14 @@
-#include "hal/stm32g474/serial_line.h"
+#include "hal/cortex_m/serial_line.h"
 
 #include <stdbool.h>
 
 #include "hal/hal.h"
+#include "hal/cortex_m/interrupts.h"
+#include "hal/cortex_m/port.h"
+#include "hal/cortex_m/wait.h"
 #include "hal/stm32g474/board.h"
-#include "hal/stm32g474/control_interrupt.h"
-#include "hal/stm32g474/core.h"
 #include "hal/stm32g474/dma.h"
-#include "hal/stm32g474/wait.h"
+#include "hal/stm32g474/handlers.h"
 
 enum {
     RECEIVE_BYTES = 4096, /* 44 ms at full rate; the background reads at least every 35 ms */
@@ -74,7 +75,7 @@ void serial_line_configure(void)
     dma_start(DMA_LINE_RECEIVE, DMAMUX_LPUART1_RX, &LPUART1->rdr, receive.bytes, RECEIVE_BYTES,
               DMA_CR_CIRC | DMA_CR_MINC | DMA_CR_PSIZE(DMA_BYTE) | DMA_CR_MSIZE(DMA_BYTE));
     LPUART1->cr1 = LPUART_CR1_UE | LPUART_CR1_RE | LPUART_CR1_TE | LPUART_CR1_CMIE;
-    interrupt_enable(INTERRUPT_LPUART1, PRIORITY_LINE);
+    interrupt_enable(LPUART1_IRQn, PRIORITY_LINE);
 }
 
 /* Bytes that DMA has stored behind a position of this buffer. */
@@ -111,9 +112,9 @@ void serial_line_interrupt(void)
     }
     /* The matched byte may still be on its way to memory. */
     (void)wait_until(&LPUART1->isr, LPUART_ISR_RXNE, 0, MOVE_WAIT);
-    data_barrier();
-    search_line_ends(control_period());
-    data_barrier();
+    __DSB();
+    search_line_ends(port_control_period());
+    __DSB();
 }
 
 /* After too much, or a line too long to have an end: goes on behind it. */
@@ -166,7 +167,7 @@ size_t serial_line_read(uint8_t *bytes, size_t capacity, uint32_t *line_period)
     if (receive.telling == 1 && count < capacity) {
         bytes[count++] = '\n';
         receive.telling--;
-        *line_period = control_period();
+        *line_period = port_control_period();
         return count;
     }
     for (uint32_t fresh = stored_behind(receive.read); count < capacity && fresh > 0; fresh--) {
@@ -198,18 +199,8 @@ size_t serial_line_read(uint8_t *bytes, size_t capacity, uint32_t *line_period)
     return count;
 }
 
-size_t serial_line_write(const uint8_t *bytes, size_t count)
-{
-    size_t moved = 0;
-
-    for (; moved < count && transmit.written - transmit.sent < TRANSMIT_BYTES; moved++) {
-        transmit.bytes[transmit.written++ % TRANSMIT_BYTES] = bytes[moved];
-    }
-    serial_line_continue();
-    return moved;
-}
-
-void serial_line_continue(void)
+/* What has been written goes on its way. */
+static void send(void)
 {
     if (transmit.sending > 0) {
         if (dma_remaining(DMA_LINE_TRANSMIT) > 0) {
@@ -228,4 +219,15 @@ void serial_line_continue(void)
                   transmit.sending,
                   DMA_CR_DIR | DMA_CR_MINC | DMA_CR_PSIZE(DMA_BYTE) | DMA_CR_MSIZE(DMA_BYTE));
     }
+}
+
+size_t serial_line_write(const uint8_t *bytes, size_t count)
+{
+    size_t moved = 0;
+
+    for (; moved < count && transmit.written - transmit.sent < TRANSMIT_BYTES; moved++) {
+        transmit.bytes[transmit.written++ % TRANSMIT_BYTES] = bytes[moved];
+    }
+    send();
+    return moved;
 }

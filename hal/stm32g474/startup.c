@@ -2,19 +2,22 @@
  * From reset to main: memory, FPU, vector table. Vector table and reset: ARMv7-M Architecture
  * Reference Manual, B1.5. All of this runs from flash, at 16 MHz.
  */
+#include "hal/cortex_m/crash.h"
+#include "hal/cortex_m/linker.h"
 #include "hal/stm32g474/control_interrupt.h"
-#include "hal/stm32g474/core.h"
-#include "hal/stm32g474/crash.h"
 #include "hal/stm32g474/deadline_guard.h"
-#include "hal/stm32g474/linker.h"
-#include "hal/stm32g474/serial_line.h"
-
-int main(void);
-void reset_handler(void);
+#include "hal/stm32g474/device.h"
+#include "hal/stm32g474/handlers.h"
+#include "hal/stm32g474/pwm.h"
 
 enum { CORE_VECTORS = 16, STACK_PAINT = (int)0xa7a7a7a7 };
 
 typedef void (*vector)(void);
+
+#define FAULT_OF_BRIDGE (BRIDGE == BRIDGE_INTEGRATED ? pwm_fault_interrupt : crash_exception)
+
+/* Coprocessors 10 and 11, which are the FPU: full access (ARMv7-M, B3.2.20). */
+#define CPACR_FPU (UINT32_C(0xf) << 20)
 
 /* In CCM SRAM, with the code they lead to. The core begins with the table of its start, in flash.
  */
@@ -27,13 +30,15 @@ __attribute__((section(".ccm.vectors"), used, aligned(512))) const struct {
     .core = {[0] = reset_handler, [1] = nmi_exception, [2 ... CORE_VECTORS - 2] = crash_exception},
     .interrupts =
         {
-            [0 ... INTERRUPT_ADC1_2 - 1] = crash_exception,
-            [INTERRUPT_ADC1_2] = control_interrupt,
-            [INTERRUPT_ADC1_2 + 1 ... INTERRUPT_TIM2 - 1] = crash_exception,
-            [INTERRUPT_TIM2] = deadline_guard_interrupt,
-            [INTERRUPT_TIM2 + 1 ... INTERRUPT_LPUART1 - 1] = crash_exception,
-            [INTERRUPT_LPUART1] = serial_line_interrupt,
-            [INTERRUPT_LPUART1 + 1 ... INTERRUPTS - 1] = crash_exception,
+            [0 ... ADC1_2_IRQn - 1] = crash_exception,
+            [ADC1_2_IRQn] = control_interrupt,
+            [ADC1_2_IRQn + 1 ... TIM1_BRK_TIM15_IRQn - 1] = crash_exception,
+            [TIM1_BRK_TIM15_IRQn] = FAULT_OF_BRIDGE,
+            [TIM1_BRK_TIM15_IRQn + 1 ... TIM2_IRQn - 1] = crash_exception,
+            [TIM2_IRQn] = deadline_guard_interrupt,
+            [TIM2_IRQn + 1 ... LPUART1_IRQn - 1] = crash_exception,
+            [LPUART1_IRQn] = serial_line_interrupt,
+            [LPUART1_IRQn + 1 ... INTERRUPTS - 1] = crash_exception,
         },
 };
 
@@ -62,22 +67,21 @@ static void fill(uint32_t *to, const uint32_t *end, uint32_t value)
 
 void reset_handler(void)
 {
-    SCB->cpacr |= SCB_CPACR_CP10(3) |
-                  SCB_CPACR_CP11(3); /* before anything could hold a register of the FPU */
-    data_barrier();
-    instruction_barrier();
+    SCB->CPACR |= CPACR_FPU; /* before anything could hold a register of the FPU */
+    __DSB();
+    __ISB();
 
     /* What of the stack has been used can be read afterwards: below this frame it is painted. */
     fill(&stack_bottom, (const uint32_t *)__builtin_frame_address(0) - 16, (uint32_t)STACK_PAINT);
-    copy(&ccm_start, &ccm_end, &ccm_load);
+    copy(&interrupt_code_start, &interrupt_code_end, &interrupt_code_load);
     copy(&data_start, &data_end, &data_load);
     fill(&bss_start, &bss_end, 0);
 
-    SCB->vtor = (uint32_t)&vectors;
-    SCB->shcsr |= SCB_SHCSR_MEMFAULTENA | SCB_SHCSR_BUSFAULTENA | SCB_SHCSR_USGFAULTENA;
-    SCB->ccr |= SCB_CCR_DIV_0_TRP;
-    data_barrier();
-    instruction_barrier();
+    SCB->VTOR = (uint32_t)&vectors;
+    SCB->SHCSR |= SCB_SHCSR_MEMFAULTENA_Msk | SCB_SHCSR_BUSFAULTENA_Msk | SCB_SHCSR_USGFAULTENA_Msk;
+    SCB->CCR |= SCB_CCR_DIV_0_TRP_Msk;
+    __DSB();
+    __ISB();
 
     (void)main();
     for (;;) { /* main does not return */

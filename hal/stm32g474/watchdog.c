@@ -1,8 +1,8 @@
 #include "hal/stm32g474/watchdog.h"
 
+#include "hal/cortex_m/crash.h"
+#include "hal/cortex_m/wait.h"
 #include "hal/stm32g474/board.h"
-#include "hal/stm32g474/crash.h"
-#include "hal/stm32g474/wait.h"
 
 enum {
     LSI_Hz = 32000,

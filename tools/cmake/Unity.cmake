@@ -5,6 +5,7 @@
 #   2. GitHub, at the pinned commit
 #   3. the Debian source package ntpsec 1.2.2, whose tests/unity is byte-identical to that commit
 include_guard(GLOBAL)
+include(PinnedFiles)
 
 set(unity_commit c3afe99a77b3ccd865f2768b18c038ec9600b56a) # 2.5.1 and 20 commits
 set(unity_sha256
@@ -14,47 +15,22 @@ set(unity_sha256
 set(UNITY_DIR ${CMAKE_BINARY_DIR}/_deps/unity CACHE PATH
   "Folder with unity.c, unity.h and unity_internals.h")
 
-function(unity_is_complete result)
-  set(files ${unity_sha256})
-  set(${result} TRUE PARENT_SCOPE)
-  while(files)
-    list(POP_FRONT files name expected)
-    set(actual missing)
-    if(EXISTS ${UNITY_DIR}/${name})
-      file(SHA256 ${UNITY_DIR}/${name} actual)
-    endif()
-    if(NOT actual STREQUAL expected)
-      set(${result} FALSE PARENT_SCOPE)
-    endif()
-  endwhile()
-endfunction()
-
-function(unity_from_github)
-  foreach(name IN ITEMS unity.c unity.h unity_internals.h)
-    file(DOWNLOAD
-      https://raw.githubusercontent.com/ThrowTheSwitch/Unity/${unity_commit}/src/${name}
-      ${UNITY_DIR}/${name} TIMEOUT 30 INACTIVITY_TIMEOUT 10 STATUS status)
-    list(GET status 0 code)
-    if(NOT code EQUAL 0)
-      return() # a truncated file is caught by its hash
-    endif()
-  endforeach()
-endfunction()
-
 function(unity_from_debian)
   execute_process(COMMAND sh ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/unity_from_debian.sh ${UNITY_DIR})
 endfunction()
 
-unity_is_complete(have_unity)
+pinned_files_complete(have_unity ${UNITY_DIR} "${unity_sha256}")
 if(NOT have_unity)
   message(STATUS "Unity: fetching from GitHub")
-  unity_from_github()
-  unity_is_complete(have_unity)
+  pinned_files_download(
+    https://raw.githubusercontent.com/ThrowTheSwitch/Unity/${unity_commit}/src
+    ${UNITY_DIR} "${unity_sha256}")
+  pinned_files_complete(have_unity ${UNITY_DIR} "${unity_sha256}")
 endif()
 if(NOT have_unity)
   message(STATUS "Unity: fetching from the Debian source package ntpsec")
   unity_from_debian()
-  unity_is_complete(have_unity)
+  pinned_files_complete(have_unity ${UNITY_DIR} "${unity_sha256}")
 endif()
 if(NOT have_unity)
   message(FATAL_ERROR "Unity: not obtained. Put unity.c, unity.h and unity_internals.h of commit "

@@ -1,13 +1,18 @@
-#include "hal/stm32g071/store.h"
+/*
+ * The last four pages of the flash. The chip has one bank: while a page is erased (up to 40 ms) or
+ * a word programmed (0.1 ms) the core stalls at its next fetch from flash. Both are refused while
+ * the bridge is on.
+ */
+#include "hal/cortex_m/parameter_flash.h"
 
 #include <string.h>
 
 #include "hal/stm32g071/bridge.h"
-#include "hal/stm32g071/core.h"
+#include "hal/stm32g071/watchdog.h"
 
 enum {
-    STORE_BYTES = STORE_PAGES * STORE_PAGE_BYTES,
-    FIRST_PAGE = FLASH_BANK_BYTES / FLASH_PAGE_BYTES - STORE_PAGES
+    STORE_BYTES = PARAMETER_PAGES * FLASH_PAGE_BYTES,
+    FIRST_PAGE = FLASH_BANK_BYTES / FLASH_PAGE_BYTES - PARAMETER_PAGES
 };
 
 #define STORE (FLASH_BANK_1 + FLASH_BANK_BYTES - (uint32_t)STORE_BYTES)
@@ -50,12 +55,12 @@ static void lock(void)
     bridge_release();
 }
 
-bool store_erase(uint32_t page)
+bool parameter_flash_erase(uint32_t page)
 {
-    if (page >= STORE_PAGES || !unlock()) {
+    if (page >= PARAMETER_PAGES || !unlock()) {
         return false;
     }
-    IWDG->kr = IWDG_FEED; /* nobody else can while the core stalls */
+    watchdog_feed(); /* nobody else can while the core stalls */
     FLASH->cr = FLASH_CR_PER | FLASH_CR_PNB(FIRST_PAGE + page);
     FLASH->cr |= FLASH_CR_STRT;
     const bool good = finished();
@@ -63,16 +68,16 @@ bool store_erase(uint32_t page)
     return good;
 }
 
-bool store_program(uint32_t offset, const void *data, size_t count)
+bool parameter_flash_program(uint32_t offset, const void *data, size_t count)
 {
     const uint8_t *bytes = data;
     bool good = true;
 
-    if (!in_store(offset, count) || offset % STORE_WORD_BYTES != 0 ||
-        count % STORE_WORD_BYTES != 0 || !unlock()) {
+    if (!in_store(offset, count) || offset % PARAMETER_WORD_BYTES != 0 ||
+        count % PARAMETER_WORD_BYTES != 0 || !unlock()) {
         return false;
     }
-    for (size_t done = 0; good && done < count; done += STORE_WORD_BYTES) {
+    for (size_t done = 0; good && done < count; done += PARAMETER_WORD_BYTES) {
         volatile uint32_t *place = (volatile uint32_t *)(uintptr_t)(STORE + offset + done);
         uint32_t word[2];
 
@@ -90,7 +95,7 @@ bool store_program(uint32_t offset, const void *data, size_t count)
     return good;
 }
 
-bool store_read(uint32_t offset, void *data, size_t count)
+bool parameter_flash_read(uint32_t offset, void *data, size_t count)
 {
     if (!in_store(offset, count)) {
         return false;

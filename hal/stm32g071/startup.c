@@ -1,14 +1,15 @@
 /* Reset and vector table: Armv6-M Architecture Reference Manual, B1.5. */
-#include "hal/stm32g071/crash.h"
-#include "hal/stm32g071/core.h"
+#include "hal/cortex_m/crash.h"
+#include "hal/cortex_m/linker.h"
+#include "hal/stm32g071/control_interrupt.h"
+#include "hal/stm32g071/device.h"
 #include "hal/stm32g071/handlers.h"
-#include "hal/stm32g071/linker.h"
 
 typedef void (*vector)(void);
 
 enum { EXCEPTIONS = 16 + INTERRUPTS };
 
-#define LINE(interrupt) [16 + INTERRUPT_##interrupt]
+#define LINE(interrupt) [16 + interrupt##_IRQn]
 
 #define VECTORS                                                                                    \
     {                                                                                              \
@@ -42,13 +43,14 @@ static void copy(const volatile uint32_t *from, volatile uint32_t *to, const uin
 
 void reset_handler(void)
 {
-    copy(&ram_code_load, &ram_code_start, &ram_code_end);
+    copy(&interrupt_code_load, &interrupt_code_start, &interrupt_code_end);
     copy(&data_load, &data_start, &data_end);
     for (volatile uint32_t *word = &bss_start; word < &bss_end; word++) {
         *word = 0;
     }
-    SCB->vtor = (uint32_t)(uintptr_t)vectors_in_ram;
-    synchronise();
+    SCB->VTOR = (uint32_t)(uintptr_t)vectors_in_ram;
+    __DSB();
+    __ISB();
     (void)main();
     crash_exception();
 }

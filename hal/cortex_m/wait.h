@@ -2,8 +2,8 @@
  * Waiting for hardware, never for ever. Limits count passes of the loop, of which the core makes at
  * most one in four cycles: `limit` passes last at least 4 x limit cycles.
  */
-#ifndef STEADYSTEP_STM32G474_WAIT_H
-#define STEADYSTEP_STM32G474_WAIT_H
+#ifndef STEADYSTEP_CORTEX_M_WAIT_H
+#define STEADYSTEP_CORTEX_M_WAIT_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,18 +1,28 @@
-#include "hal/stm32g071/serial.h"
+/*
+ * LPUART1. HAL_STREAM_LOST stands for what the buffer could not hold, as hal.h says.
+ */
+#include "hal/cortex_m/serial_line.h"
 
 #include <stdbool.h>
 
 #include "hal/hal.h"
+#include "hal/cortex_m/interrupts.h"
+#include "hal/cortex_m/port.h"
+#include "hal/cortex_m/wait.h"
 #include "hal/stm32g071/board.h"
 #include "hal/stm32g071/clock.h"
-#include "hal/stm32g071/core.h"
+#include "hal/stm32g071/handlers.h"
+#include "hal/stm32g071/registers.h"
 
 enum {
+    RECEIVED_BYTES = 512,
+    SENT_BYTES = 512,
     LINES = 16,
     /* What comes while the background reads must not reach what it reads. */
     LINES_KEPT = LINES - 4,
-    BYTES_KEPT = SERIAL_RECEIVED_BYTES - 16,
-    MOVE_TRIES = 100 /* DMA takes a byte within some cycles */
+    BYTES_KEPT = RECEIVED_BYTES - 16,
+    MOVE_TRIES = 100, /* DMA takes a byte within some cycles */
+    BYTE_WAIT = 1000  /* passes at 16 MHz; a byte takes 87 us */
 };
 
 /* Positions count bytes since start-up. */
@@ -24,12 +34,12 @@ struct line_end {
 
 /* The interrupt writes what has come, the background what it has read. */
 static struct {
-    uint8_t bytes[SERIAL_RECEIVED_BYTES]; /* written by DMA, round and round */
-    volatile uint32_t rounds;             /* completed by DMA */
-    struct line_end line[LINES];          /* in order */
-    volatile uint32_t lines;              /* ended since start-up */
-    uint32_t searched;                    /* line feeds up to here are among them */
-    volatile bool harmed;                 /* the line that is coming in */
+    uint8_t bytes[RECEIVED_BYTES]; /* written by DMA, round and round */
+    volatile uint32_t rounds;      /* completed by DMA */
+    struct line_end line[LINES];   /* in order */
+    volatile uint32_t lines;       /* ended since start-up */
+    uint32_t searched;             /* line feeds up to here are among them */
+    volatile bool harmed;          /* the line that is coming in */
 
     uint32_t read, lines_read;
     uint32_t lost_period;                       /* of the last line that was dropped */
@@ -37,7 +47,7 @@ static struct {
 } receiver;
 
 static struct {
-    uint8_t bytes[SERIAL_SENT_BYTES];
+    uint8_t bytes[SENT_BYTES];
     volatile uint32_t sent; /* bytes since start-up, those under way included */
     uint32_t written;
     volatile uint32_t under_way;
@@ -46,25 +56,42 @@ static struct {
 #define DMA_RECEIVER (&DMA1->channel[1])
 #define DMA_SENDER   (&DMA1->channel[2])
 
-void serial_start(void)
+static void set_rate(uint64_t clock_Hz)
+{
+    LPUART1->brr = (uint32_t)((256u * clock_Hz + BAUD / 2u) / BAUD); /* RM0444 */
+}
+
+void serial_line_tell(const char *text)
+{
+    if ((LPUART1->cr1 & LPUART_CR1_UE) == 0) {
+        set_rate(HSI16_Hz);
+        LPUART1->cr1 = LPUART_CR1_UE | LPUART_CR1_TE;
+    }
+    for (; *text != '\0'; text++) {
+        (void)wait_until(&LPUART1->isr, LPUART_ISR_TXE, LPUART_ISR_TXE, BYTE_WAIT);
+        LPUART1->tdr = (uint8_t)*text;
+    }
+}
+
+void serial_line_configure(void)
 {
     DMAMUX1->ccr[1] = DMAMUX_CCR_DMAREQ_ID(DMA_REQUEST_LPUART1_RX);
     DMA_RECEIVER->par = (uint32_t)(uintptr_t)&LPUART1->rdr;
     DMA_RECEIVER->mar = (uint32_t)(uintptr_t)receiver.bytes;
-    DMA_RECEIVER->ndtr = SERIAL_RECEIVED_BYTES;
+    DMA_RECEIVER->ndtr = RECEIVED_BYTES;
     DMA_RECEIVER->cr = DMA_CR_MINC | DMA_CR_CIRC | DMA_CR_PSIZE(DMA_BYTES_1) |
                        DMA_CR_MSIZE(DMA_BYTES_1) | DMA_CR_PL(DMA_PRIORITY_LOW) | DMA_CR_TCIE;
     DMA_RECEIVER->cr |= DMA_CR_EN;
     DMAMUX1->ccr[2] = DMAMUX_CCR_DMAREQ_ID(DMA_REQUEST_LPUART1_TX);
     DMA_SENDER->par = (uint32_t)(uintptr_t)&LPUART1->tdr;
-    interrupt_enable(INTERRUPT_DMA1_CHANNEL2_3, PRIORITY_LINE);
+    interrupt_enable(DMA1_CHANNEL2_3_IRQn, PRIORITY_LINE);
 
-    LPUART1->brr = (uint32_t)((256ull * CORE_CLOCK_Hz + SERIAL_BAUD / 2) / SERIAL_BAUD);
+    set_rate(CORE_CLOCK_Hz);
     LPUART1->cr2 = LPUART_CR2_ADD('\n');
     LPUART1->cr3 = LPUART_CR3_DMAR | LPUART_CR3_DMAT | LPUART_CR3_EIE;
     LPUART1->cr1 = LPUART_CR1_RE | LPUART_CR1_TE | LPUART_CR1_CMIE;
     LPUART1->cr1 |= LPUART_CR1_UE;
-    interrupt_enable(INTERRUPT_USART3_4_LPUART1, PRIORITY_LINE);
+    interrupt_enable(USART3_4_LPUART1_IRQn, PRIORITY_LINE);
 }
 
 /* Position of DMA. A round that the interrupt has not counted yet, masked or about to, is added. */
@@ -80,7 +107,7 @@ static uint32_t received(void)
             left = DMA_RECEIVER->ndtr; /* of the round that has begun */
         }
     } while (rounds != receiver.rounds); /* counted meanwhile */
-    return (rounds + uncounted) * SERIAL_RECEIVED_BYTES + (SERIAL_RECEIVED_BYTES - left);
+    return (rounds + uncounted) * RECEIVED_BYTES + (RECEIVED_BYTES - left);
 }
 
 /*
@@ -93,7 +120,7 @@ static void drop_what_is_lost(uint32_t end)
     const uint32_t lines = receiver.lines;
     bool dropped = false;
 
-    compiler_barrier();
+    __COMPILER_BARRIER();
     while (receiver.lines_read != lines &&
            (end - receiver.read > BYTES_KEPT || lines - receiver.lines_read > LINES_KEPT)) {
         if (lines - receiver.lines_read > LINES_KEPT) {
@@ -115,7 +142,7 @@ static void drop_what_is_lost(uint32_t end)
     }
 }
 
-size_t serial_read(uint8_t *bytes, size_t capacity, uint32_t *line_period)
+size_t serial_line_read(uint8_t *bytes, size_t capacity, uint32_t *line_period)
 {
     const uint32_t end = received();
     size_t moved = 0;
@@ -141,7 +168,7 @@ size_t serial_read(uint8_t *bytes, size_t capacity, uint32_t *line_period)
         if (receiver.read == end) {
             break;
         }
-        const uint8_t byte = receiver.bytes[receiver.read % SERIAL_RECEIVED_BYTES];
+        const uint8_t byte = receiver.bytes[receiver.read % RECEIVED_BYTES];
 
         if (byte == '\n' || byte == '\r') {
             const bool ended = receiver.lines != receiver.lines_read;
@@ -149,7 +176,7 @@ size_t serial_read(uint8_t *bytes, size_t capacity, uint32_t *line_period)
             if (byte == '\n' && !ended) {
                 break; /* its stamp comes in a moment */
             }
-            compiler_barrier();
+            __COMPILER_BARRIER();
             struct line_end *line = &receiver.line[receiver.lines_read % LINES];
             volatile bool *harmed = ended ? &line->harmed : &receiver.harmed;
 
@@ -175,10 +202,9 @@ size_t serial_read(uint8_t *bytes, size_t capacity, uint32_t *line_period)
 /* Sends what lies in one piece; nothing is under way. */
 static void send(void)
 {
-    const uint32_t first = sender.sent % SERIAL_SENT_BYTES;
+    const uint32_t first = sender.sent % SENT_BYTES;
     const uint32_t waiting = sender.written - sender.sent;
-    const uint32_t piece =
-        waiting < SERIAL_SENT_BYTES - first ? waiting : SERIAL_SENT_BYTES - first;
+    const uint32_t piece = waiting < SENT_BYTES - first ? waiting : SENT_BYTES - first;
 
     sender.under_way = piece;
     sender.sent += piece;
@@ -192,13 +218,13 @@ static void send(void)
     }
 }
 
-size_t serial_write(const uint8_t *bytes, size_t count)
+size_t serial_line_write(const uint8_t *bytes, size_t count)
 {
     size_t moved = 0;
 
     /* Bytes under way are still read. */
-    while (moved < count && sender.written - sender.sent + sender.under_way < SERIAL_SENT_BYTES) {
-        sender.bytes[sender.written % SERIAL_SENT_BYTES] = bytes[moved++];
+    while (moved < count && sender.written - sender.sent + sender.under_way < SENT_BYTES) {
+        sender.bytes[sender.written % SENT_BYTES] = bytes[moved++];
         sender.written++;
     }
     const uint32_t primask = interrupts_save_and_disable();
@@ -228,15 +254,15 @@ static void search_line_ends(uint32_t period)
 {
     const uint32_t end = received();
 
-    if (end - receiver.searched > SERIAL_RECEIVED_BYTES) {
-        receiver.searched = end - SERIAL_RECEIVED_BYTES;
+    if (end - receiver.searched > RECEIVED_BYTES) {
+        receiver.searched = end - RECEIVED_BYTES;
     }
     while (receiver.searched != end) {
-        if (receiver.bytes[receiver.searched++ % SERIAL_RECEIVED_BYTES] == '\n') {
+        if (receiver.bytes[receiver.searched++ % RECEIVED_BYTES] == '\n') {
             receiver.line[receiver.lines % LINES] =
                 (struct line_end){receiver.searched, period, receiver.harmed};
             receiver.harmed = false;
-            compiler_barrier();
+            __COMPILER_BARRIER();
             receiver.lines++;
         }
     }
@@ -245,7 +271,7 @@ static void search_line_ends(uint32_t period)
 /* Within a byte's time (87 us) of the line feed, the control interrupt notwithstanding. */
 void usart3_4_lpuart1_handler(void)
 {
-    const uint32_t period = board_period();
+    const uint32_t period = port_control_period();
     const uint32_t status = LPUART1->isr;
 
     if ((status & (LPUART_ISR_FE | LPUART_ISR_NE | LPUART_ISR_ORE)) != 0) {
@@ -257,7 +283,7 @@ void usart3_4_lpuart1_handler(void)
         /* The line feed itself may still be on its way to memory. */
         for (int tries = 0; (LPUART1->isr & LPUART_ISR_RXNE) != 0 && tries < MOVE_TRIES; tries++) {
         }
-        compiler_barrier();
+        __COMPILER_BARRIER();
         search_line_ends(period);
     }
 }

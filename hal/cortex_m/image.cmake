@@ -1,0 +1,72 @@
+# What the ports to Cortex-M cores have in common: pin map, CMSIS-Core, version and default motor of
+# an image, and what is made of it. A port's CMakeLists.txt includes this file.
+set(STEADYSTEP_MOTOR bendjedia-2012 CACHE STRING "Default motor: a file of sil/motors")
+set(STEADYSTEP_PIN_MAP ${default_pin_map} CACHE STRING
+  "Pin map: a file of the port's pin_maps/, without .h, or the path of one of your own")
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+include(Cmsis)
+
+# find_pin_map(<name or path> <variable>): the path of a pin map.
+function(find_pin_map name variable)
+  if(name MATCHES "\\.h$")
+    get_filename_component(path ${name} ABSOLUTE BASE_DIR ${PROJECT_SOURCE_DIR})
+  else()
+    set(path ${CMAKE_CURRENT_SOURCE_DIR}/pin_maps/${name}.h)
+  endif()
+  if(NOT EXISTS ${path})
+    file(GLOB known RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}/pin_maps
+      ${CMAKE_CURRENT_SOURCE_DIR}/pin_maps/*.h)
+    string(REPLACE ".h" "" known "${known}")
+    string(REPLACE ";" ", " known "${known}")
+    message(FATAL_ERROR "STEADYSTEP_PIN_MAP is '${name}': there is no ${path}; expected ${known}, "
+      "or the path of a header, from the root of the project or absolute")
+  endif()
+  set(${variable} ${path} PARENT_SCOPE)
+endfunction()
+
+find_pin_map(${STEADYSTEP_PIN_MAP} pin_map)
+
+# board_image_source(<file> <number format>): version and default motor; looked at in every build,
+# written when something has changed.
+function(board_image_source file numeric)
+  add_custom_target(board_image_source
+    COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/tools/board_image.py
+            --root ${PROJECT_SOURCE_DIR} --motor ${STEADYSTEP_MOTOR} --version ${PROJECT_VERSION}
+            --board ${STEADYSTEP_BOARD} --pin-map ${pin_map} --numeric ${numeric}
+            "--flags=${CMAKE_C_FLAGS} ${CMAKE_C_FLAGS_RELEASE}" ${file}
+    BYPRODUCTS ${file}
+    VERBATIM)
+endfunction()
+
+# board_program(<target> <path of a pin map>): what every program of a port is compiled with.
+function(board_program target path)
+  set_target_properties(${target} PROPERTIES PIN_MAP ${path})
+  # Of the house: by its path from the root, so that an image is the same wherever it is built.
+  cmake_path(IS_PREFIX PROJECT_SOURCE_DIR ${path} of_the_house)
+  if(of_the_house)
+    cmake_path(RELATIVE_PATH path BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
+  endif()
+  add_dependencies(${target} board_image_source)
+  target_link_libraries(${target} PRIVATE cmsis_core)
+  target_compile_definitions(${target} PRIVATE
+    STEADYSTEP_DEVICE="hal/${STEADYSTEP_BOARD}/device.h"
+    STEADYSTEP_FAULTS="hal/${STEADYSTEP_BOARD}/faults.h"
+    STEADYSTEP_PIN_MAP="${path}")
+  set_target_properties(${target} PROPERTIES SUFFIX .elf)
+  target_link_options(${target} PRIVATE
+    -T ${CMAKE_CURRENT_SOURCE_DIR}/memory.ld -Wl,--build-id=none)
+endfunction()
+
+# board_image(<target>): a program with the chosen pin map, and what is made of it.
+function(board_image target)
+  set(image ${PROJECT_BINARY_DIR}/${target})
+  board_program(${target} ${pin_map})
+  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+  target_link_options(${target} PRIVATE -Wl,-Map=${image}.elf.map)
+  add_custom_command(TARGET ${target} POST_BUILD
+    COMMAND ${CMAKE_OBJCOPY} -O ihex ${image}.elf ${image}.hex
+    COMMAND ${CMAKE_OBJCOPY} -O binary ${image}.elf ${image}.bin
+    COMMAND arm-none-eabi-size -A -x ${image}.elf
+    COMMAND ${PROJECT_SOURCE_DIR}/tools/image_map ${image}.elf
+    VERBATIM)
+endfunction()

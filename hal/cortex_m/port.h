@@ -1,0 +1,42 @@
+/*
+ * What a port implements for the files of this room, beside serial_line.h and parameter_flash.h;
+ * and its two headers that the build names: STEADYSTEP_DEVICE, the chip as CMSIS-Core wants it
+ * told, and STEADYSTEP_FAULTS, what can go wrong at its start.
+ */
+#ifndef STEADYSTEP_CORTEX_M_PORT_H
+#define STEADYSTEP_CORTEX_M_PORT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "hal/hal.h"
+
+extern const struct hal_facts port_facts;
+
+/* As the functions of hal.h that have these names. */
+bool port_bridge_enable(void);
+void port_bridge_disable(void);
+uint32_t port_cycle_count(void);
+uint64_t port_time_us(void);
+void port_watchdog_feed(void);
+
+#define PORT_NOT_STARTED UINT32_MAX
+
+/* Index of the present or last control interrupt; PORT_NOT_STARTED before the first. */
+uint32_t port_control_period(void);
+
+/* All gates off, in whatever state chip and program are. */
+void port_open_bridge(void);
+
+/* What raised a non-maskable interrupt that is not handled: a number of the port's, and its text.
+ */
+uint32_t port_nmi_cause(void);
+const char *port_nmi_text(uint32_t cause);
+
+/* Why the chip was reset; RESET_POWER_ON: memory has lost what it held. */
+enum reset_cause { RESET_UNKNOWN, RESET_PIN, RESET_SOFTWARE, RESET_WATCHDOG, RESET_POWER_ON };
+
+/* The cause of this start, which the chip then forgets. */
+enum reset_cause port_take_reset_cause(void);
+
+#endif

@@ -1,0 +1,11 @@
+/* Exception handlers of this port that no other header declares. */
+#ifndef STEADYSTEP_STM32G474_HANDLERS_H
+#define STEADYSTEP_STM32G474_HANDLERS_H
+
+int main(void);
+
+void reset_handler(void);
+void nmi_exception(void);         /* a crash, but for a double error in the parameter store */
+void serial_line_interrupt(void); /* a line feed has come, or a byte with an error */
+
+#endif
