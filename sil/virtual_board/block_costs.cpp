@@ -6,7 +6,7 @@ namespace virtual_board
 namespace
 {
 
-Cycles cycles_of(unsigned nominal, unsigned worst, unsigned waits, const CostRules &rules)
+BlockCycles cycles_of(unsigned nominal, unsigned worst, unsigned waits, const CostRules &rules)
 {
     return {nominal, worst, worst + waits * rules.flash_wait};
 }
@@ -45,17 +45,27 @@ BlockCost BlockCosts::sum(std::uint32_t address, const std::vector<InstructionCo
         const std::uint32_t last_line = last >> rules.flash_line_shift;
         const unsigned beside = (last_line != first_line ? 1u : 0u) + cost.literals;
         const unsigned waits = (first_line != line_before ? 1u : 0u) + beside;
-        const Cycles after = cycles_of(cost.nominal_after, cost.worst_after, waits, rules);
-        if (first || (cost.stage != inherited_stage && cost.stage != parts_.back().stage)) {
-            parts_.push_back({cost.stage, Cycles()});
-            ++block.parts;
-        }
+        const BlockCycles after = cycles_of(cost.nominal_after, cost.worst_after, waits, rules);
         if (first) {
-            block.first_after = after;
-            block.first = cycles_of(cost.nominal, cost.worst, 1 + beside, rules);
+            block.stage = cost.stage;
+            block.head_after = after;
+            block.head = cycles_of(cost.nominal, cost.worst, 1 + beside, rules);
+            block.nominal_after = after.nominal;
+            block.nominal = block.head.nominal;
         } else {
-            parts_.back().cycles += after;
-            block.nominal_of_others += after.nominal;
+            const std::uint8_t stage = block.parts == 0 ? block.stage : parts_.back().stage;
+            if (cost.stage != inherited_stage && cost.stage != stage) {
+                parts_.push_back({cost.stage, BlockCycles()});
+                ++block.parts;
+            }
+            if (block.parts == 0) {
+                block.head_after += after;
+                block.head += after;
+            } else {
+                parts_.back().cycles += after;
+            }
+            block.nominal_after += after.nominal;
+            block.nominal += after.nominal;
         }
         block.bytes += cost.bytes;
         block.last_line = line_before = last_line;

@@ -13,21 +13,42 @@
 namespace virtual_board
 {
 
+/* Of a few instructions. */
+struct BlockCycles {
+    std::uint32_t nominal = 0, worst = 0, flash = 0;
+
+    BlockCycles &operator+=(const BlockCycles &more)
+    {
+        nominal += more.nominal;
+        worst += more.worst;
+        flash += more.flash;
+        return *this;
+    }
+    operator Cycles() const
+    {
+        return {nominal, worst, flash};
+    }
+};
+
 /* Instructions of the same stage. */
 struct BlockPart {
     std::uint8_t stage; /* inherited_stage: that of what comes before */
-    Cycles cycles;
+    BlockCycles cycles;
 };
 
+/* One line of the host's cache: this is looked up at every block. */
 struct BlockCost {
-    std::uint32_t bytes = 0;     /* 0: nothing is known of it any more */
-    bool by_instruction = false; /* it is charged by the instruction: nothing of what follows */
+    std::uint32_t bytes = 0; /* 0: nothing is known of it any more */
+    /* Of its first part: its first instruction comes from the one before, or not. */
+    BlockCycles head_after, head;
+    std::uint32_t nominal_after = 0, nominal = 0; /* of all of it, likewise */
     std::uint32_t instructions = 0;
-    Cycles first_after, first; /* of its first instruction: come from the one before, or not */
-    std::uint64_t nominal_of_others = 0;
-    std::uint32_t first_part = 0, parts = 0; /* the first instruction's has its stage only */
-    std::uint32_t last_line = 0;             /* of flash */
-    AddressRange conditional = {0, 0};       /* instructions of its last IT block */
+    std::uint32_t first_part = 0; /* of the others */
+    std::uint16_t parts = 0;
+    std::uint8_t stage = 0;            /* of its first part */
+    bool by_instruction = false;       /* it is charged by the instruction: nothing of the above */
+    std::uint32_t last_line = 0;       /* of flash */
+    AddressRange conditional = {0, 0}; /* instructions of its last IT block */
 };
 
 /* Blocks have numbers, from 1. */
@@ -40,7 +61,7 @@ class BlockCosts
     }
     const BlockPart *parts(const BlockCost &block) const
     {
-        return &parts_[block.first_part];
+        return parts_.data() + block.first_part;
     }
     /* What is known of the block `number`, or of a new one if that is 0; returns its number. */
     std::uint32_t set(std::uint32_t number, const BlockCost &block);

@@ -12,7 +12,7 @@ namespace virtual_board
 namespace
 {
 
-/* hal/stm32g474/board.h: the constants of the image. */
+/* Of the image with the reference wiring: hal/stm32g474/pin_maps/nucleo_g474re.h, board.h. */
 constexpr double period_s = 1e-4, dead_time_s = 1e-6;
 constexpr int half_period_counts = 8500;
 constexpr double current_A_per_code = 12.0 / 4096, bus_V_per_code = 31.2 / 4096;

@@ -73,6 +73,7 @@ DriveMemory::DriveMemory(Machine &machine, const ImageMap &map)
     bridge_on_ = whole("outputs.bridge_on");
     state_ = whole("drive.state");
     fault_ = whole("drive.fault");
+    synchronism_ = whole("drive.synchronism");
     period_ = whole("drive.period");
     bus_ = num("drive.bus");
     holding_ = whole("drive.hold.active");
@@ -126,6 +127,7 @@ drive_signals DriveMemory::signals() const
     drive_signals signals = {};
     signals.state = static_cast<drive_state>(state_.bits());
     signals.fault = static_cast<drive_fault>(fault_.bits());
+    signals.synchronism = static_cast<drive_synchronism>(synchronism_.bits());
     signals.period = static_cast<std::uint32_t>(period_.bits());
     signals.holding = holding_.bits() != 0;
     signals.reference_moving = reference_moving_.bits() != 0;

@@ -75,7 +75,7 @@ InstructionCost kind_of(const Json &row)
 }
 
 /* One run of instructions, one behind the other. */
-void read_run(const Json &run, const std::vector<InstructionCost> &kinds, InstructionCosts &costs)
+void read_run(const Json &run, const std::vector<InstructionCost> &kinds, ImageMap &map)
 {
     const Json &stages = run.at("stages");
     std::uint32_t address = run.at("address");
@@ -90,18 +90,13 @@ void read_run(const Json &run, const std::vector<InstructionCost> &kinds, Instru
         }
         InstructionCost cost = kinds[kind];
         const std::size_t named = stages.at(stage - 1).at(0);
-        cost.stage =
-            named < costs.stages.size() ? static_cast<std::uint8_t>(named) : inherited_stage;
-        InstructionCost *const entry = costs.find(address);
-        if (entry == nullptr) {
-            throw std::invalid_argument("names code where the chip has no memory");
-        }
-        *entry = cost;
+        cost.stage = named < map.stages.size() ? static_cast<std::uint8_t>(named) : inherited_stage;
+        map.code.push_back({address, cost});
         address += cost.bytes;
     }
 }
 
-ImageMap parse(const Json &json, const ElfImage &image, InstructionCosts &costs)
+ImageMap parse(const Json &json, const ElfImage &image)
 {
     if (json.at("format") != 1) {
         throw std::invalid_argument("is of another format than 1");
@@ -109,17 +104,16 @@ ImageMap parse(const Json &json, const ElfImage &image, InstructionCosts &costs)
     if (json.at("identity").at("fnv1a") != identity_of(image)) {
         throw std::invalid_argument("is the map of another image; build both anew");
     }
-    costs.stand_in = false;
-    costs.rules = rules_of(json);
-    costs.stages = json.at("stages").get<std::vector<std::string>>();
+    ImageMap map;
+    map.rules = rules_of(json);
+    map.stages = json.at("stages").get<std::vector<std::string>>();
     std::vector<InstructionCost> kinds;
     for (const Json &row : json.at("costs")) {
         kinds.push_back(kind_of(row));
     }
     for (const Json &run : json.at("code")) {
-        read_run(run, kinds, costs);
+        read_run(run, kinds, map);
     }
-    ImageMap map;
     map.core = json.at("core");
     map.numeric = json.at("numeric");
     for (const auto &[name, place] : json.at("signals").items()) {
@@ -133,18 +127,41 @@ ImageMap parse(const Json &json, const ElfImage &image, InstructionCosts &costs)
 
 } // namespace
 
-ImageMap ImageMap::read(const std::string &file, const ElfImage &image, InstructionCosts &costs)
+ImageMap ImageMap::read(const std::string &file, const ElfImage &image)
 {
     std::ifstream stream(file);
     if (!stream) {
         throw std::invalid_argument(file + ": cannot be read; tools/image_map writes it");
     }
     try {
-        return parse(Json::parse(stream), image, costs);
+        ImageMap map = parse(Json::parse(stream), image);
+        map.file = file;
+        return map;
     } catch (const Json::exception &error) {
         throw std::invalid_argument(file + ": " + error.what());
     } catch (const std::invalid_argument &error) {
         throw std::invalid_argument(file + ": " + error.what());
+    }
+}
+
+ImageMap ImageMap::read(const std::string &file, const ElfImage &image, InstructionCosts &costs)
+{
+    ImageMap map = read(file, image);
+    map.tell(costs);
+    return map;
+}
+
+void ImageMap::tell(InstructionCosts &costs) const
+{
+    costs.stand_in = false;
+    costs.rules = rules;
+    costs.stages = stages;
+    for (const Instruction &instruction : code) {
+        InstructionCost *const entry = costs.find(instruction.address);
+        if (entry == nullptr) {
+            throw std::invalid_argument(file + ": names code where the chip has no memory");
+        }
+        *entry = instruction.cost;
     }
 }
 

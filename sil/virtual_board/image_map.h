@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "sil/virtual_board/elf_image.h"
 #include "sil/virtual_board/instruction_costs.h"
@@ -23,14 +24,26 @@ struct Variable {
 };
 
 struct ImageMap {
+    std::string file;
     std::string core;    /* m4f or m0plus */
     std::string numeric; /* float or fixed */
     std::map<std::string, Variable> signals;
     std::map<std::string, unsigned> interrupts; /* handler -> number of the exception */
+    CostRules rules;
+    std::vector<std::string> stages;
+    struct Instruction {
+        std::uint32_t address;
+        InstructionCost cost;
+    };
+    std::vector<Instruction> code;
 
-    /* Reads the file beside the image, and the costs with it. Throws std::invalid_argument: no such
-       file, not of this image, not of this form. */
+    /* Reads the file beside the image. Throws std::invalid_argument: no such file, not of this
+       image, not of this form. */
+    static ImageMap read(const std::string &file, const ElfImage &image);
+    /* Reads it and tells a chip what its instructions cost. */
     static ImageMap read(const std::string &file, const ElfImage &image, InstructionCosts &costs);
+    /* Throws std::invalid_argument if the chip has no memory where the map has code. */
+    void tell(InstructionCosts &costs) const;
 
     const Variable &signal(const std::string &name) const; /* throws std::invalid_argument */
 };

@@ -43,13 +43,13 @@ InterruptController::State &InterruptController::of(unsigned exception)
 void InterruptController::set_line(unsigned line, bool level)
 {
     State &state = of(exception::first_interrupt + line);
-    if (level && !state.line) {
+    if (level && !state.line && !state.pending) {
         state.pending = true;
+        if (state.enabled) {
+            find_next();
+        }
     }
-    if (level != state.line) {
-        state.line = level;
-        find_next();
-    }
+    state.line = level;
 }
 
 void InterruptController::set_pending(unsigned exception)

@@ -170,8 +170,12 @@ void Machine::fail(const std::string &what) const
 std::uint8_t *Machine::memory(std::uint32_t address, std::uint32_t bytes)
 {
     const auto inside = [&](std::uint32_t base, std::uint32_t size) {
-        return address >= base && address - base < size && bytes <= size - (address - base);
+        return address - base < size && bytes <= size - (address - base);
     };
+    Ram &last = ram_.back();
+    if (inside(last.range.base, last.range.bytes)) { /* data: asked for by far the most */
+        return &last.bytes[address - last.range.base];
+    }
     for (Ram &ram : ram_) {
         if (inside(ram.range.base, ram.range.bytes)) {
             return &ram.bytes[address - ram.range.base];
@@ -263,6 +267,16 @@ void Machine::act_on(Stopped stopped)
         fault("undefined instruction", fault_undefined_instruction);
         return;
     }
+}
+
+void Machine::halt(Ticks duration)
+{
+    const Ticks end = now_ + duration;
+    while (events_.next() <= end) {
+        now_ = std::max(now_, events_.next());
+        serve_events();
+    }
+    now_ = instruction_end_ = end;
 }
 
 /* WFI: time jumps from event to event until something wakes the core. */

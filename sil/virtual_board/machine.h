@@ -55,6 +55,10 @@ class Machine final : public Chip, private CoreObserver
     {
         stop_wanted_ = true;
     }
+    /* Between two calls of run(): halts the core, as a debugger does, for so long; all else goes
+     * on.
+     */
+    void halt(Ticks duration);
     /* run() returns at the end of every control interrupt, if wanted. */
     bool stops_behind_control_interrupt = false;
 

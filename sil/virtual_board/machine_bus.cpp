@@ -116,10 +116,13 @@ void Machine::store(std::uint32_t address, unsigned bytes, std::uint32_t value)
     std::uint8_t *const plain = memory(address, bytes);
     if (plain == nullptr) {
         bus_write(address, bytes, value, Master::dma);
-        return;
-    }
-    for (unsigned i = 0; i < bytes; ++i) {
-        plain[i] = static_cast<std::uint8_t>(value >> (8 * i));
+    } else if (bytes == 2) { /* the most by far */
+        plain[0] = static_cast<std::uint8_t>(value);
+        plain[1] = static_cast<std::uint8_t>(value >> 8);
+    } else {
+        for (unsigned i = 0; i < bytes; ++i) {
+            plain[i] = static_cast<std::uint8_t>(value >> (8 * i));
+        }
     }
 }
 

@@ -131,6 +131,24 @@ inline bool Machine::may_go_on(std::uint32_t address)
     return to_enter_ == 0;
 }
 
+/* In the control interrupt: its first instruction, code out of place, and what a test injects. */
+inline void Machine::inject(std::uint32_t address, unsigned instructions)
+{
+    if (first_of_control_) {
+        first_of_control_ = false;
+        account_.latency((now_ - sampled_at_) / core_cycle_);
+    }
+    if (description_.fast_code.bytes > 0 && !description_.fast_code.contains(address)) {
+        account_.count_outside_fast_code();
+    }
+    control_instructions_ += instructions;
+    if (stall_cycles_ > 0 && control_instructions_ > stall_at_) {
+        const Cycles stall = {stall_cycles_, stall_cycles_, stall_cycles_};
+        stall_cycles_ = 0;
+        add_time(stall);
+    }
+}
+
 bool Machine::before_instruction(std::uint32_t address, unsigned bytes)
 {
     in_block_ = false;
@@ -155,21 +173,21 @@ void Machine::add_time(const Cycles &cycles)
     instruction_end_ += cycles.nominal * core_cycle_;
 }
 
-/* In the control interrupt: its first instruction, code out of place, and what a test injects. */
-void Machine::inject(std::uint32_t address, unsigned instructions)
+inline void Machine::charge_block(const BlockCost &block, bool straight)
 {
-    if (first_of_control_) {
-        first_of_control_ = false;
-        account_.latency((now_ - sampled_at_) / core_cycle_);
+    instruction_end_ = now_ + (straight ? block.nominal_after : block.nominal) * core_cycle_;
+    if (above_control_ == 0) {
+        return;
     }
-    if (description_.fast_code.bytes > 0 && !description_.fast_code.contains(address)) {
-        account_.count_outside_fast_code();
-    }
-    control_instructions_ += instructions;
-    if (stall_cycles_ > 0 && control_instructions_ > stall_at_) {
-        const Cycles stall = {stall_cycles_, stall_cycles_, stall_cycles_};
-        stall_cycles_ = 0;
-        add_time(stall);
+    flash_line_ = block.last_line;
+    stage_ = block.stage != inherited_stage ? block.stage : stage_;
+    account(straight ? block.head_after : block.head);
+    if (block.parts > 0) {
+        const BlockPart *const parts = blocks_.parts(block);
+        for (unsigned i = 0; i < block.parts; ++i) {
+            stage_ = parts[i].stage; /* known, or it would be the part's before */
+            account(parts[i].cycles);
+        }
     }
 }
 
@@ -200,23 +218,6 @@ bool Machine::before_block(std::uint32_t address, unsigned bytes)
         inject(address, block->instructions);
     }
     return true;
-}
-
-void Machine::charge_block(const BlockCost &block, bool straight)
-{
-    const Cycles &first = straight ? block.first_after : block.first;
-    instruction_end_ = now_ + (first.nominal + block.nominal_of_others) * core_cycle_;
-    if (above_control_ == 0) {
-        return;
-    }
-    flash_line_ = block.last_line;
-    const BlockPart *const parts = blocks_.parts(block);
-    stage_ = parts[0].stage != inherited_stage ? parts[0].stage : stage_;
-    account(first);
-    for (unsigned i = 0; i < block.parts; ++i) {
-        stage_ = parts[i].stage != inherited_stage ? parts[i].stage : stage_;
-        account(parts[i].cycles);
-    }
 }
 
 /* What runs in the block at this address, whose instructions the map names. */

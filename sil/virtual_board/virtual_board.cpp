@@ -8,6 +8,7 @@
 #include "sil/plant/sensors.h"
 #include "sil/virtual_board/board_facts.h"
 #include "sil/virtual_board/drive_memory.h"
+#include "sil/virtual_board/image_files.h"
 #include "sil/virtual_board/peripherals/stm32g474_device.h"
 
 namespace virtual_board
@@ -17,7 +18,7 @@ namespace
 {
 
 /* The parameter store: the last four pages of the flash (hal.h, parameters_*). */
-constexpr std::size_t parameter_pages = 4;
+constexpr std::uint32_t parameter_pages = 4;
 
 /* Of a period, after S(k), the last byte of a typed line arrives; the control interrupt is over. */
 constexpr Ticks arrival_in_period = ticks_per_s / 1'000'000 * 60;
@@ -46,19 +47,29 @@ Stm32g474Config device_config(const plant::Config &plant)
 struct VirtualBoard::Impl {
     Impl(const plant::Config &config, const std::string &image_file)
         : machine(stm32g474()), device(machine, device_config(config)),
-          elf(ElfImage::read(image_file)),
-          map(ImageMap::read(map_file_of(image_file), elf, machine.costs())),
-          facts(facts_of(config)),
+          image(read_image(image_file)), facts(facts_of(config)),
           timeout([this] { machine.fail("no control interrupt for a second"); }),
           trip_check([this] { require_open_bridge("after a leg was shorted"); }),
           deadline_check([this] { require_open_bridge("after the control interrupt's deadline"); }),
           stall([this] { hold_up(); })
     {
         machine.attach(device);
-        machine.load(elf);
-        memory.emplace(machine, map);
+        image->map.tell(machine.costs());
+        machine.load(image->elf);
+        memory.emplace(machine, image->map);
         machine.stops_behind_control_interrupt = true;
         device.power_stage().on_sample = [this](std::int64_t k) { sample(k); };
+        device.flash_controller().on_change = [this](std::uint32_t address, std::uint32_t) {
+            if (address < Flash::base + store()) {
+                machine.fail("erased or programmed the flash outside of the parameter store");
+            }
+        };
+    }
+
+    /* Where the parameter store begins in the flash. */
+    std::uint32_t store() const
+    {
+        return Flash::bytes - parameter_pages * facts.parameter_page_bytes;
     }
 
     void sample(std::int64_t k)
@@ -79,8 +90,7 @@ struct VirtualBoard::Impl {
 
     Machine machine;
     Stm32g474Device device;
-    ElfImage elf;
-    ImageMap map;
+    std::shared_ptr<const ImageFiles> image;
     hal_facts facts;
     std::optional<DriveMemory> memory;
     Event timeout, trip_check, deadline_check, stall;
@@ -106,11 +116,10 @@ VirtualBoard::VirtualBoard(const plant::Config &plant, const std::string &image_
                            const std::string &numeric, const drive_settings &settings)
     : impl_(std::make_unique<Impl>(plant, image_file))
 {
-    require_image_facts(plant, impl_->map.numeric, numeric);
+    require_image_facts(plant, impl_->image->map.numeric, numeric);
     std::vector<std::uint8_t> &flash = impl_->device.flash().memory();
     const std::size_t page = impl_->facts.parameter_page_bytes;
-    const std::size_t store = flash.size() - parameter_pages * page;
-    const std::size_t record_at = store + SETTINGS_RECORD_FIRST_PAGE * page;
+    const std::size_t record_at = impl_->store() + SETTINGS_RECORD_FIRST_PAGE * page;
     stored_settings stored = {};
     stored.drive = settings;
     stored.encoder_counts_per_turn =
@@ -327,9 +336,7 @@ BoardReport VirtualBoard::report() const
 
 std::string VirtualBoard::numeric_of(const std::string &image_file)
 {
-    InstructionCosts costs(stm32g474());
-    const ElfImage image = ElfImage::read(image_file);
-    return ImageMap::read(map_file_of(image_file), image, costs).numeric;
+    return read_image(image_file)->map.numeric;
 }
 
 Machine &VirtualBoard::machine()

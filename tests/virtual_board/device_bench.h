@@ -138,6 +138,18 @@ struct Bench {
         chip.write(adc2 + 0x08, 1u << 28 | 1 << 3);
     }
 
+    /* A channel of DMA1, switched on. */
+    void channel(unsigned number, std::uint32_t request, std::uint32_t peripheral,
+                 std::uint32_t memory, std::uint32_t items, std::uint32_t control)
+    {
+        const std::uint32_t base = dma1 + 0x08 + 0x14 * number;
+        chip.write(dmamux + 4 * number, request);
+        chip.write(base + 4, items);
+        chip.write(base + 8, peripheral);
+        chip.write(base + 12, memory);
+        chip.write(base, control | 1);
+    }
+
     void refused(const char *text, std::uint32_t address, std::uint32_t value)
     {
         try {
@@ -153,6 +165,44 @@ struct Bench {
 
     FakeChip chip;
     Stm32g474Device device;
+};
+
+/* The legs of phase a over ADC3: 17 groups of 8 + 8 conversions in a period, in a ring of two. */
+struct LegBench : Bench {
+    explicit LegBench(std::uint32_t dma_interrupts = 6, /* TCIE, HTIE */
+                      std::uint32_t first_count = 992)  /* of TIM3; 1000 triggers */
+    {
+        start_clocks();
+        route_gates();
+        configure_pwm();
+        configure_currents();
+        chip.write(0x50000708, 3 << 16);
+        chip.write(tim3 + 0x2c, 999);
+        chip.write(tim3 + 0x14, 1);
+        chip.write(tim3 + 0x24, first_count);
+        chip.write(tim3 + 0x04, 2 << 4);
+        chip.write(tim3 + 0x08, 6);
+        channel(0, 37, adc3 + 0x40, FakeChip::ram, 68,
+                1 << 5 | 1 << 7 | 1 << 8 | 1 << 10 | dma_interrupts);
+        power_up(adc3);
+        chip.write(adc3 + 0x30, 1 | 1 << 6 | 5 << 12);
+        chip.write(adc3 + 0x10, 1 | 2 << 2);
+        chip.write(adc3 + 0x0c, 3 | 4 << 5 | 1 << 10 | 1u << 31);
+        chip.write(adc3 + 0x08, 1u << 28 | 1 << 2);
+        chip.on_interrupt = [this](unsigned line) {
+            if (line == 18) {
+                (void)chip.read(adc1 + 0x80);
+                chip.write(adc1, 0x60);
+            }
+        };
+        start_pwm();
+        begin = chip.now();
+    }
+    unsigned sum(unsigned index)
+    {
+        return chip.memory[2 * index] + 256u * chip.memory[2 * index + 1];
+    }
+    Ticks begin = 0;
 };
 
 } // namespace virtual_board

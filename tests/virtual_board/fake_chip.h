@@ -40,6 +40,7 @@ class FakeChip : public Chip
         }
         event.at = at;
         if (at != Event::never) {
+            scheduled++;
             events_.push_back(&event);
         }
     }
@@ -102,6 +103,7 @@ class FakeChip : public Chip
             Event *event = events_[first];
             events_.erase(events_.begin() + static_cast<std::ptrdiff_t>(first));
             now_ = event->at > now_ ? event->at : now_;
+            event->at = Event::never;
             event->happen();
         }
         now_ = time;
@@ -116,6 +118,7 @@ class FakeChip : public Chip
     std::function<void(unsigned)> on_interrupt;
     std::string reset_cause;
     unsigned non_maskable_interrupts = 0;
+    unsigned long scheduled = 0; /* events, since the beginning */
     static constexpr std::uint32_t ram = 0x20000000;
     std::vector<std::uint8_t> memory = std::vector<std::uint8_t>(4096);
 

@@ -17,53 +17,6 @@ namespace
 constexpr Ticks half = 8500 * cycle;
 constexpr std::uint32_t ram = FakeChip::ram;
 
-void channel(Bench &bench, unsigned number, std::uint32_t request, std::uint32_t peripheral,
-             std::uint32_t memory, std::uint32_t items, std::uint32_t control)
-{
-    const std::uint32_t base = dma1 + 0x08 + 0x14 * number;
-    bench.chip.write(dmamux + 4 * number, request);
-    bench.chip.write(base + 4, items);
-    bench.chip.write(base + 8, peripheral);
-    bench.chip.write(base + 12, memory);
-    bench.chip.write(base, control | 1);
-}
-
-/* The legs of phase a over ADC3: 17 groups of 8 + 8 conversions in a period, in a ring of two. */
-struct LegBench : Bench {
-    LegBench()
-    {
-        start_clocks();
-        route_gates();
-        configure_pwm();
-        configure_currents();
-        chip.write(0x50000708, 3 << 16);
-        chip.write(tim3 + 0x2c, 999);
-        chip.write(tim3 + 0x14, 1);
-        chip.write(tim3 + 0x24, 992);
-        chip.write(tim3 + 0x04, 2 << 4);
-        chip.write(tim3 + 0x08, 6);
-        channel(*this, 0, 37, adc3 + 0x40, ram, 68, 1 << 5 | 1 << 7 | 1 << 8 | 1 << 10 | 6);
-        power_up(adc3);
-        chip.write(adc3 + 0x30, 1 | 1 << 6 | 5 << 12);
-        chip.write(adc3 + 0x10, 1 | 2 << 2);
-        chip.write(adc3 + 0x0c, 3 | 4 << 5 | 1 << 10 | 1u << 31);
-        chip.write(adc3 + 0x08, 1u << 28 | 1 << 2);
-        chip.on_interrupt = [this](unsigned line) {
-            if (line == 18) {
-                (void)chip.read(adc1 + 0x80);
-                chip.write(adc1, 0x60);
-            }
-        };
-        start_pwm();
-        begin = chip.now();
-    }
-    unsigned sum(unsigned index)
-    {
-        return chip.memory[2 * index] + 256u * chip.memory[2 * index + 1];
-    }
-    Ticks begin = 0;
-};
-
 void test_17_groups_of_a_period_give_the_plants_phase_voltage()
 {
     LegBench bench;
@@ -158,7 +111,7 @@ void test_a_byte_takes_ten_bits()
 void test_a_line_comes_in_by_dma_and_its_end_raises_the_match()
 {
     LineBench bench;
-    channel(bench, 2, 34, lpuart + 0x24, ram, 16, 1 << 5 | 1 << 7);
+    bench.channel(2, 34, lpuart + 0x24, ram, 16, 1 << 5 | 1 << 7);
     bench.chip.write(lpuart + 0x08, 1 << 6);
     bench.chip.write(lpuart, 0xd | 1 << 14);
     const Ticks begin = bench.chip.now();
@@ -180,7 +133,7 @@ void test_a_text_goes_out_by_dma_whole()
     std::copy(text.begin(), text.end(), bench.chip.memory.begin());
     bench.chip.write(lpuart + 0x08, 1 << 7);
     bench.chip.write(lpuart, 0xd);
-    channel(bench, 3, 35, lpuart + 0x28, ram, 10, 1 << 4 | 1 << 7);
+    bench.channel(3, 35, lpuart + 0x28, ram, 10, 1 << 4 | 1 << 7);
     bench.chip.run_for(200 * microsecond);
     TEST_ASSERT_EQUAL_STRING(text.c_str(), bench.device.serial_line().take_output().c_str());
     TEST_ASSERT_EQUAL_UINT32(0, bench.chip.read(dma1 + 0x08 + 0x14 * 3 + 4));

@@ -71,9 +71,17 @@ Adc::Adc(Chip &chip, unsigned number, AdcCommon &common, Triggers &triggers, Dma
     : RegisterBlock(chip, "ADC" + std::to_string(number), registers()), number_(number),
       common_(common), dmamux_(dmamux), inputs_(inputs), interrupt_(std::move(interrupt)),
       calibration_event_([this] { calibrated(); }), ready_event_([this] { ready(); }),
-      injected_event_([this] { end_of_injected(); }), regular_event_([this] { end_of_regular(); })
+      injected_event_([this] { end_of_injected(); }), regular_event_([this] {
+          if (regular_.running) {
+              end_of_regular();
+          } else {
+              deferred_due();
+          }
+      })
 {
-    triggers.listen([this](Trigger source, TriggerEdge edge) { triggered(source, edge); });
+    triggers_ =
+        &triggers.listen([this](Trigger source, TriggerEdge edge) { triggered(source, edge); });
+    choose_triggers();
 }
 
 void Adc::reset()
@@ -82,6 +90,13 @@ void Adc::reset()
     regulator_ready_ = Event::never;
     calibrated_ = ready_ = dma_stopped_ = false;
     injected_ = regular_ = Sequence{};
+    deferred_.clear();
+    deferred_rank_ = 0;
+    due_ = Event::never;
+    deferred_until_ = 0;
+    plan_.clear();
+    moved_by_dma_ = false;
+    choose_triggers();
     for (Event *event : {&calibration_event_, &ready_event_, &injected_event_, &regular_event_}) {
         chip_.schedule(*event, Event::never);
     }
@@ -95,7 +110,11 @@ bool Adc::enabled() const
 
 std::uint32_t Adc::fetch(std::uint32_t offset, Master master)
 {
+    if (master == Master::core) {
+        look();
+    }
     if (offset == DR) {
+        read_by_dma_ += master == Master::dma ? 1u : 0u;
         at(ISR) &= ~EOC;
         if (at(IER) != 0) {
             interrupt_((at(ISR) & at(IER)) != 0);
@@ -108,6 +127,7 @@ std::uint32_t Adc::fetch(std::uint32_t offset, Master master)
 
 void Adc::put(std::uint32_t offset, std::uint32_t value, Master)
 {
+    look();
     const bool started = (at(CR) & (ADSTART | JADSTART)) != 0;
     switch (offset) {
     case ISR:
@@ -145,6 +165,7 @@ void Adc::put(std::uint32_t offset, std::uint32_t value, Master)
         require(!started, offset, value, "written while a conversion is started");
     }
     keep(offset, value);
+    choose_triggers();
 }
 
 void Adc::control(std::uint32_t value)
@@ -176,6 +197,10 @@ void Adc::control(std::uint32_t value)
         start_regular();
         at(CR) &= ~ADSTART;
     }
+    if ((set & ADSTART) != 0) {
+        plan_.clear();
+    }
+    choose_triggers();
 }
 
 /* The order RM0440 asks for: out of deep power-down, regulator and its start-up time,

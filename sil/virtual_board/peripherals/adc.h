@@ -62,6 +62,12 @@ class Adc : public RegisterBlock
     void reset() override;
     bool enabled() const;
 
+    /* Results that have been put off (adc_deferred.cpp) come: those that are due up to a time, of
+       sequences that were triggered before another. */
+    void settle(Ticks until, Ticks triggered_before = Event::never);
+    /* The core is about to look at what those results have changed, or to change what they do. */
+    void look();
+
     struct Counters {
         std::uint64_t conversions = 0, injected_sequences = 0, regular_sequences = 0;
         std::uint64_t ignored_triggers = 0, overruns = 0;
@@ -75,6 +81,10 @@ class Adc : public RegisterBlock
     void put(std::uint32_t offset, std::uint32_t value, Master master) override;
 
   private:
+    struct Rank {
+        unsigned channel;
+        Ticks sampled, end; /* from the trigger on */
+    };
     struct Sequence {
         bool running = false;
         unsigned rank = 0, ranks = 0;
@@ -91,10 +101,21 @@ class Adc : public RegisterBlock
     void next_rank(Sequence &sequence, Event &event, Ticks start);
     void end_of_injected();
     void end_of_regular();
-    void deliver(std::uint32_t data, const Conversion &conversion, unsigned shift);
+    void deliver(std::uint32_t data, const Conversion &conversion);
+    void choose_triggers();
     unsigned channel(const Sequence &sequence) const;
+    unsigned regular_channel(unsigned rank) const;
     Ticks sampling(unsigned channel) const;
+    Ticks conversion_time() const;
     unsigned oversampling() const;
+    unsigned oversampling_shift() const;
+    std::uint32_t regular_result(const Conversion &conversion) const;
+    DmaRequest dma_request() const;
+
+    void plan();
+    bool silent();
+    bool defer(Ticks trigger);
+    void deferred_due();
     std::uint32_t resolved(std::uint32_t code) const;
     void flag(std::uint32_t flags);
 
@@ -108,6 +129,19 @@ class Adc : public RegisterBlock
     bool dma_stopped_ = false;
     Sequence injected_, regular_;
     Event calibration_event_, ready_event_, injected_event_, regular_event_;
+    Triggers::Listener *triggers_ = nullptr;
+
+    /* regular sequences that are put off: times of their triggers, the rank that the first is at,
+       and when that is due */
+    std::vector<Ticks> deferred_;
+    unsigned deferred_rank_ = 0;
+    Ticks due_ = Event::never, deferred_until_ = 0;
+    std::vector<Rank> plan_;
+    Ticks planned_half_clock_ = 0, planned_latency_ = 0;
+    Dmamux::Route route_;
+    unsigned route_changes_ = 0;
+    bool moved_by_dma_ = false; /* the route is known to read DR */
+    unsigned read_by_dma_ = 0;  /* times that DR was */
 };
 
 } // namespace virtual_board

@@ -81,6 +81,22 @@ bool injected_source(unsigned number, Trigger *source)
 
 } // namespace
 
+/* Those that the registers choose; while one of them is none that is modelled, every trigger comes
+   and is refused. */
+void Adc::choose_triggers()
+{
+    Trigger chosen;
+    triggers_->sources = 0;
+    if ((at(CR) & JADSTART) != 0) {
+        const bool known = injected_source(field(at(JSQR), 2, 5), &chosen);
+        triggers_->sources |= known ? only(chosen) : every_trigger;
+    }
+    if ((at(CR) & ADSTART) != 0 && field(at(CFGR), 10, 2) != 0) {
+        const bool known = regular_source(field(at(CFGR), 5, 5), &chosen);
+        triggers_->sources |= known ? only(chosen) : every_trigger;
+    }
+}
+
 void Adc::triggered(Trigger source, TriggerEdge edge)
 {
     if (edge != TriggerEdge::rising || (at(CR) & (ADSTART | JADSTART)) == 0 || !clocked()) {
@@ -113,8 +129,8 @@ void Adc::start_injected()
         counters.ignored_triggers++;
         return;
     }
-    require(!regular_.running, CR, at(CR),
-            "injected trigger during a regular conversion: not modelled");
+    require(!regular_.running && (due_ == Event::never || deferred_until_ < chip_.now()), CR,
+            at(CR), "injected trigger during a regular conversion: not modelled");
     injected_ = Sequence{};
     injected_.running = true;
     injected_.ranks = field(at(JSQR), 0, 2) + 1;
@@ -126,7 +142,8 @@ void Adc::start_injected()
 
 void Adc::start_regular()
 {
-    if (regular_.running) {
+    const Ticks now = chip_.now();
+    if (regular_.running || (due_ != Event::never && now <= deferred_until_)) {
         counters.ignored_triggers++;
         require(number_ < 3, CR, at(CR),
                 "trigger during the conversions of the one before: ignored, the leg voltages that "
@@ -135,11 +152,14 @@ void Adc::start_regular()
     }
     require(!injected_.running, CR, at(CR),
             "regular trigger during an injected conversion: not modelled");
+    counters.regular_sequences++;
+    if (defer(now)) {
+        return;
+    }
     regular_ = Sequence{};
     regular_.running = true;
     regular_.ranks = field(at(SQR1), 0, 4) + 1;
-    regular_.trigger = chip_.now();
-    counters.regular_sequences++;
+    regular_.trigger = now;
     next_rank(regular_, regular_event_, regular_.trigger + common_.latency());
 }
 
@@ -148,7 +168,12 @@ unsigned Adc::channel(const Sequence &sequence) const
     if (&sequence == &injected_) {
         return field(at(JSQR), 9 + 6 * sequence.rank, 5);
     }
-    const unsigned place = sequence.rank + 1; /* SQ1 stands after the length */
+    return regular_channel(sequence.rank);
+}
+
+unsigned Adc::regular_channel(unsigned rank) const
+{
+    const unsigned place = rank + 1; /* SQ1 stands after the length */
     return field(at(SQR1 + 4 * (place / 5)), 6 * (place % 5), 5);
 }
 
@@ -165,11 +190,28 @@ unsigned Adc::oversampling() const
     return bit(at(CFGR2), 0) ? 2u << field(at(CFGR2), 2, 3) : 1u;
 }
 
+unsigned Adc::oversampling_shift() const
+{
+    return bit(at(CFGR2), 0) ? field(at(CFGR2), 5, 4) : 0;
+}
+
+Ticks Adc::conversion_time() const
+{
+    const unsigned bits_halves[4] = {25, 21, 17, 13};
+    return Ticks{bits_halves[field(at(CFGR), 3, 2)]} * common_.half_clock();
+}
+
+DmaRequest Adc::dma_request() const
+{
+    static constexpr DmaRequest requests[5] = {DmaRequest::adc1, DmaRequest::adc2, DmaRequest::adc3,
+                                               DmaRequest::adc4, DmaRequest::adc5};
+    return requests[number_ - 1];
+}
+
 void Adc::next_rank(Sequence &sequence, Event &event, Ticks start)
 {
     const Ticks sample = sampling(channel(sequence));
-    const unsigned bits_halves[4] = {25, 21, 17, 13};
-    const Ticks convert = Ticks{bits_halves[field(at(CFGR), 3, 2)]} * common_.half_clock();
+    const Ticks convert = conversion_time();
     const unsigned conversions = &sequence == &regular_ ? oversampling() : 1;
     const Ticks end = start + conversions * (sample + convert);
     sequence.sampled = end - convert;
@@ -202,26 +244,29 @@ void Adc::end_of_regular()
 {
     const Conversion conversion = {number_, channel(regular_), false, regular_.trigger,
                                    regular_.sampled};
-    const unsigned shift = bit(at(CFGR2), 0) ? field(at(CFGR2), 5, 4) : 0;
-    const std::uint32_t sum = resolved(inputs_.code(conversion)) * oversampling();
-    /* RM0440: the shifted sum is rounded to the nearest and cut to 16 bits. */
-    const std::uint32_t rounded = shift == 0 ? sum : (sum + (1u << (shift - 1))) >> shift;
+    const std::uint32_t result = regular_result(conversion);
     const bool more = ++regular_.rank < regular_.ranks;
     if (more) {
         next_rank(regular_, regular_event_, chip_.now());
     } else {
         regular_.running = false;
     }
-    deliver(rounded & 0xffffu, conversion, shift);
+    deliver(result, conversion);
     if (!more) {
         flag(EOS);
     }
 }
 
-void Adc::deliver(std::uint32_t data, const Conversion &conversion, unsigned shift)
+/* RM0440: the shifted sum is rounded to the nearest and cut to 16 bits. */
+std::uint32_t Adc::regular_result(const Conversion &conversion) const
 {
-    static constexpr DmaRequest requests[5] = {DmaRequest::adc1, DmaRequest::adc2, DmaRequest::adc3,
-                                               DmaRequest::adc4, DmaRequest::adc5};
+    const std::uint32_t sum = resolved(inputs_.code(conversion)) * oversampling();
+    const unsigned shift = oversampling_shift();
+    return (shift == 0 ? sum : (sum + (1u << (shift - 1))) >> shift) & 0xffffu;
+}
+
+void Adc::deliver(std::uint32_t data, const Conversion &conversion)
+{
     const bool overrun = (at(ISR) & EOC) != 0;
     if (overrun) {
         counters.overruns++;
@@ -232,10 +277,14 @@ void Adc::deliver(std::uint32_t data, const Conversion &conversion, unsigned shi
     }
     at(DR) = data;
     flag(EOC);
+    if ((at(CFGR) & DMAEN) == 0 || (at(ISR) & OVR) != 0) {
+        return;
+    }
     std::uint32_t address = 0;
-    if ((at(CFGR) & DMAEN) != 0 && (at(ISR) & OVR) == 0 &&
-        dmamux_.request(requests[number_ - 1], &address) && stuck_code < 0) {
-        inputs_.stored(conversion, address, oversampling(), shift);
+    const unsigned reads = read_by_dma_;
+    moved_by_dma_ = dmamux_.request(dma_request(), &address) && read_by_dma_ != reads;
+    if (moved_by_dma_ && stuck_code < 0) {
+        inputs_.stored(conversion, address, oversampling(), oversampling_shift());
     }
 }
 

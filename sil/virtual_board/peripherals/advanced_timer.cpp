@@ -80,6 +80,7 @@ void AdvancedTimer::reset()
     up_ = true;
     lock_level_ = 0;
     moe_written_ = false;
+    held_since_ = Event::never;
     for (Event *event : {&turning_event_, &compare_event_, &trigger_event_}) {
         chip_.schedule(*event, Event::never);
     }
@@ -135,6 +136,9 @@ void AdvancedTimer::put(std::uint32_t offset, std::uint32_t value, Master)
     for (int channel = 0; channel < channels; channel++) {
         if (offset == compare_offset[channel]) {
             compare(channel, offset, value);
+            if (preloaded(channel)) {
+                return; /* nothing is in force before the next update event */
+            }
         }
     }
     switch (offset) {

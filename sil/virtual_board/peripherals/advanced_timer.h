@@ -77,6 +77,14 @@ class AdvancedTimer : public RegisterBlock
     void comparator(unsigned index, bool level);
     bool break_active() const;
 
+    /* Stops the count and holds all outputs off, as at a halt of the core with DBG_TIM1_STOP set;
+       goes on where it stood. RM0440, TIM1, debug mode. */
+    void hold(bool held);
+    bool held() const
+    {
+        return held_since_ != Event::never;
+    }
+
     struct Counters {
         std::uint64_t peaks = 0, updates_at_peak = 0, updates_at_valley = 0, breaks = 0;
         Ticks last_load = 0; /* time of the last update event */
@@ -123,6 +131,7 @@ class AdvancedTimer : public RegisterBlock
     std::uint32_t frozen_ = 0;
     bool up_ = true; /* the next turning point is the peak */
     Ticks flags_until_ = 0;
+    Ticks held_since_ = Event::never; /* never: it is not */
     unsigned comparators_ = 0;
     unsigned lock_level_ = 0;
     bool moe_written_ = false;

@@ -18,9 +18,11 @@ Ticks AdvancedTimer::next_phase(std::uint32_t phase, Ticks after) const
     const Ticks period = period_ticks();
     const Ticks first = origin_ + Ticks{phase} * count_ticks();
     if (first > after) {
-        return first - (first - after - 1) / period * period;
+        const Ticks ahead = first - after - 1;
+        return ahead < period ? first : first - ahead / period * period;
     }
-    return first + ((after - first) / period + 1) * period;
+    const Ticks behind = after - first;
+    return first + (behind < period ? 1 : behind / period + 1) * period;
 }
 
 /* Phases at which the flag of a channel is set, by CMS. A compare above ARR matches at the
@@ -47,15 +49,19 @@ int AdvancedTimer::match_phases(int channel, std::uint32_t *phases) const
 void AdvancedTimer::take_flags()
 {
     const Ticks now = chip_.now();
-    if (!counting() || now <= flags_until_) {
+    if (!counting() || held() || now <= flags_until_) {
         return;
     }
     for (int channel = 0; channel < channels; channel++) {
+        const std::uint32_t flag = 1u << (channel < 4 ? 1 + channel : 12 + channel);
+        if ((at(SR) & flag) != 0) {
+            continue; /* set as it is */
+        }
         std::uint32_t phases[2];
         const int matches = match_phases(channel, phases);
         for (int i = 0; i < matches; i++) {
             if (next_phase(phases[i], flags_until_) <= now) {
-                at(SR) |= 1u << (channel < 4 ? 1 + channel : 12 + channel);
+                at(SR) |= flag;
             }
         }
     }
@@ -66,9 +72,12 @@ void AdvancedTimer::schedule_compare()
 {
     Ticks next = Event::never;
     for (int channel = 0; counting() && channel < 4; channel++) {
+        if (!bit(at(DIER), static_cast<unsigned>(1 + channel))) {
+            continue;
+        }
         std::uint32_t phases[2];
         const int matches = match_phases(channel, phases);
-        for (int i = 0; bit(at(DIER), static_cast<unsigned>(1 + channel)) && i < matches; i++) {
+        for (int i = 0; i < matches; i++) {
             next = std::min(next, next_phase(phases[i], chip_.now()));
         }
     }

@@ -16,6 +16,7 @@ enum : std::uint32_t {
 };
 enum : std::uint32_t { EN = 1u << 0, DIR = 1u << 4, CIRC = 1u << 5, PINC = 1u << 6 };
 enum : std::uint32_t { MINC = 1u << 7, TCIF = 2, HTIF = 4 };
+constexpr std::uint32_t interrupt_enables = 0xe;
 constexpr std::uint32_t channel_stride = 0x14;
 
 std::vector<Register> registers()
@@ -36,6 +37,11 @@ std::vector<Register> registers()
     return table;
 }
 
+constexpr std::uint32_t mask(unsigned bytes)
+{
+    return bytes == 4 ? ~0u : (1u << (8 * bytes)) - 1u;
+}
+
 unsigned interrupt_line(unsigned number, unsigned channel)
 {
     if (number == 1) {
@@ -54,7 +60,8 @@ Dma::Dma(Chip &chip, unsigned number)
 void Dma::reset()
 {
     RegisterBlock::reset();
-    interrupt();
+    ++changes_;
+    interrupts();
 }
 
 bool Dma::enabled(unsigned channel) const
@@ -75,9 +82,10 @@ void Dma::put(std::uint32_t offset, std::uint32_t value, Master)
                 at(ISR) &= ~(1u << (4 * channel)); /* no flag left: the global one falls */
             }
         }
-        interrupt();
+        interrupts();
         return;
     }
+    ++changes_;
     const unsigned channel = (offset - CCR) / channel_stride;
     const std::uint32_t base = channel * channel_stride;
     const bool on = bit(at(base + CCR), 0);
@@ -101,14 +109,42 @@ void Dma::put(std::uint32_t offset, std::uint32_t value, Master)
             on_enable(channel);
         }
     }
-    interrupt();
+    interrupt(channel);
+}
+
+bool Dma::silent(unsigned channel) const
+{
+    const std::uint32_t forbidden = DIR | PINC | interrupt_enables;
+    return (at(CCR + channel * channel_stride) & (CIRC | forbidden)) == CIRC;
+}
+
+/* Where the next item goes to or comes from. */
+std::uint32_t Dma::memory_address(unsigned channel) const
+{
+    const std::uint32_t base = channel * channel_stride, control = at(base + CCR);
+    const std::uint32_t item = loaded_[channel] - at(base + CNDTR);
+    return at(base + CMAR) + ((control & MINC) != 0 ? item << field(control, 10, 2) : 0);
+}
+
+void Dma::count_item(unsigned channel)
+{
+    const std::uint32_t base = channel * channel_stride;
+    const std::uint32_t left = --at(base + CNDTR);
+    if (left == loaded_[channel] / 2) {
+        flag(channel, HTIF);
+    }
+    if (left == 0) {
+        flag(channel, TCIF);
+        if ((at(base + CCR) & CIRC) != 0) {
+            at(base + CNDTR) = loaded_[channel];
+        }
+    }
 }
 
 bool Dma::transfer(unsigned channel, std::uint32_t *where)
 {
     const std::uint32_t base = channel * channel_stride;
-    const std::uint32_t control = at(base + CCR);
-    std::uint32_t &left = at(base + CNDTR);
+    const std::uint32_t control = at(base + CCR), left = at(base + CNDTR);
     if (!enabled(channel) || left == 0) {
         return false;
     }
@@ -117,21 +153,15 @@ bool Dma::transfer(unsigned channel, std::uint32_t *where)
     const std::uint32_t item = loaded_[channel] - left;
     const std::uint32_t peripheral =
         at(base + CPAR) + ((control & PINC) != 0 ? item * peripheral_bytes : 0);
-    const std::uint32_t memory =
-        at(base + CMAR) + ((control & MINC) != 0 ? item * memory_bytes : 0);
+    const std::uint32_t memory = memory_address(channel);
     if (peripheral % peripheral_bytes != 0 || memory % memory_bytes != 0) {
         refuse(base + CCR, control, "address is not aligned to the transfer size");
     }
-    const std::uint32_t mask = memory_bytes == 4 ? ~0u : (1u << (8 * memory_bytes)) - 1u;
     const bool to_peripheral = (control & DIR) != 0;
-    const std::uint32_t data = to_peripheral ? chip_.load(memory, memory_bytes)
-                                             : chip_.load(peripheral, peripheral_bytes) & mask;
-    left--; /* before the store: it may make the peripheral ask for the next item */
-    const std::uint32_t flags =
-        (left == loaded_[channel] / 2 ? HTIF : 0u) | (left == 0 ? TCIF : 0u);
-    if (left == 0 && (control & CIRC) != 0) {
-        left = loaded_[channel];
-    }
+    const std::uint32_t data = to_peripheral
+                                   ? chip_.load(memory, memory_bytes)
+                                   : chip_.load(peripheral, peripheral_bytes) & mask(memory_bytes);
+    count_item(channel); /* before the store: it may make the peripheral ask for the next item */
     if (to_peripheral) {
         chip_.store(peripheral, peripheral_bytes, data);
     } else {
@@ -140,24 +170,37 @@ bool Dma::transfer(unsigned channel, std::uint32_t *where)
     if (where != nullptr) {
         *where = memory;
     }
-    if (flags != 0) {
-        flag(channel, flags);
-    }
     return true;
+}
+
+std::uint32_t Dma::hand_over(unsigned channel, std::uint32_t data)
+{
+    const std::uint32_t control = at(CCR + channel * channel_stride);
+    const unsigned peripheral_bytes = 1u << field(control, 8, 2);
+    const unsigned memory_bytes = 1u << field(control, 10, 2);
+    const std::uint32_t memory = memory_address(channel);
+    count_item(channel);
+    chip_.store(memory, memory_bytes, data & mask(peripheral_bytes) & mask(memory_bytes));
+    return memory;
 }
 
 void Dma::flag(unsigned channel, std::uint32_t flags)
 {
     at(ISR) |= (flags | 1u) << (4 * channel);
-    interrupt();
+    interrupt(channel);
 }
 
-void Dma::interrupt()
+void Dma::interrupt(unsigned channel)
+{
+    const std::uint32_t enables = at(CCR + channel * channel_stride) & interrupt_enables;
+    chip_.interrupt(interrupt_line(number_, channel),
+                    (field(at(ISR), 4 * channel, 4) & enables) != 0);
+}
+
+void Dma::interrupts()
 {
     for (unsigned channel = 0; channel < channels; channel++) {
-        const std::uint32_t enables = at(CCR + channel * channel_stride) & 0xeu;
-        chip_.interrupt(interrupt_line(number_, channel),
-                        (field(at(ISR), 4 * channel, 4) & enables) != 0);
+        interrupt(channel);
     }
 }
 
@@ -193,8 +236,15 @@ Dmamux::Dmamux(Chip &chip, Dma &dma1, Dma &dma2)
     dma2_.on_enable = [this](unsigned channel) { enabled(Dma::channels + channel); };
 }
 
+void Dmamux::reset()
+{
+    RegisterBlock::reset();
+    ++changes_;
+}
+
 void Dmamux::put(std::uint32_t offset, std::uint32_t value, Master)
 {
+    ++changes_;
     if (offset < 0x40) {
         const unsigned index = offset / 4;
         Dma &dma = index < Dma::channels ? dma1_ : dma2_;
@@ -217,18 +267,22 @@ void Dmamux::enabled(unsigned index)
     }
 }
 
-bool Dmamux::request(DmaRequest source, std::uint32_t *where)
+Dmamux::Route Dmamux::route(DmaRequest source) const
 {
-    if (!clocked()) {
-        return false;
-    }
-    for (unsigned index = 0; index < 2 * Dma::channels; index++) {
+    for (unsigned index = 0; clocked() && index < 2 * Dma::channels; index++) {
         if (at(4 * index) == static_cast<std::uint32_t>(source)) {
             Dma &dma = index < Dma::channels ? dma1_ : dma2_;
-            return dma.transfer(index % Dma::channels, where);
+            const unsigned channel = index % Dma::channels;
+            return dma.enabled(channel) ? Route{&dma, channel} : Route{};
         }
     }
-    return false;
+    return {};
+}
+
+bool Dmamux::request(DmaRequest source, std::uint32_t *where)
+{
+    const Route found = route(source);
+    return found.dma != nullptr && found.dma->transfer(found.channel, where);
 }
 
 } // namespace virtual_board

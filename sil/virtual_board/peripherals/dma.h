@@ -36,6 +36,17 @@ class Dma : public RegisterBlock
     bool enabled(unsigned channel) const;
     /* One item; false if the channel takes none. The memory address it used goes to `where`. */
     bool transfer(unsigned channel, std::uint32_t *where);
+    /* The same on a silent channel that is known to read the register of a peripheral, which hands
+       over what that holds. Returns the memory address. */
+    std::uint32_t hand_over(unsigned channel, std::uint32_t data);
+    /* Whether a channel fetches from one register for ever and raises no interrupt: only its
+       registers tell how far it is. */
+    bool silent(unsigned channel) const;
+    /* Rises with every write that may change what a channel does. */
+    unsigned changes() const
+    {
+        return changes_;
+    }
 
     std::function<void(unsigned channel)> on_enable;
 
@@ -43,10 +54,14 @@ class Dma : public RegisterBlock
     void put(std::uint32_t offset, std::uint32_t value, Master master) override;
 
   private:
+    std::uint32_t memory_address(unsigned channel) const;
+    void count_item(unsigned channel);
     void flag(unsigned channel, std::uint32_t flags);
-    void interrupt();
+    void interrupt(unsigned channel);
+    void interrupts();
 
     unsigned number_;
+    unsigned changes_ = 0;
     std::array<std::uint32_t, channels> loaded_{}; /* items when the channel was enabled */
 };
 
@@ -57,6 +72,18 @@ class Dmamux : public RegisterBlock
 
     /* A peripheral asks for one item; false if no enabled channel is routed to it. */
     bool request(DmaRequest source, std::uint32_t *where = nullptr);
+    /* The enabled channel that a request is routed to; no `dma`: there is none. */
+    struct Route {
+        Dma *dma = nullptr;
+        unsigned channel = 0;
+    };
+    Route route(DmaRequest source) const;
+    /* Rises with every write that may change a route or what a channel does. */
+    unsigned changes() const
+    {
+        return changes_ + dma1_.changes() + dma2_.changes();
+    }
+    void reset() override;
     /* Called when a channel that is routed to the request has been enabled. */
     void on_ready(DmaRequest source, std::function<void()> poll)
     {
@@ -70,6 +97,7 @@ class Dmamux : public RegisterBlock
     void enabled(unsigned index);
 
     Dma &dma1_, &dma2_;
+    unsigned changes_ = 0;
     std::map<DmaRequest, std::function<void()>> polls_;
     std::vector<DmaRequest> ready_;
     Event poll_event_;

@@ -60,6 +60,10 @@ PowerStage::PowerStage(Chip &chip, const PowerStageConfig &config, AdvancedTimer
 
 void PowerStage::peak()
 {
+    const Ticks before = chip_.now() - 1;
+    for (Adc *const adc : converters_) {
+        adc->settle(before, last_peak_);
+    }
     if (started_) {
         plant::Duties duties;
         for (int leg = 0; leg < legs; leg++) {
@@ -73,6 +77,11 @@ void PowerStage::peak()
     if (!bridge_on()) {
         shorted_leg_ = -1;
     }
+    settling_ = true;
+    for (Adc *const adc : converters_) {
+        adc->settle(before);
+    }
+    settling_ = false;
     last_peak_ = chip_.now();
     counters.groups = groups_;
     groups_ = 0;
@@ -228,7 +237,9 @@ void PowerStage::stored(const Conversion &conversion, std::uint32_t address, uns
         return;
     }
     if (conversion.trigger >= last_peak_) {
-        open_.push_back({address, leg, factor, shift});
+        if (!settling_) {
+            open_.push_back({address, leg, factor, shift});
+        }
         groups_++;
     } else {
         counters.groups++; /* began before the peak */

@@ -47,6 +47,11 @@ class PowerStage : public AnalogInputs
     {
         return started_ ? period_ : -1;
     }
+    /* Converters whose results may be put off until the peak (adc_deferred.cpp). */
+    void settle_at_peaks(Adc &adc)
+    {
+        converters_.push_back(&adc);
+    }
     /* Called at each S(k), plant and converters up to date, k as period(). */
     std::function<void(std::int64_t k)> on_sample;
 
@@ -102,7 +107,9 @@ class PowerStage : public AnalogInputs
     Ticks last_peak_ = 0;
     unsigned groups_ = 0;
     std::vector<Group> open_; /* results of the present period, to be rewritten */
-    unsigned outputs_ = 0;    /* comparator outputs on their way */
+    std::vector<Adc *> converters_;
+    bool settling_ = false; /* what is stored has the period's value */
+    unsigned outputs_ = 0;  /* comparator outputs on their way */
     int shorted_leg_ = -1, next_short_leg_ = -1;
     double short_A_ = 0;
     Event comparator_event_, short_event_;

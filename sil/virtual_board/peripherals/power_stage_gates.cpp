@@ -35,7 +35,7 @@ unsigned PowerStage::connected_outputs() const
 
 bool PowerStage::bridge_on() const
 {
-    return timer_.outputs_enabled() && connected_outputs() == 0xff;
+    return timer_.outputs_enabled() && !timer_.held() && connected_outputs() == 0xff;
 }
 
 /* With MOE set the bridge switches: what then would burn it or is not wired is refused. */

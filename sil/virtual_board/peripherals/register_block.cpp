@@ -61,6 +61,9 @@ const Register &RegisterBlock::find(std::uint32_t offset, unsigned bytes) const
 std::uint32_t RegisterBlock::read(std::uint32_t offset, unsigned bytes, Master master)
 {
     find(offset, bytes);
+    if (before_access_ && master == Master::core) {
+        before_access_();
+    }
     const std::uint32_t value = fetch(offset, master);
     return bytes == 4 ? value : value & ((1u << (8 * bytes)) - 1u);
 }
@@ -72,6 +75,9 @@ void RegisterBlock::write(std::uint32_t offset, unsigned bytes, std::uint32_t va
     if (unknown != 0) {
         refuse(offset, value,
                "bits " + hexadecimal(unknown) + " are reserved, read-only or not modelled");
+    }
+    if (before_access_ && master == Master::core) {
+        before_access_();
     }
     put(offset, value, master);
 }

@@ -43,6 +43,11 @@ class RegisterBlock : public Peripheral
     {
         clocked_ = std::move(clocked);
     }
+    /* Called before every access of the core: what was put off until somebody looks comes now. */
+    void before_access(std::function<void()> act)
+    {
+        before_access_ = std::move(act);
+    }
     bool clocked() const
     {
         return !clocked_ || clocked_();
@@ -87,6 +92,7 @@ class RegisterBlock : public Peripheral
     std::vector<int> index_;
     std::vector<std::uint32_t> values_;
     Clocked clocked_;
+    std::function<void()> before_access_;
 };
 
 constexpr std::uint32_t field(std::uint32_t value, unsigned position, unsigned bits)

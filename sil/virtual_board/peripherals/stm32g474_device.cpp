@@ -63,6 +63,18 @@ Stm32g474Device::Stm32g474Device(Chip &chip, const Stm32g474Config &config)
         adcs_.push_back(std::make_unique<Adc>(chip, i + 1, i < 2 ? adc12_ : adc345_, triggers_,
                                               dmamux_, power_stage_, interrupt));
     }
+    const auto look = [this] {
+        for (auto &adc : adcs_) {
+            adc->look();
+        }
+    };
+    for (RegisterBlock *const block : std::initializer_list<RegisterBlock *>{
+             &rcc_, &dma1_, &dma2_, &dmamux_, &pins_.port('B')}) {
+        block->before_access(look);
+    }
+    for (auto &adc : adcs_) {
+        power_stage_.settle_at_peaks(*adc);
+    }
     adc12_.any_enabled = [this] { return adc(1).enabled() || adc(2).enabled(); };
     adc345_.any_enabled = [this] {
         return adc(3).enabled() || adc(4).enabled() || adc(5).enabled();

@@ -69,7 +69,9 @@ Timer::Timer(Chip &chip, const TimerKind &kind, Triggers &triggers, std::functio
 {
     reload_ = at(ARR);
     if (kind_.general) {
-        triggers_.listen([this](Trigger source, TriggerEdge edge) { triggered(source, edge); });
+        triggers_in_ = &triggers_.listen(
+            [this](Trigger source, TriggerEdge edge) { triggered(source, edge); });
+        triggers_in_->sources = 0; /* until the slave controller is told one */
     }
 }
 
@@ -80,7 +82,12 @@ void Timer::reset()
     reload_ = at(ARR);
     frozen_ = 0;
     updates = 0;
+    held_since_ = Event::never;
     compare_.fill(0);
+    compare_flags_ = 0x1e;
+    if (kind_.general) {
+        triggers_in_->sources = 0;
+    }
     chip_.schedule(compare_event_, Event::never);
     chip_.schedule(overflow_event_, Event::never);
     chip_.schedule(trigger_event_, Event::never);
@@ -169,6 +176,10 @@ void Timer::put(std::uint32_t offset, std::uint32_t value, Master)
         return;
     default:
         keep(offset, value);
+        compare_flags_ = 0;
+        for (unsigned channel = 0; kind_.general && channel < 4; channel++) {
+            compare_flags_ |= output(static_cast<int>(channel)) ? 2u << channel : 0u;
+        }
         if (kind_.general && offset >= CCR1 && offset <= CCR4) {
             const unsigned channel = (offset - CCR1) / 4;
             const std::uint32_t mode = at(channel < 2 ? CCMR1 : CCMR2);
@@ -205,6 +216,7 @@ void Timer::slave_mode(std::uint32_t value)
     require(!counting() || (at(SMCR) & 0x10007u) == (value & 0x10007u), SMCR, value,
             "slave mode changed while counting");
     keep(SMCR, value);
+    triggers_in_->sources = mode == 4 || mode == 6 ? only(internal_triggers[input & 3u]) : 0;
 }
 
 void Timer::start()

@@ -42,6 +42,8 @@ class Timer : public RegisterBlock
         return bit(at(0x00), 0);
     }
     std::uint64_t updates = 0; /* events since the reset, for reports */
+    /* Stops the count, as at a halt of the core with DBG_TIMx_STOP set; goes on where it stood. */
+    void hold(bool held);
 
   protected:
     std::uint32_t fetch(std::uint32_t offset, Master master) override;
@@ -79,8 +81,11 @@ class Timer : public RegisterBlock
     Ticks origin_ = 0;                         /* time of count 0 while counting */
     std::int32_t encoder_origin_ = 0;          /* encoder position where the count was frozen_ */
     std::array<std::uint32_t, 4> compare_{};   /* in force */
+    std::uint32_t compare_flags_ = 0x1e;       /* of the channels that are outputs */
     Ticks flags_until_ = 0;
+    Ticks held_since_ = Event::never; /* never: it is not held */
     Event overflow_event_, trigger_event_, compare_event_;
+    Triggers::Listener *triggers_in_ = nullptr;
 };
 
 } // namespace virtual_board

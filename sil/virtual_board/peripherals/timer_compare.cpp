@@ -26,6 +26,10 @@ void Timer::take_flags()
     if (!kind_.general || !counting() || encoder_mode() || now <= flags_until_) {
         return;
     }
+    if ((at(SR) & compare_flags_) == compare_flags_) { /* all are set as it is */
+        flags_until_ = now;
+        return;
+    }
     const Ticks count_time = count_ticks();
     for (int channel = 0; channel < 4; channel++) {
         const Ticks match = origin_ + compare_[static_cast<std::size_t>(channel)] * count_time;
@@ -39,6 +43,10 @@ void Timer::take_flags()
 void Timer::schedule_compare()
 {
     Ticks next = Event::never;
+    if ((at(DIER) & 0x1eu) == 0) {
+        chip_.schedule(compare_event_, next);
+        return;
+    }
     const Ticks count_time = count_ticks();
     for (int channel = 0; kind_.general && counting() && channel < 4; channel++) {
         const std::uint32_t compare = compare_[static_cast<std::size_t>(channel)];

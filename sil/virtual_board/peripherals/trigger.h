@@ -3,7 +3,7 @@
 #define STEADYSTEP_VIRTUAL_BOARD_TRIGGER_H
 
 #include <functional>
-#include <vector>
+#include <list>
 
 #include "sil/virtual_board/chip.h"
 
@@ -13,12 +13,24 @@ namespace virtual_board
 enum class Trigger { tim1, tim1_2, tim2, tim3, tim4, tim6, tim7, tim15, count };
 enum class TriggerEdge { rising, falling };
 
+constexpr unsigned every_trigger = (1u << static_cast<unsigned>(Trigger::count)) - 1;
+constexpr unsigned only(Trigger source)
+{
+    return 1u << static_cast<unsigned>(source);
+}
+
 class Triggers
 {
   public:
-    void listen(std::function<void(Trigger, TriggerEdge)> listener)
+    struct Listener {
+        std::function<void(Trigger, TriggerEdge)> act;
+        unsigned sources = every_trigger; /* a bit each; it is called for these only */
+    };
+    /* The listener stays where it is: its owner narrows it down as its registers choose. */
+    Listener &listen(std::function<void(Trigger, TriggerEdge)> act)
     {
-        listeners_.push_back(std::move(listener));
+        listeners_.push_back({std::move(act)});
+        return listeners_.back();
     }
     /* Nothing that listens acts on a falling edge: registers that ask for it are refused. */
     void edge(Trigger source, TriggerEdge edge)
@@ -26,8 +38,10 @@ class Triggers
         if (edge == TriggerEdge::falling) {
             return;
         }
-        for (auto &listener : listeners_) {
-            listener(source, edge);
+        for (Listener &listener : listeners_) {
+            if ((listener.sources & only(source)) != 0) {
+                listener.act(source, edge);
+            }
         }
     }
     void pulse(Trigger source)
@@ -37,7 +51,7 @@ class Triggers
     }
 
   private:
-    std::vector<std::function<void(Trigger, TriggerEdge)>> listeners_;
+    std::list<Listener> listeners_; /* their addresses are given away */
 };
 
 /* Several peripherals on one line of the NVIC: the line is high while one of them is. */

@@ -1,0 +1,139 @@
+/*
+ * Regular results that are put off. While their sequence raises no interrupt and DMA moves them
+ * round a ring, nobody can tell when they come but by registers: they are formed, in their order,
+ * when the core looks at one of those (Adc::look), and at the latest at the next peak, for which
+ * they are (Adc::settle). So 68 results of a period cost no event each. What the core finds in the
+ * ring's memory without such a look may be older than on the chip.
+ */
+#include "sil/virtual_board/peripherals/adc.h"
+
+#include "sil/virtual_board/peripherals/adc_registers.h"
+
+namespace virtual_board
+{
+
+using namespace adc_registers;
+
+namespace
+{
+
+constexpr std::size_t most_deferred = 64; /* sequences; three times those of a period */
+
+} // namespace
+
+/* The sequence does not change while it is started; a clock may. */
+void Adc::plan()
+{
+    const Ticks half_clock = common_.half_clock(), latency = common_.latency();
+    if (!plan_.empty() && half_clock == planned_half_clock_ && latency == planned_latency_) {
+        return;
+    }
+    planned_half_clock_ = half_clock;
+    planned_latency_ = latency;
+    plan_.clear();
+    Ticks start = latency;
+    Sequence sequence;
+    sequence.ranks = field(at(SQR1), 0, 4) + 1;
+    for (; sequence.rank < sequence.ranks; ++sequence.rank) {
+        const unsigned channel = regular_channel(sequence.rank);
+        const Ticks end = start + oversampling() * (sampling(channel) + conversion_time());
+        plan_.push_back({channel, end - conversion_time(), end});
+        start = end;
+    }
+}
+
+/* Whether a result that comes now can be told by registers only. */
+bool Adc::silent()
+{
+    if (dmamux_.changes() != route_changes_) {
+        route_ = dmamux_.route(dma_request());
+        route_changes_ = dmamux_.changes();
+        moved_by_dma_ = false;
+    }
+    return moved_by_dma_ && route_.dma->silent(route_.channel) && at(IER) == 0 &&
+           (at(CFGR) & DMAEN) != 0 && (at(ISR) & (EOC | OVR)) == 0;
+}
+
+bool Adc::defer(Ticks trigger)
+{
+    if (!silent()) {
+        settle(trigger - 1); /* all of them: another cannot begin before */
+        return false;
+    }
+    if (deferred_.size() == most_deferred || planned_half_clock_ != common_.half_clock()) {
+        settle(trigger - 1);
+    }
+    if (deferred_.empty()) {
+        plan();
+        due_ = trigger + plan_.front().end;
+    }
+    deferred_.push_back(trigger);
+    deferred_until_ = trigger + plan_.back().end;
+    return true;
+}
+
+void Adc::settle(Ticks until, Ticks triggered_before)
+{
+    if (due_ > until) {
+        return;
+    }
+    const unsigned factor = oversampling(), shift = oversampling_shift();
+    const bool direct = silent(); /* a ring never ends: it stays so */
+    std::size_t done = 0;
+    unsigned known = 0; /* ranks, a bit each: between two peaks their inputs stand still */
+    std::array<std::uint32_t, 16> results{};
+    while (done < deferred_.size() && due_ <= until && deferred_[done] < triggered_before) {
+        const Ticks trigger = deferred_[done];
+        const Rank &rank = plan_[deferred_rank_];
+        const Conversion conversion = {number_, rank.channel, false, trigger,
+                                       trigger + rank.sampled};
+        if ((known >> deferred_rank_ & 1) == 0) {
+            known |= 1u << deferred_rank_;
+            results[deferred_rank_] = regular_result(conversion);
+        }
+        const std::uint32_t data = results[deferred_rank_];
+        const bool last = ++deferred_rank_ == plan_.size();
+        if (last) {
+            deferred_rank_ = 0;
+            ++done;
+        }
+        due_ = done < deferred_.size() ? deferred_[done] + plan_[deferred_rank_].end : Event::never;
+        counters.conversions += factor;
+        if (direct) {
+            at(DR) = data;
+            const std::uint32_t address = route_.dma->hand_over(route_.channel, data);
+            if (stuck_code < 0) {
+                inputs_.stored(conversion, address, factor, shift);
+            }
+        } else {
+            deliver(data, conversion);
+        }
+        if (last) {
+            flag(EOS);
+        }
+    }
+    deferred_.erase(deferred_.begin(), deferred_.begin() + static_cast<std::ptrdiff_t>(done));
+}
+
+/* Up to now; what is still to come does so by an event, since what follows a look may be a write
+   that lets it be told otherwise. */
+void Adc::look()
+{
+    if (due_ == Event::never) {
+        return;
+    }
+    settle(chip_.now());
+    if (due_ != Event::never && regular_event_.at == Event::never) {
+        chip_.schedule(regular_event_, due_);
+    }
+}
+
+void Adc::deferred_due()
+{
+    settle(chip_.now());
+    if (due_ != Event::never && !silent()) {
+        chip_.schedule(regular_event_, due_);
+    }
+}
+
+} // namespace virtual_board
