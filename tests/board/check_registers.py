@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""Compares the register headers of hal/stm32g474 with independent descriptions of chip and core.
+"""Compares registers and pin maps of hal/stm32g474 with an independent description of the chip.
 
-usage: check_registers.py CC ROOT               exit 1 and one line for each difference
-       check_registers.py --self-test CC ROOT   plants errors, and expects each to be found
+usage: check_registers.py CC ROOT CMSIS PIN_MAP...  exit 1 and one line for each difference
+       check_registers.py --self-test CC ROOT CMSIS PIN_MAP...
+                                                    plants errors, and expects each to be found
 
 Every address, offset, bit position, width, interrupt number, pin and alternate function that the
 headers name is looked up; what is not in the description, or not in the form that registers.h
-promises, is a difference. Offsets and masks are what the compiler makes of the headers.
+promises, is a difference. Offsets and masks are what the compiler makes of the headers. CMSIS: the
+folder of CMSIS-Core's headers, which answer for the core's own registers.
 """
 
 import re
@@ -16,17 +18,19 @@ import sys
 import tempfile
 from pathlib import Path
 
+from pin_map import PinMap, without_comments
+
 HERE = Path(__file__).resolve().parent
 PORT = Path("hal/stm32g474")
 
 # Families of peripherals: prefix of the field macros -> peripherals that share the registers.
 FAMILIES = {
-    "TIM": ["TIM1", "TIM2", "TIM3", "TIM4"],
+    "TIM": ["TIM1", "TIM2", "TIM3", "TIM4", "TIM5", "TIM8"],
     "GPIO": ["GPIOA", "GPIOB", "GPIOC"],
-    "ADC": ["ADC1", "ADC2", "ADC3", "ADC4", "ADC12_COMMON", "ADC345_COMMON"],
-    "OPAMP": ["OPAMP1", "OPAMP2"],
-    "COMP": ["COMP1", "COMP2", "COMP3", "COMP4"],
-    "DAC": ["DAC3"],
+    "ADC": [*(f"ADC{n}" for n in range(1, 6)), "ADC12_COMMON", "ADC345_COMMON"],
+    "OPAMP": ["OPAMP1", "OPAMP2", "OPAMP3"],
+    "COMP": [f"COMP{n}" for n in range(1, 8)],
+    "DAC": ["DAC3", "DAC4"],
     "DMA": ["DMA1"],
     "DMAMUX": ["DMAMUX1"],
     "LPUART": ["LPUART1"],
@@ -37,15 +41,13 @@ REGISTERS = {
     "CCR": {"DMAMUX": "ccr[0]"},
     "CR": {"DMA": "ch[0].cr"},
 }
-MEMBERS = {
-    "DAC3": {
-        **{f"dhr{n}{k}": f"dhr{n}[{k - 1}]" for n in ("12r", "12l", "8r") for k in (1, 2)},
-        **{f"dor{k}": f"dor[{k - 1}]" for k in (1, 2)},
-    }
+DAC = {
+    **{f"dhr{n}{k}": f"dhr{n}[{k - 1}]" for n in ("12r", "12l", "8r") for k in (1, 2)},
+    **{f"dor{k}": f"dor[{k - 1}]" for k in (1, 2)},
 }
+MEMBERS = {"DAC3": DAC, "DAC4": DAC}
 # Where the description is wrong: RM0440 and the vendor's own header have PWR_CR5.R1MODE in bit 8.
 CORRECTIONS = {("PWR", "cr5", "r1mode"): (8, 1)}
-CORE = ["SCB", "DWT", "COREDEBUG"]
 # In capture mode CCMR1 has other fields.
 CAPTURE = {"IC1F", "IC2F"}
 
@@ -107,10 +109,6 @@ class Facts:
         return found
 
 
-def without_comments(text):
-    return re.sub(r"/\*.*?\*/", lambda m: re.sub(r"[^\n]", "", m.group()), text, flags=re.DOTALL)
-
-
 def structs(text):
     """{struct: [member expression]} in words or bytes; of arrays the first and the last element."""
     found = {}
@@ -142,7 +140,7 @@ def elements(member):
     return [f"{array.group(1)}[{k}]" for k in (0, int(array.group(2)) - 1)]
 
 
-def compiled(cc, root, header, expressions):
+def compiled(cc, root, cmsis, header, expressions):
     """Values of C expressions, with the header included."""
     lines = "".join(f'    printf("%llx\\n", (unsigned long long)({e}));\n' for e in expressions)
     text = (
@@ -152,7 +150,7 @@ def compiled(cc, root, header, expressions):
     with tempfile.TemporaryDirectory() as scratch:
         source, program = Path(scratch) / "values.c", Path(scratch) / "values"
         source.write_text(text, encoding="utf-8")
-        made = [cc, "-w", "-std=gnu11", "-I", str(root), str(source), "-o", str(program)]
+        made = [cc, "-w", "-std=gnu11", f"-I{root}", f"-I{cmsis}", str(source), "-o", str(program)]
         subprocess.run(made, check=True)
         output = subprocess.run([program], check=True, capture_output=True, text=True).stdout
     return [int(line, 16) for line in output.split()]
@@ -175,7 +173,7 @@ def register_of(prefix, macro, registers):
 
 def check_fields(facts, masks):
     for macro, mask in masks.items():
-        prefixes = [*FAMILIES, "RCC", "PWR", "FLASH", "SYSCFG", "IWDG", "DBGMCU", *CORE]
+        prefixes = [*FAMILIES, "RCC", "PWR", "FLASH", "SYSCFG", "IWDG", "DBGMCU"]
         prefix = next((p for p in prefixes if macro.startswith(p + "_")), "")
         places = list(register_of(prefix, macro, facts.registers))
         known = [
@@ -191,13 +189,13 @@ def check_fields(facts, masks):
             yield f"{macro}: {mask:#x}, expected {' or '.join(dict.fromkeys(expected))}"
 
 
-def check_header(cc, root, header, facts):
-    """Form, addresses and fields of one register header."""
+def check_header(cc, root, cmsis, facts):
+    """Form, addresses and fields of the register header."""
+    header = PORT / "registers.h"
     text = without_comments((root / header).read_text(encoding="utf-8"))
     lines = text.replace("\\\n", " ").splitlines()
     forms = [(line, FORM.fullmatch(line.rstrip())) for line in lines if line.startswith("#define")]
-    if header.name == "registers.h":
-        yield from (f"not in the promised form: {line}" for line, form in forms if not form)
+    yield from (f"not in the promised form: {line}" for line, form in forms if not form)
     forms = [form for _, form in forms if form]
     members = structs(text)
 
@@ -220,7 +218,7 @@ def check_header(cc, root, header, facts):
             meanings.append(form["field"])
 
     masks, seen = {}, set()
-    for meaning, value in zip(meanings, compiled(cc, root, header.as_posix(), expressions)):
+    for meaning, value in zip(meanings, compiled(cc, root, cmsis, header.as_posix(), expressions)):
         if isinstance(meaning, str):
             masks[meaning] = value
             continue
@@ -239,52 +237,55 @@ def check_header(cc, root, header, facts):
         owners = [form["peripheral"] for form in forms if form["struct"] == name]
         for member in expected:
             if owners and not any((p, member) in seen for p in owners):
-                if not (header.name == "core.h" and re.search(r"\[[1-9]", member)):
-                    yield f"struct {name}: {member} is not in the description"
+                yield f"struct {name}: {member} is not in the description"
     yield from check_fields(facts, masks)
 
 
 def check_interrupts(root, facts):
-    text = without_comments((root / PORT / "registers.h").read_text(encoding="utf-8"))
-    found = dict(re.findall(r"INTERRUPT_(\w+) = (\d+)", text))
-    if not found:
-        yield "no interrupt numbers found"
-    for name, number in found.items():
+    text = without_comments((root / PORT / "device.h").read_text(encoding="utf-8"))
+    lines = dict(re.findall(r"\b(\w+)_IRQn = (\d+)", text))
+    if not lines:
+        yield "no interrupt lines found"
+    for name, number in lines.items():
         if facts.interrupts.get(name) != int(number):
-            yield f"INTERRUPT_{name}: {number}, expected {facts.interrupts.get(name)}"
+            yield f"{name}_IRQn: {number}, expected {facts.interrupts.get(name)}"
     total = re.search(r"INTERRUPTS = (\d+)", text)
     if not total or int(total.group(1)) != max(facts.interrupts.values()) + 1:
         yield f"INTERRUPTS: expected {max(facts.interrupts.values()) + 1}"
 
 
-def check_pins(root, facts):
-    text = without_comments((root / PORT / "pins.h").read_text(encoding="utf-8"))
-    entries = re.findall(
-        r"PIN\((\w), (\d+), (\w+), (\d+), (\w+), (\w+), (\w+)\)", text.replace("\\\n", "")
-    )
-    if len(entries) < 20:
-        yield f"only {len(entries)} pins found"
-    at = {}
-    for port, number, mode, function, _, peripheral, signal in entries:
-        pin = f"P{port}{number}"
-        if pin in at.values():
-            yield f"{pin} has two uses"
-        at[peripheral, signal] = pin
-        expected = function if mode == "ALTERNATE" else "-"
-        if mode != "OUTPUT" and (peripheral, pin, signal, expected) not in facts.pins:
-            yield f"{pin}: no {peripheral} {signal} with function {expected} there"
-    for amplifier, comparator in (("OPAMP1", "COMP1"), ("OPAMP2", "COMP2")):
-        pin = at.get((amplifier, "VINP0"))
-        if (comparator, pin, "INP0", "-") not in facts.pins:
-            yield f"{pin}: {comparator} does not see what {amplifier} amplifies"
-    channels = re.findall(r"CHANNEL_(\w+) = (\d+),\s*/\* (ADC\d)", pin_text(root))
-    for name, channel, converter in channels:
-        if not name.startswith("OPAMP") and (converter, f"IN{channel}") not in at:
-            yield f"CHANNEL_{name}: no pin leads to {converter} IN{channel}"
-
-
-def pin_text(root):
-    return (root / PORT / "pins.h").read_text(encoding="utf-8")
+def check_pin_map(path, facts):
+    chosen = PinMap(path)
+    yield from chosen.differences(facts)
+    legs_a, legs_b = chosen["LEGS_A_CONVERTER"], chosen["LEGS_B_CONVERTER"]
+    converters = {
+        "BUS_CHANNEL": "ADC1",
+        "TEMPERATURE_CHANNEL": "ADC2",
+        "LEG_A_PLUS_CHANNEL": f"ADC{legs_a}",
+        "LEG_A_MINUS_CHANNEL": f"ADC{legs_a}",
+        "LEG_B_PLUS_CHANNEL": f"ADC{legs_b}",
+        "LEG_B_MINUS_CHANNEL": f"ADC{legs_b}",
+    }
+    for phase, converter in (("A", "ADC1"), ("B", "ADC2")):
+        amplifier = chosen.number(f"AMPLIFIER_{phase}")
+        if amplifier == 0:
+            converters[f"CURRENT_{phase}_CHANNEL"] = converter
+            continue
+        signal = f"VINP{chosen[f'AMPLIFIER_{phase}_INPUT']}"
+        if (f"OPAMP{amplifier}", signal) not in chosen.at:
+            yield f"AMPLIFIER_{phase}: no pin leads to OPAMP{amplifier} {signal}"
+    yield from chosen.channels_without_pin(converters)
+    analog = {pin for pin, mode, *_ in chosen.pins if mode == "ANALOG"}
+    for number, given in chosen.comparators:
+        seen = {pin for pin in analog if (f"COMP{number}", pin, f"INP{given}", "-") in facts.pins}
+        if not seen:
+            yield f"COMPARATOR({number}, {given}): no analog pin leads to COMP{number} INP{given}"
+    timer = chosen["ENCODER_TIMER"]
+    for signal in ("CH1", "CH2") if timer != "0" else ():
+        if (f"TIM{timer}", signal) not in chosen.at:
+            yield f"ENCODER_TIMER: no pin leads to TIM{timer} {signal}"
+    if chosen.integrated() and ("TIM1", "BKIN") not in chosen.at:
+        yield "BRIDGE_INTEGRATED: no pin leads to TIM1 BKIN"
 
 
 def check_clocks(root, facts):
@@ -307,16 +308,17 @@ def check_memory(root, facts):
             yield f"memory.ld: {name} is {origin}, {length}K; the chip has {start:#x}, {size} bytes"
 
 
-def differences(cc, root):
+def differences(cc, root, cmsis, pin_maps):
     chip = Facts(HERE / "stm32g474-registers.txt")
-    core = Facts(HERE / "cortex-m4-registers.txt")
-    yield from check_header(cc, root, PORT / "registers.h", chip)
-    yield from check_header(cc, root, PORT / "core.h", core)
+    yield from check_header(cc, root, cmsis, chip)
     yield from check_interrupts(root, chip)
-    yield from check_pins(root, chip)
+    for path in pin_maps:
+        yield from (f"{path.name}: {text}" for text in check_pin_map(path, chip))
     yield from check_clocks(root, chip)
     yield from check_memory(root, chip)
 
+
+PIN_MAP = "pin_maps/nucleo_g474re.h"
 
 # file, what is there, what is planted instead
 PLANTED = [
@@ -340,26 +342,36 @@ PLANTED = [
     ),
     ("registers.h", "TIM_CCMR_OC2PE BIT(11)", "TIM_CCMR_OC2PE BIT(10)"),
     ("registers.h", "DAC_SR_DAC2RDY BIT(27)", "DAC_SR_DAC2RDY BIT(12)"),
-    ("registers.h", "INTERRUPT_ADC1_2 = 18", "INTERRUPT_ADC1_2 = 47"),
+    ("device.h", "ADC1_2_IRQn = 18", "ADC1_2_IRQn = 47"),
     ("registers.h", "bdtr, ccr5", "ccr5, bdtr"),
     ("registers.h", "kr, pr, rlr", "kr, rlr, pr"),
     ("registers.h", "#define PWR_SR2_VOSF BIT(10)", "#define PWR_SR2_VOSF (1u << 10)"),
     ("registers.h", "#define RCC_AHB2ENR_DAC3EN BIT(18)", ""),
-    ("core.h", "icsr, vtor, aircr", "vtor, icsr, aircr"),
-    ("core.h", "reserved4[56]", "reserved4[55]"),
-    ("pins.h", "PIN(B, 15, ALTERNATE, 4,", "PIN(B, 15, ALTERNATE, 6,"),
-    ("pins.h", "PIN(A, 7, ANALOG, 0, NONE, OPAMP2", "PIN(A, 6, ANALOG, 0, NONE, OPAMP2"),
-    ("pins.h", "CHANNEL_BUS = 14", "CHANNEL_BUS = 13"),
+    ("registers.h", "0x50000600u", "0x50000700u"),
+    (PIN_MAP, "PIN(B, 15, ALTERNATE, 4,", "PIN(B, 15, ALTERNATE, 6,"),
+    (PIN_MAP, "PIN(A, 7, ANALOG, 0, NONE, OPAMP2", "PIN(A, 6, ANALOG, 0, NONE, OPAMP2"),
+    (PIN_MAP, "PIN(C, 5, ALTERNATE, 6, DOWN, TIM1, CH4N)", ""),
+    (PIN_MAP, "#define AMPLIFIER_B_INPUT 0", "#define AMPLIFIER_B_INPUT 1"),
+    (PIN_MAP, "COMPARATOR(3, 0)", "COMPARATOR(3, 1)"),
+    (PIN_MAP, "#define LEGS_A_CONVERTER 3", "#define LEGS_A_CONVERTER 5"),
+    (PIN_MAP, "#define BUS_CHANNEL 14", "#define BUS_CHANNEL 13"),
+    (PIN_MAP, "#define ENCODER_TIMER 4", "#define ENCODER_TIMER 8"),
+    (PIN_MAP, "#define LED_PIN 5", "#define LED_PIN 6"),
     ("memory.ld", "ORIGIN = 0x10000000", "ORIGIN = 0x10001000"),
 ]
 
 
-def self_test(cc, root):
+def self_test(cc, root, cmsis, pin_maps):
+    """Pin maps are those of the port, in the copy."""
     wrong = 0
     with tempfile.TemporaryDirectory() as scratch:
         copy = Path(scratch)
         (copy / "hal").mkdir()
         shutil.copytree(root / PORT, copy / PORT)
+        pin_maps = sorted((copy / PORT / "pin_maps").iterdir())
+        if found := list(differences(cc, copy, cmsis, pin_maps)):
+            print("WRONG: nothing is planted, and found:", found)
+            return 1
         for name, there, planted in PLANTED:
             path = copy / PORT / name
             text = path.read_text(encoding="utf-8")
@@ -367,7 +379,7 @@ def self_test(cc, root):
             changed, count = re.subn(pattern, lambda _, new=planted: new, text, count=1)
             path.write_text(changed, encoding="utf-8")
             try:
-                found = list(differences(cc, copy)) if count else []
+                found = list(differences(cc, copy, cmsis, pin_maps)) if count else []
             except subprocess.CalledProcessError:
                 found = ["does not compile"]
             path.write_text(text, encoding="utf-8")
@@ -377,11 +389,14 @@ def self_test(cc, root):
 
 
 def main(arguments):
-    if len(arguments) == 3 and arguments[0] == "--self-test":
-        return self_test(arguments[1], Path(arguments[2]))
-    if len(arguments) != 2:
+    testing = arguments[:1] == ["--self-test"]
+    arguments = arguments[testing:]
+    if len(arguments) < 4:
         sys.exit(__doc__)
-    found = list(differences(arguments[0], Path(arguments[1])))
+    given = arguments[0], *map(Path, arguments[1:3]), [Path(text) for text in arguments[3:]]
+    if testing:
+        return self_test(*given)
+    found = list(differences(*given))
     for text in found:
         print(text)
     print(f"{len(found)} differences")

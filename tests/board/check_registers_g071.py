@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
-"""Compares the register headers of hal/stm32g071 with independent descriptions of chip and core.
+"""Compares registers and pin maps of hal/stm32g071 with an independent description of the chip.
 
-usage: check_registers_g071.py CC ROOT               exit 1 and one line for each difference
-       check_registers_g071.py --self-test CC ROOT   plants errors, and expects each to be found
+usage: check_registers_g071.py [--self-test] CC ROOT CMSIS PIN_MAP...    as check_registers.py
 
 The comparison is that of check_registers.py; here are the names of this chip, and its DMA requests
 and ADC trigger.
@@ -13,6 +12,7 @@ import sys
 from pathlib import Path
 
 import check_registers as check
+from pin_map import PinMap, without_comments
 
 PORT = Path("hal/stm32g071")
 check.PORT = PORT
@@ -59,27 +59,21 @@ EXPECTED_ODD = {
 }
 
 
-def check_pins(root, facts):
-    text = check.without_comments((root / PORT / "pins.h").read_text(encoding="utf-8"))
-    entries = re.findall(
-        r"PIN\((\w), (\d+), (\w+), (\d+), (\w+), (\w+), (\w+)\)", text.replace("\\\n", "")
+CHANNELS = [
+    f"{name}_CHANNEL"
+    for name in (
+        *("CURRENT_A", "CURRENT_B", "BUS", "TEMPERATURE"),
+        *("LEG_A_PLUS", "LEG_A_MINUS", "LEG_B_PLUS", "LEG_B_MINUS"),
     )
-    if len(entries) != 17:
-        yield f"{len(entries)} pins found, expected 17"
-    at = {}
-    for port, number, mode, function, _, peripheral, signal in entries:
-        pin = f"P{port}{number}"
-        if pin in at.values():
-            yield f"{pin} has two uses"
-        at[peripheral, signal] = pin
-        expected = function if mode == "ALTERNATE" else "-"
-        if mode != "OUTPUT" and (peripheral, pin, signal, expected) not in facts.pins:
-            yield f"{pin}: no {peripheral} {signal} with function {expected} there"
-    for name, channel in re.findall(r"CHANNEL_(\w+) = (\d+)", text):
-        if ("ADC1", f"IN{channel}") not in at:
-            yield f"CHANNEL_{name}: no pin leads to ADC1 IN{channel}"
-        if int(channel) > 14:
-            yield f"CHANNEL_{name}: the sequencer knows channels 0...14 only"
+]
+
+
+def check_pin_map(path, facts):
+    chosen = PinMap(path)
+    yield from chosen.differences(facts)
+    yield from chosen.channels_without_pin(dict.fromkeys(CHANNELS, "ADC1"))
+    if ("TIM1", "BK") not in chosen.at:
+        yield "no pin leads to TIM1 BK"
 
 
 def check_numbers(root, file):
@@ -106,7 +100,7 @@ def check_numbers(root, file):
 
 
 def check_memory(root, facts):
-    script = check.without_comments((root / PORT / "memory.ld").read_text(encoding="utf-8"))
+    script = without_comments((root / PORT / "memory.ld").read_text(encoding="utf-8"))
     store = 8 * 1024  # behind the program
     for name, memory, kept in (("FLASH", "BANK_1", store), ("RAM", "SRAM", 0)):
         pattern = rf"{name}\s+\(\w+\)\s*: ORIGIN = (0x\w+), LENGTH = (\d+)K"
@@ -116,24 +110,25 @@ def check_memory(root, facts):
             yield f"memory.ld: {name} is {origin}, {length}K; the chip has {start:#x}, {size} bytes"
 
 
-def differences(cc, root):
+def differences(cc, root, cmsis, pin_maps):
     file = check.HERE / "stm32g071-registers.txt"
-    chip, core = check.Facts(file), check.Facts(check.HERE / "cortex-m0plus-registers.txt")
+    chip = check.Facts(file)
     odd = set()
-    for text in check.check_header(cc, root, PORT / "registers.h", chip):
+    for text in check.check_header(cc, root, cmsis, chip):
         if text in EXPECTED_ODD:
             odd.add(text)
         else:
             yield text
     yield from (f"expected, but did not come: {text}" for text in EXPECTED_ODD - odd)
-    yield from check.check_header(cc, root, PORT / "core.h", core)
     yield from check.check_interrupts(root, chip)
-    yield from check_pins(root, chip)
+    for path in pin_maps:
+        yield from (f"{path.name}: {text}" for text in check_pin_map(path, chip))
     yield from check_numbers(root, file)
     yield from check.check_clocks(root, chip)
     yield from check_memory(root, chip)
 
 
+PIN_MAP = "pin_maps/nucleo_g071rb.h"
 check.differences = differences
 check.PLANTED = [
     ("registers.h", "0x40012c00u", "0x40012d00u"),
@@ -148,15 +143,14 @@ check.PLANTED = [
         "ADC_CFGR1_EXTSEL(value) FIELD(value, 6, 3)",
         "ADC_CFGR1_EXTSEL(value) FIELD(value, 5, 3)",
     ),
-    ("registers.h", "INTERRUPT_TIM2 = 15", "INTERRUPT_TIM2 = 16"),
+    ("device.h", "TIM2_IRQn = 15", "TIM2_IRQn = 16"),
     ("registers.h", "DMA_REQUEST_LPUART1_RX = 14", "DMA_REQUEST_LPUART1_RX = 34"),
     ("registers.h", "ADC_TRIGGER_TIM3_TRGO = 3", "ADC_TRIGGER_TIM3_TRGO = 4"),
     ("registers.h", "kr, pr, rlr", "kr, rlr, pr"),
     ("registers.h", "#define RCC_APBENR2_ADCEN BIT(20)", ""),
-    ("core.h", "icsr, vtor, aircr", "vtor, icsr, aircr"),
-    ("core.h", "reserved3[95]", "reserved3[94]"),
-    ("pins.h", "PIN(C, 8, ALTERNATE, 2,", "PIN(C, 8, ALTERNATE, 6,"),
-    ("pins.h", "CHANNEL_BUS = 10", "CHANNEL_BUS = 12"),
+    (PIN_MAP, "PIN(C, 8, ALTERNATE, 2,", "PIN(C, 8, ALTERNATE, 6,"),
+    (PIN_MAP, "#define BUS_CHANNEL 10", "#define BUS_CHANNEL 12"),
+    (PIN_MAP, "#define BRIDGE_RESET_PIN 13", "#define BRIDGE_RESET_PIN 12"),
     ("memory.ld", "LENGTH = 120K", "LENGTH = 128K"),
 ]
 

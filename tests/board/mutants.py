@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Mutants of the board port: each is a mistake in a register or in the order of things that no unit
-test could see. The virtual board must catch each, for its own reason: by what it refuses, or by a
-drive_hash that is not the simulator's.
+test could see. The virtual board must catch each, for its own reason: by what it refuses, by a
+drive_hash that is not the simulator's, or by an expectation of stm32g474_disturbances that is not
+held.
 
-usage: mutants.py ROOT BUILD SIMULATOR [--only TEXT]
+usage: mutants.py ROOT BUILD SIMULATOR DISTURBANCES [--only TEXT]
 
 BUILD: folder of the preset board-stm32g474, with steadystep.elf built. A mutant recompiles the
-sources of hal/stm32g474 and links them to the firmware as it is.
+sources of the port that read what was changed, and links them to the firmware as it is.
 """
 
 import argparse
@@ -21,12 +22,13 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-PORT = Path("hal/stm32g474")
-# What is run: a shorted leg; an interrupt held up; motion; a fast sine, which the background plans
-# all the time.
+PORT = ("hal/stm32g474", "hal/cortex_m")
+# What is run: a shorted leg; an interrupt held up; motion; `save` in motion; a fast sine, which the
+# background plans all the time.
 SHORT_CIRCUIT = ["board-overcurrent"]
 OVERRUN = ["board-overrun"]
 MOVE = ["board-short-stall"]
+SAVE = ["board-busy-line"]
 PLANNED = [
     "reference-sine",
     "--set",
@@ -37,11 +39,11 @@ PLANNED = [
 @dataclass
 class Mutant:
     name: str
-    file: str  # of the port
+    file: str  # of the port, its name
     text: str
     instead: str
-    run: list  # of the simulator: scenario and options
-    expected: str  # in the failure of the run; "" a drive_hash that is not the simulator's
+    run: list | str  # of the simulator: scenario and options; str: case of the disturbances
+    expected: str  # in the failure of the run, or what is not held; "" another drive_hash
     numeric: str = ""  # the number format it is a mistake in; "" any
 
 
@@ -57,8 +59,14 @@ MUTANTS = [
     Mutant(
         "the phases are swapped",
         "pwm.h",
-        "TIM1->ccr[leg] = high_counts[leg];",
-        "TIM1->ccr[leg ^ 2] = high_counts[leg];",
+        "    TIM1->ccr[CHANNEL_A_PLUS - 1] = high_counts[HAL_LEG_A_PLUS];\n"
+        "    TIM1->ccr[CHANNEL_A_MINUS - 1] = high_counts[HAL_LEG_A_MINUS];\n"
+        "    TIM1->ccr[CHANNEL_B_PLUS - 1] = high_counts[HAL_LEG_B_PLUS];\n"
+        "    TIM1->ccr[CHANNEL_B_MINUS - 1] = high_counts[HAL_LEG_B_MINUS];\n",
+        "    TIM1->ccr[CHANNEL_A_PLUS - 1] = high_counts[HAL_LEG_B_PLUS];\n"
+        "    TIM1->ccr[CHANNEL_A_MINUS - 1] = high_counts[HAL_LEG_B_MINUS];\n"
+        "    TIM1->ccr[CHANNEL_B_PLUS - 1] = high_counts[HAL_LEG_A_PLUS];\n"
+        "    TIM1->ccr[CHANNEL_B_MINUS - 1] = high_counts[HAL_LEG_A_MINUS];\n",
         MOVE,
         "the drive computed",
     ),
@@ -77,8 +85,10 @@ MUTANTS = [
     Mutant(
         "the voltage mean is one period old",
         "phase_voltage_sampling.c",
-        "stored_a < HALF ? HALF : 0;",
-        "stored_a < HALF ? 0 : HALF;",
+        "    samples->phase_voltage_a = mean(&phase_a.sums[done]);\n"
+        "    samples->phase_voltage_b = mean(&phase_b.sums[done]);\n",
+        "    samples->phase_voltage_a = mean(&phase_a.sums[HALF - done]);\n"
+        "    samples->phase_voltage_b = mean(&phase_b.sums[HALF - done]);\n",
         MOVE,
         "",
     ),
@@ -101,7 +111,7 @@ MUTANTS = [
     Mutant(
         "the dead time is zero",
         "pwm.h",
-        "TIM_BDTR_DTG(0x80 | (DEAD_TIME_CYCLES / 2 - 64))",
+        "TIM_BDTR_DTG(PWM_DEAD_TIME_CODE)",
         "TIM_BDTR_DTG(0)",
         MOVE,
         "dead time",
@@ -109,9 +119,9 @@ MUTANTS = [
     Mutant(
         "the registers of the FPU are not saved",
         "startup.c",
-        "    SCB->cpacr |= ",
+        "    SCB->CPACR |= ",
         "    *(volatile uint32_t *)0xe000ef34u = 0; /* FPCCR: no automatic state preservation */\n"
-        "    SCB->cpacr |= ",
+        "    SCB->CPACR |= ",
         PLANNED,
         "",
         numeric="float",
@@ -119,7 +129,7 @@ MUTANTS = [
     Mutant(
         "the watchdog is not fed",
         "board_hal.c",
-        "    watchdog_feed();",
+        "    port_watchdog_feed();",
         "",
         MOVE,
         "watchdog",
@@ -127,17 +137,98 @@ MUTANTS = [
     Mutant(
         "the vector table is misplaced",
         "startup.c",
-        "SCB->vtor = (uint32_t)&vectors;",
-        "SCB->vtor = (uint32_t)&vectors + 64;",
+        "SCB->VTOR = (uint32_t)&vectors;",
+        "SCB->VTOR = (uint32_t)&vectors + 64;",
         MOVE,
         "VTOR",
+    ),
+    Mutant(
+        "the store is erased in the program's bank",
+        "parameter_flash.c",
+        "FLASH_CR_PER | FLASH_CR_BKER | ",
+        "FLASH_CR_PER | ",
+        SAVE,
+        "the flash outside of the parameter store",
+    ),
+    Mutant(
+        "a halt leaves the bridge closed",
+        "pwm.c",
+        "    DBGMCU->apb2fzr |= DBGMCU_APB2FZR_TIM1;\n",
+        "",
+        "halt",
+        "opens the bridge",
+    ),
+    Mutant(
+        "a halt puts the leg voltages out of step",
+        "pwm.c",
+        "    DBGMCU->apb1lfzr |= DBGMCU_APB1LFZR_TIM3;\n",
+        "",
+        "halt",
+        "all conversions are in step",
+    ),
+    Mutant(
+        "leg voltages out of step go unseen",
+        "phase_voltage_sampling.c",
+        "return in_half + 2u - expected <= 4u;",
+        "return in_half + expected + 2u > 0u;",
+        "conversions-lost",
+        "conversions out of step with the period open the bridge",
+    ),
+    Mutant(
+        "the break flags are looked at once",
+        "pwm.h",
+        "        if (pwm_break_latched()) {\n            pwm_open_bridge();\n        }\n",
+        "",
+        "break-while-closing",
+        "a trip while the bridge closes opens it within 1 us",
+    ),
+    Mutant(
+        "a fault of the core leaves the bridge closed",
+        "crash.c",
+        "    port_open_bridge();\n    __disable_irq();\n    record_begin(__get_IPSR(), ",
+        "    __disable_irq();\n    record_begin(__get_IPSR(), ",
+        "program-leaves-memory",
+        "behind a jump to nowhere the program opens the bridge",
+    ),
+    Mutant(
+        "a reset clears the crash record",
+        "crash.c",
+        '} record __attribute__((section(".no_init")));',
+        "} record;",
+        "starts-fail-for-ever",
+        "behind three starts that failed the board stays off and tells why",
+    ),
+    Mutant(
+        "the rest of a line that has lost its beginning is obeyed",
+        "serial_line.c",
+        "receive.behind = receive.bytes[(receive.stored - 1u) % RECEIVE_BYTES] != '\\n';",
+        "receive.behind = false;",
+        "lines-overflow",
+        "a line that has lost its beginning is not obeyed",
+    ),
+    Mutant(
+        "only LF makes room in the buffer",
+        "serial_line.c",
+        "if ((int32_t)(receive.read - receive.stored) > 0) {",
+        "if (false) {",
+        "line-ends",
+        "nothing is lost of lines that CR alone ends",
+    ),
+    Mutant(
+        "what a loss of power has spoilt is a crash",
+        "parameter_flash.c",
+        "if ((eccr & FLASH_ECCR_ECCD) == 0 || (eccr & FLASH_ECCR_BK_ECC) == 0) {",
+        "if (eccr != 1u) {",
+        "supply-fails-in-save",
+        "and the drive starts",
     ),
 ]
 
 
-def output_of(*words, check=True):
+def output_of(*words, check=True, folder=None):
     done = subprocess.run(
         [str(word) for word in words],
+        cwd=folder,
         capture_output=True,
         text=True,
         stdin=subprocess.DEVNULL,
@@ -157,57 +248,88 @@ def link_command(build):
 
 
 def compile_commands(build):
-    """{source below the root: words}"""
-    listed = json.loads((build / "compile_commands.json").read_text())
-    return {
-        Path(one["file"]): (shlex.split(one["command"]), Path(one["directory"])) for one in listed
-    }
+    """(source, words, folder to run them in) of steadystep.elf; other images share its sources."""
+    for one in json.loads((build / "compile_commands.json").read_text(encoding="utf-8")):
+        if "/steadystep.dir/" in one["command"]:
+            yield Path(one["file"]), shlex.split(one["command"]), Path(one["directory"])
+
+
+def relink(build, folder, recompiled):
+    """Links the image in `folder`, of the build's objects but for those that `recompiled` gives.
+
+    recompiled(source, words): the words of another compilation, without output; None: as it is.
+    """
+    linked = link_command(build)  # of steadystep.elf alone: other images have the same sources
+    needed = {str((build / word).resolve()) for word in linked if word.endswith(".obj")}
+    objects = {}
+    for source, words, directory in compile_commands(build):
+        at = words.index("-o")
+        target = str((directory / words[at + 1]).resolve())
+        other = recompiled(source, words[:at] + words[at + 2 :]) if target in needed else None
+        if other is not None:
+            objects[target] = str(folder / f"{len(objects)}.obj")
+            output_of(*other, "-o", objects[target], folder=directory)
+    image = folder / "steadystep.elf"
+    words = [objects.get(str((build / word).resolve()), word) for word in linked]
+    words[words.index("-o") + 1] = str(image)
+    words = [f"-Wl,-Map={image}.map" if word.startswith("-Wl,-Map=") else word for word in words]
+    output_of(*words, folder=build)
+    return image
 
 
 def numeric_of(build):
     return json.loads((build / "steadystep.map.json").read_text(encoding="utf-8"))["numeric"]
 
 
-def reads(changed, source):
-    """Whether a file of the port is, or includes, the changed one."""
+def port_files(root, pattern="*"):
+    """The port's files, relative to the root."""
+    return [
+        file.relative_to(root)
+        for port in PORT
+        for file in sorted((root / port).rglob(pattern))
+        if file.is_file()
+    ]
+
+
+def reads(changed, source, root):
+    """Whether a file of the port is, or includes, the changed one; both relative to the root."""
     if source == changed:
         return True
-    included = re.findall(rf'#include "{PORT}/(\w+\.h)"', source.read_text(encoding="utf-8"))
-    return any(reads(changed, source.parent / name) for name in included)
+    if not (root / source).is_file():  # not the port's, or made by the build
+        return False
+    text = (root / source).read_text(encoding="utf-8")
+    included = re.findall(r'#include "([^"]+)"', text)
+    return any(reads(changed, Path(name), root) for name in included)
+
+
+def change(mutant, root, folder):
+    """Copies the port into `folder` and makes the change there; returns the file changed."""
+    for port in PORT:
+        if (root / port).is_dir():
+            shutil.copytree(root / port, folder / port)
+    found = port_files(folder, mutant.file)
+    text = (folder / found[0]).read_text(encoding="utf-8") if len(found) == 1 else ""
+    if text.count(mutant.text) != 1:
+        raise RuntimeError(f"{mutant.name}: {mutant.file}: not exactly one\n{mutant.text}")
+    (folder / found[0]).write_text(text.replace(mutant.text, mutant.instead), encoding="utf-8")
+    return found[0]
 
 
 def build_mutant(mutant, root, build, folder):
     """Returns the image of a mutant, linked in `folder`."""
-    port = folder / PORT
-    shutil.copytree(root / PORT, port, dirs_exist_ok=True)
-    changed = port / mutant.file
-    text = changed.read_text()
-    if text.count(mutant.text) != 1:
-        raise RuntimeError(f"{mutant.name}: {PORT / mutant.file}: not exactly one\n{mutant.text}")
-    changed.write_text(text.replace(mutant.text, mutant.instead))
-    objects = {}
-    for source, (words, directory) in compile_commands(build).items():
-        if root / PORT not in source.parents or not reads(changed, port / source.name):
-            continue
-        target = folder / (source.stem + ".obj")
-        at = words.index("-o")
-        objects[str((directory / words[at + 1]).resolve())] = str(target)
-        words = words[: at + 1] + [str(target)] + words[at + 2 :]
-        words = [str(port / source.name) if Path(word) == source else word for word in words]
-        words.insert(1, f"-I{folder}")
-        done = subprocess.run(words, cwd=directory, capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise RuntimeError(f"{mutant.name}: {done.stderr}")
-    image = folder / "steadystep.elf"
-    words = link_command(build)
-    words = [objects.get(str((build / word).resolve()), word) for word in words]
-    words[words.index("-o") + 1] = str(image)
-    words = [f"-Wl,-Map={image}.map" if word.startswith("-Wl,-Map=") else word for word in words]
-    done = subprocess.run(words, cwd=build, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise RuntimeError(f"{mutant.name}: {done.stderr}")
-    output_of(root / "tools" / "image_map", image)
-    return image
+    changed = change(mutant, root, folder)
+
+    def recompiled(source, words):
+        if root not in source.parents or not reads(changed, source.relative_to(root), folder):
+            return None
+        inside = str(folder / source.relative_to(root))
+        words = [inside if Path(word) == source else word for word in words]
+        return [words[0], f"-I{folder}", *words[1:]]
+
+    try:
+        return relink(build, folder, recompiled)
+    except RuntimeError as error:
+        raise RuntimeError(f"{mutant.name}: {error}") from None
 
 
 def summary(simulator, *options):
@@ -234,9 +356,22 @@ def judge(mutant, image, simulator, numeric):
     return run["drive_hash"] != wanted, happened
 
 
+def judge_case(mutant, image, disturbances):
+    """The same of a case of the disturbances."""
+    done = output_of(disturbances, image, mutant.run, check=False)
+    if done.returncode not in (0, 1):
+        raise RuntimeError(f"{mutant.name}: {done.stdout}{done.stderr}")
+    failed = [line for line in done.stdout.splitlines() if line.endswith("NOT HELD")]
+    happened = "; ".join(" ".join(line.split()) for line in failed) or "all expectations held"
+    return any(mutant.expected in line for line in failed), happened
+
+
 def try_mutant(mutant, options):
     with tempfile.TemporaryDirectory() as folder:
         image = build_mutant(mutant, options.root, options.build, Path(folder))
+        if isinstance(mutant.run, str):  # needs no map, which takes longer than the run
+            return judge_case(mutant, image, options.disturbances)
+        output_of(options.root / "tools" / "image_map", image)
         return judge(mutant, image, options.simulator, options.numeric)
 
 
@@ -247,10 +382,15 @@ def main():
     parser.add_argument("root", type=lambda text: Path(text).resolve())
     parser.add_argument("build", type=lambda text: Path(text).resolve())
     parser.add_argument("simulator", type=lambda text: Path(text).resolve())
+    parser.add_argument("disturbances", type=lambda text: Path(text).resolve())
     parser.add_argument("--only", metavar="TEXT", default="", help="mutants whose name has TEXT")
     options = parser.parse_args()
     built = (options.build / "steadystep.elf").stat().st_mtime
-    newer = [file for file in (options.root / PORT).iterdir() if file.stat().st_mtime > built]
+    newer = [
+        file
+        for file in port_files(options.root, "*.[ch]")
+        if (options.root / file).stat().st_mtime > built
+    ]
     if newer:
         sys.exit(f"{newer[0]} is newer than the image: build it first")
     options.numeric = numeric_of(options.build)

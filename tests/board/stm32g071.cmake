@@ -1,38 +1,27 @@
 # Checks of the STM32G071 image: register headers, and the image on the virtual board.
+include(HostBuild)
 find_program(STEADYSTEP_HOST_CC NAMES cc gcc clang REQUIRED)
 set(board_tests ${PROJECT_SOURCE_DIR}/tests/board)
 
+set(registers ${STEADYSTEP_HOST_CC} ${PROJECT_SOURCE_DIR} ${CMSIS_DIR} ${pin_map})
 add_test(NAME board.registers
-  COMMAND ${Python3_EXECUTABLE} ${board_tests}/check_registers_g071.py
-          ${STEADYSTEP_HOST_CC} ${PROJECT_SOURCE_DIR})
+  COMMAND ${Python3_EXECUTABLE} ${board_tests}/check_registers_g071.py ${registers})
 add_test(NAME board.registers-self-test
-  COMMAND ${Python3_EXECUTABLE} ${board_tests}/check_registers_g071.py --self-test
-          ${STEADYSTEP_HOST_CC} ${PROJECT_SOURCE_DIR})
+  COMMAND ${Python3_EXECUTABLE} ${board_tests}/check_registers_g071.py --self-test ${registers})
 add_test(NAME board.leg-voltage
   COMMAND ${Python3_EXECUTABLE} ${board_tests}/leg_voltage_g071.py
           ${STEADYSTEP_HOST_CC} ${PROJECT_SOURCE_DIR})
 add_test(NAME board.stack
   COMMAND ${PROJECT_SOURCE_DIR}/tools/stack_bound $<TARGET_FILE:steadystep>)
 
-# The virtual board runs on the host: the host build of this project, in a folder of its own, unless
-# STEADYSTEP_HOST_BUILD names one that has it.
-set(STEADYSTEP_HOST_BUILD "" CACHE PATH
-  "Host build folder that holds stm32g071_runs; empty: make one")
-if(STEADYSTEP_HOST_BUILD)
-  set(host_build ${STEADYSTEP_HOST_BUILD})
-else()
-  include(ExternalProject)
-  set(host_build ${PROJECT_BINARY_DIR}/host)
-  ExternalProject_Add(host_virtual_board
-    SOURCE_DIR ${PROJECT_SOURCE_DIR}
-    BINARY_DIR ${host_build}
-    CMAKE_ARGS -DCMAKE_BUILD_TYPE=Release -DCMAKE_C_FLAGS_RELEASE=-O2 -DCMAKE_CXX_FLAGS_RELEASE=-O2
-               -DSTEADYSTEP_ALLOW_MISSING_ROOMS=${STEADYSTEP_ALLOW_MISSING_ROOMS}
-    BUILD_COMMAND ${CMAKE_COMMAND} --build ${host_build} --target stm32g071_runs
-    BUILD_ALWAYS ON
-    INSTALL_COMMAND ""
-    USES_TERMINAL_BUILD ON)
+# The virtual board has the wiring of the reference map.
+if(NOT STEADYSTEP_PIN_MAP STREQUAL default_pin_map)
+  message(STATUS "Pin map ${STEADYSTEP_PIN_MAP}: the image is not run on the virtual board")
+  return()
 endif()
+
+# What follows executes the image, on the host.
+host_build(host_virtual_board host_build PROGRAMS stm32g071_run stm32g071_disturbances)
 add_test(NAME board.run
   COMMAND ${host_build}/tests/stm32g071_run $<TARGET_FILE:steadystep>)
 add_test(NAME board.disturbances

@@ -14,6 +14,7 @@
 #include "sil/virtual_board/image_map.h"
 #include "sil/virtual_board/machine.h"
 #include "sil/virtual_board/peripherals/stm32g071_board.h"
+#include "tests/board/expectations.h"
 #include "tests/board/stm32g071_motor.h"
 
 namespace
@@ -25,21 +26,11 @@ constexpr Ticks us = ticks_per_s / 1000000, ms = 1000 * us;
 constexpr std::size_t settings_at = 124 * 1024; /* third page of the store */
 constexpr unsigned pend_sv = 14;
 
-int failures = 0;
+Expectations expectations;
 
 void expect(bool held, const char *what)
 {
-    std::printf("%-76s %s\n", what, held ? "held" : "NOT HELD");
-    failures += held ? 0 : 1;
-}
-
-std::size_t count(const std::string &text, const std::string &part)
-{
-    std::size_t found = 0;
-    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
-        found++;
-    }
-    return found;
+    expectations.expect(held, what);
 }
 
 /* A board with the image, powered. */
@@ -214,7 +205,7 @@ void program_leaves_memory(const ElfImage &image)
     Powered run(image);
     run.run_for(600 * ms);
     (void)run.type("enable\n", 250 * ms);
-    const std::uint32_t vectors = *image.symbol("ram_code_start");
+    const std::uint32_t vectors = *image.symbol("interrupt_code_start");
     const std::uint8_t nowhere[4] = {1, 0, 0, 0x30};
     std::copy(nowhere, nowhere + 4, run.machine.memory(vectors + 4 * pend_sv, 4));
     const Ticks opened = run.bridge_open_after(200 * us);
@@ -246,5 +237,5 @@ int main(int argc, char **argv)
         std::fprintf(stderr, "stm32g071_disturbances: %s\n", error.what());
         return 1;
     }
-    return failures > 0 ? 1 : 0;
+    return expectations.failures() > 0 ? 1 : 0;
 }

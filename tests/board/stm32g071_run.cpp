@@ -33,7 +33,7 @@ constexpr std::uint64_t must_cycles = 2880;     /* 45 us */
 constexpr std::uint64_t deadline_cycles = 5760; /* 90 us */
 constexpr std::uint32_t periods = 6400, trip_period = 6000;
 
-/* As hal/stm32g071/board.c tells them. */
+/* As hal/stm32g071/port.c tells them. */
 hal_facts board_facts()
 {
     hal_facts facts = {};

@@ -1,4 +1,5 @@
 # Programs for the ARM core, run by ctest under CMAKE_CROSSCOMPILING_EMULATOR.
+include(HostBuild)
 include(Unity)
 set(CMAKE_EXECUTABLE_SUFFIX .elf)
 
@@ -7,32 +8,9 @@ target_link_options(target_startup INTERFACE -T ${CMAKE_CURRENT_SOURCE_DIR}/qemu
 set_target_properties(target_startup PROPERTIES
   INTERFACE_LINK_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/qemu.ld)
 
-# The recorder runs on the host: the host build of this project, in a folder of its own, unless
-# STEADYSTEP_HOST_BUILD names one that has it.
-set(STEADYSTEP_HOST_BUILD "" CACHE PATH
-  "Host build folder that holds record_input; empty: make one")
-if(STEADYSTEP_HOST_BUILD)
-  set(host_build ${STEADYSTEP_HOST_BUILD})
-  add_custom_target(host_recorder)
-else()
-  include(ExternalProject)
-  set(host_build ${PROJECT_BINARY_DIR}/host)
-  set(recorders)
-  foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
-    list(APPEND recorders ${host_build}/tests/target/record_input_${numeric})
-  endforeach()
-  ExternalProject_Add(host_recorder
-    SOURCE_DIR ${PROJECT_SOURCE_DIR}
-    BINARY_DIR ${host_build}
-    CMAKE_ARGS -DCMAKE_BUILD_TYPE=Release -DCMAKE_C_FLAGS_RELEASE=-O2 -DCMAKE_CXX_FLAGS_RELEASE=-O2
-               -DUNITY_DIR=${UNITY_DIR}
-               -DSTEADYSTEP_ALLOW_MISSING_ROOMS=${STEADYSTEP_ALLOW_MISSING_ROOMS}
-    BUILD_COMMAND ${CMAKE_COMMAND} --build ${host_build} --target record_input
-    BUILD_ALWAYS ON
-    BUILD_BYPRODUCTS ${recorders}
-    INSTALL_COMMAND ""
-    USES_TERMINAL_BUILD ON)
-endif()
+set(recorders ${STEADYSTEP_NUMERICS})
+list(TRANSFORM recorders PREPEND tests/target/record_input_)
+host_build(host_recorder host_build PROGRAMS record_input BYPRODUCTS ${recorders})
 
 add_custom_target(replays) # what tools/cycles counts
 foreach(numeric IN LISTS STEADYSTEP_NUMERICS)

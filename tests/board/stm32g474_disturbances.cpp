@@ -1,0 +1,164 @@
+/*
+ * Runs the image of the STM32G474 board on the virtual board and disturbs it: a debugger halts it,
+ * conversions are lost, a comparator trips between two instructions, the program leaves memory,
+ * start-up fails, lines come faster than they are read, the supply fails while the store is
+ * written.
+ *
+ * usage: stm32g474_disturbances IMAGE.elf [CASE]     exit 1 and a line per expectation that does
+ * not hold
+ */
+#include <algorithm>
+#include <cstring>
+#include <exception>
+
+#include "tests/board/stm32g474_bench.h"
+
+namespace
+{
+
+using namespace stm32g474_bench;
+
+enum : std::uint32_t { TIM1_BDTR = 0x40012c44, TIM3_CR1 = 0x40000400 };
+constexpr std::uint32_t MOE = 1u << 15;
+constexpr unsigned line_interrupt = 16 + Lpuart::interrupt_line;
+
+/* In the control interrupt, and in the background behind it. */
+void debugger_halts(Expectations &expectations, const std::string &image)
+{
+    Powered run(image);
+    (void)run.start();
+    for (const Ticks behind_peak : {5 * us, 30 * us}) {
+        const std::string where = behind_peak < 10 * us ? " in the control interrupt" : "";
+        expectations.expect(run.enable(), "the drive holds the motor");
+        run.run_behind_peak(behind_peak);
+        run.device.halt(true);
+        expectations.expect(!run.bridge_on(), "a halt" + where + " opens the bridge");
+        run.machine.halt(273 * us);
+        expectations.expect(!run.bridge_on(), "which stays open");
+        (void)run.output();
+        run.device.halt(false);
+        run.run_for(1 * us);
+        expectations.expect(!run.bridge_on(), "and does not close when the program goes on");
+        run.run_for(20 * ms);
+        expectations.expect(!run.bridge_on() && count(run.output(), "fault: deadline-missed") == 1,
+                            "as the drive has missed a deadline, which it tells");
+        expectations.expect(count(run.type("disable\n", 20 * ms), "ok disable") == 1,
+                            "disable clears the fault");
+    }
+    expectations.expect(run.enable(), "the drive holds the motor again");
+    expectations.expect(run.machine.resets().empty(), "all conversions are in step: no reset");
+}
+
+/*
+ * While a control interrupt is held up beyond the next S(k), so that it is not the missing
+ * interrupt that tells: the trigger timer stands from here to the peak, which starts it again.
+ */
+void conversions_are_lost(Expectations &expectations, const std::string &image)
+{
+    Powered run(image);
+    (void)run.start();
+    expectations.expect(run.enable(), "the drive holds the motor");
+    run.machine.stall_control_interrupt(0, 130 * us / run.machine.core_cycle());
+    run.run_behind_peak(0);
+    Event stops([&] { run.machine.store(TIM3_CR1, 4, 0); });
+    run.machine.schedule(stops, run.machine.now() + 60 * us);
+    run.run_for(ms);
+    expectations.expect(run.machine.resets().size() == 1 && !run.bridge_on(),
+                        "conversions out of step with the period open the bridge");
+    expectations.expect(
+        count(run.start(), "started by: crash: leg-voltage conversions out of step or lost") == 1,
+        "and are told at the next start");
+}
+
+/* A comparator trips for less than a cycle between the look at the break flags and the write that
+   closes the bridge: the flag is up, but the write has its way. */
+void break_while_closing(Expectations &expectations, const std::string &image)
+{
+    Powered run(image);
+    int closed = 0;
+    bool open = false;
+    Event look([&] { open = !run.bridge_on(); });
+    run.device.before_write = [&](std::uint32_t address, std::uint32_t value) {
+        if (address == TIM1_BDTR && (value & MOE) != 0 && closed++ == 0) {
+            run.device.tim1().comparator(0, true);
+            run.device.tim1().comparator(0, false);
+            run.machine.schedule(look, run.machine.now() + us);
+        }
+    };
+    (void)run.start();
+    const std::string text = run.type("enable\n", enable_time);
+    expectations.expect(closed == 1 && open, "a trip while the bridge closes opens it within 1 us");
+    expectations.expect(count(text, "fault: hardware-overcurrent") == 1, "and is told");
+    expectations.expect(count(run.type("disable\n", 20 * ms), "ok disable") == 1 && run.enable(),
+                        "disable clears the fault");
+}
+
+void program_leaves_memory(Expectations &expectations, const std::string &image)
+{
+    Powered run(image);
+    (void)run.start();
+    expectations.expect(run.enable(), "the drive holds the motor");
+    const std::uint32_t vectors = *run.elf.symbol("vectors");
+    const std::uint8_t nowhere[4] = {1, 0, 0, 0x30};
+    std::copy(nowhere, nowhere + 4, run.machine.memory(vectors + 4 * line_interrupt, 4));
+    bool opened = false;
+    run.device.before_write = [&](std::uint32_t address, std::uint32_t value) {
+        opened = opened || (address == TIM1_BDTR && (value & MOE) == 0);
+    };
+    run.device.serial_line().send(run.machine.now(), "\n");
+    run.run_for(20 * us);
+    expectations.expect(opened, "behind a jump to nowhere the program opens the bridge");
+    const std::string text = run.start();
+    expectations.expect(run.machine.resets().size() == 1 &&
+                            count(text, "started by: crash: bus fault at 0x") == 1 &&
+                            count(text, " in period ") == 1,
+                        "and is told at the next start");
+    run.machine.reset("pin");
+    expectations.expect(count(run.start(), "started by: reset pin") == 1,
+                        "but not at the one behind");
+}
+
+const Case cases[] = {
+    {"halt", debugger_halts},
+    {"conversions-lost", conversions_are_lost},
+    {"break-while-closing", break_while_closing},
+    {"program-leaves-memory", program_leaves_memory},
+    {"starts-fail", starts_fail},
+    {"starts-fail-for-ever", starts_fail_for_ever},
+    {"no-crystal", starts_without_crystal},
+    {"lines-overflow", lines_overflow},
+    {"line-ends", line_ends},
+    {"supply-fails-in-save", supply_fails_in_save},
+    {"supply-fails-in-erase", supply_fails_in_erase},
+    {"no-encoder", encoder_is_asked_for},
+    {"encoder-of-4000-counts", encoder_counts, true},
+};
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    if (argc != 2 && argc != 3) {
+        std::fprintf(stderr, "usage: stm32g474_disturbances IMAGE.elf [CASE]\n");
+        return 2;
+    }
+    Expectations expectations;
+    bool found = false;
+    for (const Case &one : cases) {
+        if (argc == 3 ? std::strcmp(argv[2], one.name) != 0 : one.only_if_asked) {
+            continue;
+        }
+        found = true;
+        std::printf("%s\n", one.name);
+        try {
+            one.run(expectations, argv[1]);
+        } catch (const std::exception &error) {
+            expectations.expect(false, error.what());
+        }
+    }
+    if (!found) {
+        std::fprintf(stderr, "stm32g474_disturbances: no case '%s'\n", argv[2]);
+        return 2;
+    }
+    return expectations.failures() > 0 ? 1 : 0;
+}

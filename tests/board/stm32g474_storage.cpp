@@ -1,0 +1,135 @@
+/* What the STM32G474 image finds in its parameter store: what was spoilt when the supply failed,
+   and settings that ask for an encoder. */
+#include <array>
+#include <cmath>
+
+#include "firmware/application/settings_record.h"
+#include "firmware/drive/record_log.h"
+#include "tests/board/stm32g474_bench.h"
+
+namespace stm32g474_bench
+{
+
+namespace
+{
+
+/* What the drive has learned, firmware/drive/parameter_store.h. */
+constexpr record_log learned = {0, 1, 24};
+constexpr std::size_t store = Flash::bytes - 4 * Flash::page_bytes;
+constexpr std::size_t slot_bytes = 40, slots = Flash::page_bytes / slot_bytes;
+constexpr std::uint32_t older = 7;     /* sequence of the record that was there before */
+constexpr std::int32_t torque = 30000; /* of its first coefficient, in 1e-7 Nm */
+
+/* A slot of pages 0 and 1 in turn. */
+std::size_t place(std::size_t slot)
+{
+    return store + slot / slots * Flash::page_bytes + slot % slots * slot_bytes;
+}
+
+/* Sequence and first coefficient of the record in a slot; sequence 0: there is none. */
+std::pair<std::uint32_t, std::int32_t> record_in(Powered &run, std::size_t slot)
+{
+    const std::uint8_t *const record = &run.device.flash().memory()[place(slot)];
+    if (!record_is_valid(&learned, record)) {
+        return {0, 0};
+    }
+    return {static_cast<std::uint32_t>(record_get(&record[4], 4)),
+            static_cast<std::int32_t>(record_get(&record[RECORD_HEADER_BYTES], 4))};
+}
+
+/* With one record in a slot; `fails_at` is asked for the flash's counters. */
+void supply_fails(Expectations &expectations, const std::string &image, std::size_t slot,
+                  const std::function<bool(const Flash::Counters &)> &fails_at)
+{
+    Powered run(image, board_config(), [slot](std::vector<std::uint8_t> &flash) {
+        std::array<std::uint8_t, RECORD_SLOT_BYTES(24)> record = {};
+        record_put(&record[RECORD_HEADER_BYTES], static_cast<std::uint32_t>(torque), 4);
+        record_seal(&learned, record.data(), older);
+        std::copy_n(record.begin(), RECORD_BYTES(24), &flash[place(slot)]);
+    });
+    const Flash::Counters &counters = run.device.flash_controller().counters();
+    (void)run.start();
+    run.device.serial_line().send(run.machine.now(), "save\n");
+    for (int i = 0; i < 10000 && !fails_at(counters); ++i) {
+        run.run_for(5 * us);
+    }
+    expectations.expect(fails_at(counters), "the store is being written");
+    run.run_for(20 * us);
+    const unsigned errors = counters.double_errors;
+    run.machine.power_on();
+    (void)run.output();
+    const std::string text = run.start();
+    expectations.expect(counters.double_errors > errors && run.machine.resets().empty() &&
+                            count(text, "started by: power-on") == 1,
+                        "the supply fails: what is spoilt is read, and the drive starts");
+    expectations.expect(record_in(run, slot).first == older, "the record before is there");
+    expectations.expect(count(run.type("save\n", 60 * ms), "ok save") == 1, "save is obeyed");
+    std::pair<std::uint32_t, std::int32_t> saved = {0, 0};
+    for (std::size_t i = slot + 1; i < 2 * slots && saved.first == 0; ++i) {
+        saved = record_in(run, i);
+    }
+    expectations.expect(saved.first == older + 1 && std::abs(saved.second - torque) < torque / 100,
+                        "and saves what the record before said");
+    expectations.expect(run.enable() && run.machine.resets().empty(), "the drive can be enabled");
+}
+
+} // namespace
+
+void supply_fails_in_save(Expectations &expectations, const std::string &image)
+{
+    supply_fails(expectations, image, 0,
+                 [](const Flash::Counters &counters) { return counters.programs == 3; });
+}
+
+/* The page is full: the other one is erased first. */
+void supply_fails_in_erase(Expectations &expectations, const std::string &image)
+{
+    supply_fails(expectations, image, slots - 1,
+                 [](const Flash::Counters &counters) { return counters.erases == 1; });
+}
+
+namespace
+{
+
+constexpr int counts_per_turn = 4000;
+
+/* Stored: feedback by an encoder, whose counts per turn are the build's to tell. */
+void ask_for_encoder(std::vector<std::uint8_t> &flash)
+{
+    const motor_params motor = {0.37, 0.9e-3, 0.157, 0.000307, 15.62e-5, 3.0, 24.0, 50};
+    stored_settings stored = {};
+    drive_settings_default(&stored.drive, &motor);
+    stored.drive.feedback = DRIVE_FEEDBACK_ENCODER;
+    settings_record_encode(&stored, 1,
+                           &flash[store + SETTINGS_RECORD_FIRST_PAGE * Flash::page_bytes]);
+}
+
+} // namespace
+
+/* STEADYSTEP_ENCODER_COUNTS=0, as the image is by default. */
+void encoder_is_asked_for(Expectations &expectations, const std::string &image)
+{
+    Powered run(image, board_config(), ask_for_encoder);
+    const std::string text = run.start();
+    expectations.expect(count(text, "settings: default") == 1 &&
+                            count(text, "not in force: feedback = encoder, but neither board") == 1,
+                        "without an encoder settings that ask for one are refused");
+}
+
+/* Of an image built with STEADYSTEP_ENCODER_COUNTS=4000. */
+void encoder_counts(Expectations &expectations, const std::string &image)
+{
+    Stm32g474Config config = board_config();
+    config.power_stage.plant.sensors.encoder_counts_per_turn = counts_per_turn;
+    Powered run(image, config, ask_for_encoder);
+    expectations.expect(count(run.start(), "settings: stored") == 1,
+                        "with an encoder settings that ask for one are in force");
+    expectations.expect(run.enable(), "the drive holds the motor");
+    const double before = run.device.power_stage().plant().state().theta_rad;
+    expectations.expect(count(run.type("move 3\n", 500 * ms), "ok move") == 1, "and moves it");
+    const double moved = run.device.power_stage().plant().state().theta_rad - before;
+    std::printf("  by %.4f rad\n", moved);
+    expectations.expect(std::fabs(moved - 3.0) < 0.02, "as far as its counts per turn make it");
+}
+
+} // namespace stm32g474_bench
