@@ -33,13 +33,29 @@ Bridge::Bridge(const BridgeConfig &config) : config_(config)
         dead_counts_ = whole;
     }
 
-    /* In dead time the lower diode carries a current that leaves the leg, the upper one that
-       enters it. */
-    low_ = {0.0, 0.0, 0.0};
-    high_ = {config.bus_V, config.bus_V, 0.0};
-    dead_ = {-config.diode_drop_V, config.bus_V + config.diode_drop_V, config.diode_drop_V};
+    set_voltages();
     for (Leg &leg : legs_) {
         leg = {low_, false, false, 0};
+    }
+}
+
+/* In dead time the lower diode carries a current that leaves the leg, the upper one that enters
+   it. */
+void Bridge::set_voltages()
+{
+    low_ = {0.0, 0.0, 0.0};
+    high_ = {config_.bus_V, config_.bus_V, 0.0};
+    dead_ = {-config_.diode_drop_V, config_.bus_V + config_.diode_drop_V, config_.diode_drop_V};
+}
+
+void Bridge::set_levels(double bus_V, double diode_drop_V)
+{
+    config_.bus_V = bus_V;
+    config_.diode_drop_V = diode_drop_V;
+    require_bridge(config_);
+    set_voltages();
+    for (Leg &leg : legs_) {
+        leg.voltage_V = leg.dead ? dead_ : (leg.commanded_high ? high_ : low_);
     }
 }
 

@@ -46,6 +46,9 @@ class Bridge
   public:
     explicit Bridge(const BridgeConfig &config); /* throws std::invalid_argument */
 
+    /* Bus and diodes from the present S(k) on; the switches stay as they are. */
+    void set_levels(double bus_V, double diode_drop_V);
+
     /* The segments of S(k)...S(k+1) with these duties in force; valid until the next call. */
     const Timetable &period(const Duties &duties);
 
@@ -69,6 +72,7 @@ class Bridge
         int latest_edge; /* its index in the period's list */
     };
 
+    void set_voltages();
     void off();
     void averaged(const Duties &duties);
     void switched(const Duties &duties);

@@ -54,7 +54,8 @@ struct MotorCoefficients {
 struct MotorIntegrals {
     Phases voltage_Vs = {0.0, 0.0}; /* since begin_period */
     double supplied_J = 0.0, diode_J = 0.0, copper_J = 0.0, friction_J = 0.0, load_J = 0.0;
-    double coulomb_J = 0.0, source_J = 0.0, brake_J = 0.0; /* of a real motor and its supply */
+    double arc_J = 0.0, coulomb_J = 0.0, source_J = 0.0,
+           brake_J = 0.0; /* of a real motor and its supply */
 };
 
 class Motor
@@ -77,6 +78,10 @@ class Motor
     const MotorIntegrals &integrals() const
     {
         return integrals_;
+    }
+    Phases filtered_Vs() const /* as of a RealMotor: here there is no filter */
+    {
+        return integrals_.voltage_Vs;
     }
     Phases current_A() const
     {

@@ -18,7 +18,7 @@ bool any(const ImperfectionConfig &x)
 {
     return x.saturation_depth != 0.0 || x.flux_harmonic_3 != 0.0 || x.detent_4 != 0.0 ||
            x.detent_2 != 0.0 || x.detent_1 != 0.0 || x.coulomb_friction != 0.0 ||
-           x.bridge_resistance_ohm != 0.0;
+           x.bridge_resistance_ohm != 0.0 || x.phase_voltage_filter_s != 0.0;
 }
 
 bool is_real(const Config &config)
@@ -36,13 +36,15 @@ std::variant<Motor, RealMotor> motor_of(const Config &config)
 }
 
 /* A real motor multiplies by the bus voltage and the diodes' drop itself. */
+constexpr double unit_V = 1.0;
+
 BridgeConfig bridge_of(const Config &config)
 {
     require_bridge(config.bridge);
     BridgeConfig bridge = config.bridge;
     if (is_real(config)) {
-        bridge.bus_V = 1.0;
-        bridge.diode_drop_V = 1.0;
+        bridge.bus_V = unit_V;
+        bridge.diode_drop_V = unit_V;
     }
     return bridge;
 }
@@ -70,9 +72,9 @@ double capacitor_of(const RealMotor &motor)
 } // namespace
 
 struct Plant::Parts {
-    explicit Parts(const Config &config)
-        : bridge(bridge_of(config)), sensors(config.sensors, config.seed), motor(motor_of(config)),
-          period_s(config.bridge.period_s), source_V(config.bridge.bus_V),
+    explicit Parts(const Config &configured)
+        : config(configured), bridge(bridge_of(config)), sensors(config.sensors, config.seed),
+          motor(motor_of(config)), period_s(config.bridge.period_s),
           delayed(config.bridge.delay_periods == 1), track_energy(config.track_energy)
     {
         std::visit([this](const auto &machine) { take_reference(machine); }, motor);
@@ -86,19 +88,20 @@ struct Plant::Parts {
         capacitor_reference_J = capacitor_of(machine);
     }
 
+    Config config; /* motor and bus as they are by now */
     Bridge bridge;
     Sensors sensors;
     std::variant<Motor, RealMotor> motor;
     const double period_s;
-    const double source_V;
     const bool delayed;
     const bool track_energy;
     double magnetic_reference_J = 0.0;
     double kinetic_reference_J = 0.0;
     double capacitor_reference_J = 0.0;
-    bool bridge_on = false;   /* in the period that ends at the present S(k) */
-    Duties pending;           /* computed from S(k-1), in force from S(k) on */
-    std::uint64_t period = 0; /* k of the present S(k) */
+    Phases measured_V = {0.0, 0.0}; /* phase voltages as they reach the converters */
+    bool bridge_on = false;         /* in the period that ends at the present S(k) */
+    Duties pending;                 /* computed from S(k-1), in force from S(k) on */
+    std::uint64_t period = 0;       /* k of the present S(k) */
 };
 
 Plant::Plant(const Config &config) : parts_(std::make_unique<Parts>(config))
@@ -132,25 +135,36 @@ void Plant::observe()
 {
     const Parts &plant = *parts_;
     std::visit([this](const auto &motor) { observe(motor); }, plant.motor);
-    samples_ = plant.sensors.sample(plant.period, {Phases{state_.i_a_A, state_.i_b_A},
-                                                   Phases{state_.u_a_V, state_.u_b_V}, state_.bus_V,
-                                                   state_.theta_rad, plant.bridge_on});
+    samples_ =
+        plant.sensors.sample(plant.period, {Phases{state_.i_a_A, state_.i_b_A}, plant.measured_V,
+                                            state_.bus_V, state_.theta_rad, plant.bridge_on});
+}
+
+/* What a change from outside can do to the true values; voltages are means of the period before. */
+void Plant::look()
+{
+    std::visit(
+        [this](const auto &motor) {
+            const Phases current_A = motor.current_A();
+            state_.theta_rad = motor.theta_rad();
+            state_.omega_rad_s = motor.omega_rad_s();
+            state_.i_a_A = current_A[0];
+            state_.i_b_A = current_A[1];
+            state_.torque_Nm = motor.torque_Nm();
+            state_.bus_V = bus_of(motor, parts_->config.bridge.bus_V);
+        },
+        parts_->motor);
 }
 
 template <typename AnyMotor> void Plant::observe(const AnyMotor &motor)
 {
-    const Parts &plant = *parts_;
+    Parts &plant = *parts_;
     const MotorIntegrals &integrals = motor.integrals();
     const Phases mean_V = integrals.voltage_Vs * (1.0 / plant.period_s);
-    const Phases current_A = motor.current_A();
-    state_.theta_rad = motor.theta_rad();
-    state_.omega_rad_s = motor.omega_rad_s();
-    state_.i_a_A = current_A[0];
-    state_.i_b_A = current_A[1];
+    plant.measured_V = motor.filtered_Vs() * (1.0 / plant.period_s);
+    look();
     state_.u_a_V = mean_V[0];
     state_.u_b_V = mean_V[1];
-    state_.torque_Nm = motor.torque_Nm();
-    state_.bus_V = bus_of(motor, plant.source_V);
     if (plant.track_energy) {
         energy_.supplied = integrals.supplied_J;
         energy_.copper = integrals.copper_J;
@@ -160,6 +174,7 @@ template <typename AnyMotor> void Plant::observe(const AnyMotor &motor)
         energy_.load = integrals.load_J;
         energy_.diode = integrals.diode_J;
         energy_.coulomb = integrals.coulomb_J;
+        energy_.arc = integrals.arc_J;
         energy_.source = integrals.source_J;
         energy_.brake = integrals.brake_J;
         energy_.capacitor = capacitor_of(motor) - plant.capacitor_reference_J;
@@ -185,10 +200,79 @@ void Plant::set_motor(const MotorConfig &config)
             motor.set_parameters(config);
             plant.magnetic_reference_J += motor.magnetic_J();
             plant.kinetic_reference_J += motor.kinetic_J();
-            state_.theta_rad = motor.theta_rad();
-            state_.torque_Nm = motor.torque_Nm();
         },
         plant.motor);
+    plant.config.motor = config;
+    look();
+}
+
+/* What the plain motor does not know makes it a real one, from here on. */
+template <typename Change> void Plant::change_real_motor(const Change &change)
+{
+    Parts &plant = *parts_;
+    if (const Motor *plain = std::get_if<Motor>(&plant.motor)) {
+        plant.motor = RealMotor(plant.config, *plain, state_.load_torque_Nm);
+        plant.bridge.set_levels(unit_V, unit_V);
+    }
+    change(std::get<RealMotor>(plant.motor));
+    look();
+}
+
+void Plant::set_coulomb_friction(double share)
+{
+    change_real_motor([share](RealMotor &motor) { motor.set_coulomb_friction(share); });
+}
+
+/* A stiff bus takes or gives no energy of its own; that of a capacitor changes by currents only. */
+void Plant::set_bus(double bus_V)
+{
+    Parts &plant = *parts_;
+    BridgeConfig bridge = plant.config.bridge;
+    bridge.bus_V = bus_V;
+    require_bridge(bridge);
+    if (RealMotor *real = std::get_if<RealMotor>(&plant.motor)) {
+        real->set_bus(plant.config.supply, bus_V);
+    } else {
+        plant.bridge.set_levels(bus_V, bridge.diode_drop_V);
+    }
+    plant.config.bridge = bridge;
+    look();
+}
+
+void Plant::set_sensors(const SensorConfig &sensors)
+{
+    parts_->sensors.set(sensors);
+}
+
+void Plant::jam(double torque_Nm)
+{
+    change_real_motor([torque_Nm](RealMotor &motor) { motor.jam(torque_Nm); });
+}
+
+void Plant::open_phase(int phase, bool open)
+{
+    require(phase == 0 || phase == 1, "phase", phase, "0 or 1");
+    change_real_motor([phase, open](RealMotor &motor) { motor.open_phase(phase, open); });
+}
+
+void Plant::stick(Channel channel)
+{
+    stick(channel, code_of(samples_, channel));
+}
+
+void Plant::stick(Channel channel, int code)
+{
+    parts_->sensors.stick(channel, code);
+}
+
+void Plant::release(Channel channel)
+{
+    parts_->sensors.release(channel);
+}
+
+void Plant::add_noise(Channel channel, double rms)
+{
+    parts_->sensors.add_noise(channel, rms);
 }
 
 } // namespace plant

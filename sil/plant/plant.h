@@ -37,7 +37,8 @@ struct ImperfectionConfig {
     double flux_harmonic_3 = 0;  /* third harmonic of the back-EMF / its fundamental */
     double detent_4 = 0, detent_2 = 0, detent_1 = 0; /* shares; of period 4, 2, 1 per tooth */
     double coulomb_friction = 0;                     /* share; sticks at rest */
-    double bridge_resistance_ohm = 0; /* both conducting switches, in series with each phase */
+    double bridge_resistance_ohm = 0;  /* both conducting switches, in series with each phase */
+    double phase_voltage_filter_s = 0; /* time constant before the phase voltage is averaged */
 };
 
 /* The bus: a source that cannot take current back, a capacitor, a brake resistor. */
@@ -92,6 +93,9 @@ struct Config {
     bool track_energy = false; /* keep Energy; costs about a fifth of the speed */
 };
 
+/* A converter of the samples. */
+enum class Channel { current_a, current_b, phase_voltage_a, phase_voltage_b, bus_voltage };
+
 /* Times high per half period of the four half-bridges: A+, A-, B+, B-; as in hal_outputs. */
 struct Duties {
     std::uint16_t high_counts[4] = {0, 0, 0, 0};
@@ -120,8 +124,9 @@ struct Energy {
     double copper = 0;   /* and in the bridge's resistance */
     double magnetic = 0; /* of currents, saturation and detent; what changed since the start */
     double kinetic = 0, friction = 0, load = 0;
-    double diode = 0; /* lost in the bridge's diodes during dead time and with the bridge off */
-    double coulomb = 0;
+    double diode = 0;   /* lost in the bridge's diodes during dead time and with the bridge off */
+    double coulomb = 0; /* and in a jam */
+    double arc = 0;     /* of a lead that breaks while current flows */
     double source = 0, brake = 0, capacitor = 0; /* the bus: two losses, and what is stored */
 };
 
@@ -150,13 +155,29 @@ class Plant
         return energy_;
     }
 
-    /* Changes that act from the present S(k) on. */
+    /*
+     * Drift and faults: act from the present S(k) on, those of the sensing in the samples from
+     * S(k+1) on. All throw std::invalid_argument naming the field.
+     */
     void set_load_torque(double load_torque_Nm);
-    void set_motor(const MotorConfig &motor); /* drift and faults: currents, angle, speed go on */
+    void set_motor(const MotorConfig &motor);      /* currents, angle and speed go on */
+    void set_coulomb_friction(double share);       /* as in ImperfectionConfig */
+    void set_bus(double bus_V);                    /* the source's; a capacitor follows */
+    void set_sensors(const SensorConfig &sensors); /* offsets, gains and noise may differ */
+    /* Friction beside the motor's own; 0 frees the rotor, held_Nm stops it within this S(k). */
+    static constexpr double held_Nm = 1e9;
+    void jam(double torque_Nm);
+    void open_phase(int phase, bool open);       /* 0 a, 1 b: a lead of the winding is broken */
+    void stick(Channel channel);                 /* at the code of the present samples */
+    void stick(Channel channel, int code);       /* at this one */
+    void release(Channel channel);               /* sticks no more */
+    void add_noise(Channel channel, double rms); /* Gaussian, in codes, beside the channel's own */
 
   private:
     struct Parts; /* motor, bridge, sensors */
 
+    template <typename Change> void change_real_motor(const Change &change);
+    void look();
     void observe();
     template <typename AnyMotor> void observe(const AnyMotor &motor);
 

@@ -308,6 +308,18 @@ template <int order>
     }
 }
 
+/* A phase with a broken lead floats whatever the bridge does. */
+inline void break_open(Mode &mode, const RealMotorState &state)
+{
+    for (int phase = 0; phase < 2; phase++) {
+        if (state.open[phase]) {
+            mode.share[phase] = mode.drop_V[phase] = 0.0;
+            mode.conducting[phase] = mode.direction[phase] = 0.0;
+            mode.floating = true;
+        }
+    }
+}
+
 /* Every member by itself: clearing the structure first takes a sixth of a step's time. */
 template <int order>
 [[gnu::always_inline]] inline Mode mode_of(const Series<order> &x, const Segment &segment,
@@ -329,6 +341,9 @@ template <int order>
         mode.conducting = Phases{1.0, 1.0};
         mode.direction = Phases{0.0, 0.0};
         mode.floating = false;
+    }
+    if (state.open[0] || state.open[1]) {
+        break_open(mode, state);
     }
     set_friction(mode, x, motor, state);
     set_bus(mode, x, motor, state);
@@ -384,6 +399,61 @@ template <bool track_energy>
     }
 }
 
+/*
+ * Share of the bus voltage between the legs of a phase that carries no current: a leg in dead time
+ * is taken to stand at half the bus, between its diodes.
+ */
+inline double between_legs(const Segment &segment, int phase)
+{
+    return 0.5 * (segment.if_positive_V[phase] + segment.if_negative_V[phase]);
+}
+
+/* Back-EMF of the phases at t = h as if open, L0 dx/dt. */
+template <int order> Phases induced_V(const Series<order> &x, const Magnetics &magnetics, double h)
+{
+    Phases rate = x.flux[1];
+    double power = h;
+    for (int k = 2; k <= order; k++) {
+        rate += x.flux[k] * (k * power);
+        power *= h;
+    }
+    return magnetics.inductance * rate;
+}
+
+/* Voltage at the bridge of the phases at t = h. */
+template <int order>
+[[gnu::always_inline]] inline Phases terminal_V(const Course &course, const Series<order> &x,
+                                                const Segment &segment, const Mode &mode, double h)
+{
+    const double bus_V = value<order>(x.bus, h);
+    Phases voltage_V = mode.share * bus_V + mode.drop_V;
+    if (mode.floating) {
+        voltage_V += (1.0 - mode.conducting) * induced_V(x, course.motor.magnetics, h);
+        for (int phase = 0; phase < 2; phase++) {
+            if (course.state.open[phase]) {
+                voltage_V[phase] = between_legs(segment, phase) * bus_V;
+            }
+        }
+    }
+    return voltage_V;
+}
+
+/* Behind the filter at t = h, of a voltage that is taken as a straight line within the step. */
+template <int order>
+[[gnu::noinline]] void filter(const Course &course, const Series<order> &x, const Segment &segment,
+                              const Mode &mode, double h)
+{
+    const double constant_s = 1.0 / course.motor.filter_rate;
+    const Phases first_V = terminal_V(course, x, segment, mode, 0.0);
+    const Phases last_V = terminal_V(course, x, segment, mode, h);
+    const Phases lag_V = (constant_s / h) * (last_V - first_V);
+    constexpr double forgotten = 50.0; /* time constants */
+    const double age = h * course.motor.filter_rate;
+    const double left = age < forgotten ? falling_exponential(-age) : 0.0;
+    Phases &filtered_V = course.state.filtered_V;
+    filtered_V = last_V - lag_V + left * (filtered_V - first_V + lag_V);
+}
+
 /* The state at the end of the step. */
 template <bool track_energy, bool turning, int order>
 [[gnu::always_inline]] inline void accept(const Course &course, const Series<order> &x,
@@ -391,6 +461,9 @@ template <bool track_energy, bool turning, int order>
 {
     RealMotorState &state = course.state;
     course.integrals.voltage_Vs += mode.share * integral<order>(x.bus, h) + mode.drop_V * h;
+    if (course.motor.filter_rate > 0.0) {
+        filter(course, x, segment, mode, h);
+    }
     if constexpr (track_energy) {
         add_energies(course, x, segment, mode, h);
     }
@@ -516,7 +589,7 @@ Event first_event(const Series<order> &x, const RealCoefficients &motor,
 {
     Event first = {h};
     for (int phase = 0; phase < 2; phase++) {
-        if (segment.diode_V[phase] != 0.0) {
+        if (segment.diode_V[phase] != 0.0 && !state.open[phase]) {
             const End current = phase == 0 ? End::of_current_a : End::of_current_b;
             consider(first, mode.conducting[phase] != 0.0 ? current : End::of_floating,
                      margin_of_phase(phase, x, motor, segment, mode, h), h);
@@ -624,8 +697,14 @@ template <int order, bool track_energy>
     const Event event = mode.stuck
                             ? accept_to_event<false, track_energy>(course, x, segment, mode, h)
                             : accept_to_event<true, track_energy>(course, x, segment, mode, h);
-    course.integrals.voltage_Vs +=
-        (1.0 - mode.conducting) * magnetics.inductance * (state.flux - before);
+    Phases floating_Vs = (1.0 - mode.conducting) * magnetics.inductance * (state.flux - before);
+    for (int phase = 0; phase < 2; phase++) {
+        if (state.open[phase]) {
+            floating_Vs[phase] =
+                between_legs(segment, phase) * integral<order>(x.bus, event.time_s);
+        }
+    }
+    course.integrals.voltage_Vs += floating_Vs;
     for (int phase = 0; phase < 2; phase++) {
         const End current = phase == 0 ? End::of_current_a : End::of_current_b;
         if (mode.conducting[phase] == 0.0 || event.end == current) {

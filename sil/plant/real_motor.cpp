@@ -21,14 +21,23 @@ bool same_magnetics(const MotorConfig &x, const MotorConfig &y)
            x.rotor_teeth == y.rotor_teeth;
 }
 
+void require_coulomb_friction(double share)
+{
+    require(share >= 0.0 && share <= 10.0, "coulomb_friction", share, "0...10");
+}
+
 } // namespace
 
 RealMotor::RealMotor(const Config &config)
     : imperfections_(config.imperfections), track_energy_(config.track_energy)
 {
+    constexpr double slowest_filter_s = 1e-3, fastest_filter_s = 1e-7;
+    const double filter_s = imperfections_.phase_voltage_filter_s;
     require_motion(config.initial_theta_rad, config.initial_omega_rad_s);
-    require(imperfections_.coulomb_friction >= 0.0 && imperfections_.coulomb_friction <= 10.0,
-            "coulomb_friction", imperfections_.coulomb_friction, "0...10");
+    require_coulomb_friction(imperfections_.coulomb_friction);
+    require(filter_s == 0.0 || (filter_s >= fastest_filter_s && filter_s <= slowest_filter_s),
+            "phase_voltage_filter_s", filter_s, "0 (none) or 1e-7...1e-3 s");
+    coefficients_.filter_rate = filter_s > 0.0 ? 1.0 / filter_s : 0.0;
     require(imperfections_.bridge_resistance_ohm >= 0.0 &&
                 imperfections_.bridge_resistance_ohm <= 1e4,
             "bridge_resistance_ohm", imperfections_.bridge_resistance_ohm, "0...1e4 ohm");
@@ -38,6 +47,22 @@ RealMotor::RealMotor(const Config &config)
     state_.electrical_rad = config.motor.rotor_teeth * config.initial_theta_rad;
     state_.bus_V = config.bridge.bus_V;
     set_parameters(config.motor);
+}
+
+RealMotor::RealMotor(const Config &config, const Motor &motor, double load_torque_Nm)
+    : RealMotor(config)
+{
+    const MotorState &from = motor.state();
+    state_.omega_rad_s = from.omega_rad_s;
+    state_.electrical_turns = from.electrical_turns;
+    state_.electrical_rad = from.electrical_rad;
+    set_load_torque(load_torque_Nm);
+    begin_period();
+    for (int phase = 0; phase < 2; phase++) {
+        state_.blocked[phase] = from.current_A[phase] == 0.0;
+    }
+    state_.flux = coefficients_.magnetics.flux(from.current_A, axes_of(state_.axis));
+    integrals_ = motor.integrals();
 }
 
 void RealMotor::set_parameters(const MotorConfig &config)
@@ -57,7 +82,8 @@ void RealMotor::set_parameters(const MotorConfig &config)
     motor.torque = magnetics.torque * per_J;
     motor.friction = config.viscous_friction_Nms_rad * per_J;
     motor.coulomb =
-        imperfections_.coulomb_friction * holding_torque_Nm(config, imperfections_) * per_J;
+        (imperfections_.coulomb_friction * holding_torque_Nm(config, imperfections_) + jam_Nm_) *
+        per_J;
     const double detent_4 = magnetics.unmagnetised_detent_4() * per_J;
     const double detent_2 = magnetics.detent_2 * per_J;
     const double detent_1 = magnetics.detent_1 * per_J;
@@ -80,6 +106,52 @@ void RealMotor::set_parameters(const MotorConfig &config)
     state_.flux = magnetics.flux(kept_A, axes_of(state_.axis));
 }
 
+void RealMotor::set_coulomb_friction(double share)
+{
+    require_coulomb_friction(share);
+    require(share == 0.0 || imperfections_.rated_current_A > 0.0, "coulomb_friction", share,
+            "0 without the motor's rated current");
+    imperfections_.coulomb_friction = share;
+    set_parameters(motor_);
+}
+
+/* On a stiff bus the voltage is the source's at once. */
+void RealMotor::set_bus(const SupplyConfig &config, double source_V)
+{
+    coefficients_.supply = supply_of(config, source_V);
+    if (coefficients_.supply.stiff()) {
+        state_.bus_V = source_V;
+    }
+}
+
+void RealMotor::jam(double torque_Nm)
+{
+    require(torque_Nm >= 0.0 && torque_Nm <= Plant::held_Nm, "jam_torque_Nm", torque_Nm,
+            "0...1e9 N m");
+    jam_Nm_ = torque_Nm;
+    if (torque_Nm == Plant::held_Nm) {
+        integrals_.coulomb_J += kinetic_J();
+        state_.omega_rad_s = 0.0;
+    }
+    state_.released = false;
+    set_parameters(motor_);
+}
+
+/* What the current held in the winding is lost in the arc; that of the magnet stays. */
+void RealMotor::open_phase(int phase, bool open)
+{
+    state_.open[phase] = open;
+    if (!open || state_.blocked[phase]) {
+        return;
+    }
+    const double before_J = magnetic_J();
+    Phases left_A = current_A();
+    left_A[phase] = 0.0;
+    state_.flux = coefficients_.magnetics.flux(left_A, axes_of(state_.axis));
+    state_.blocked[phase] = true;
+    integrals_.arc_J += before_J - magnetic_J();
+}
+
 void RealMotor::set_load_torque(double load_torque_Nm)
 {
     coefficients_.load = load_torque_Nm * coefficients_.inverse_inertia;
@@ -92,6 +164,7 @@ void RealMotor::begin_period()
     wrap(state_.electrical_turns, state_.electrical_rad);
     state_.axis = unit_vector(state_.electrical_rad);
     integrals_.voltage_Vs = Phases{0.0, 0.0};
+    filtered_at_begin_V_ = state_.filtered_V;
 
     /* Rotation, L/R, the exchange of magnetic with kinetic energy, and with that of the bus. */
     const double most = magnitude(state_.flux[0]) + magnitude(state_.flux[1]);
@@ -117,6 +190,16 @@ Phases RealMotor::current_A() const
 {
     const Phases current_A = coefficients_.magnetics.current_A(state_.flux, axes_of(state_.axis));
     return Phases{state_.blocked[0] ? 0.0 : current_A[0], state_.blocked[1] ? 0.0 : current_A[1]};
+}
+
+/* The filter's own equation, integrated: u - tf dv/dt. */
+Phases RealMotor::filtered_Vs() const
+{
+    if (coefficients_.filter_rate == 0.0) {
+        return integrals_.voltage_Vs;
+    }
+    return integrals_.voltage_Vs -
+           (state_.filtered_V - filtered_at_begin_V_) / coefficients_.filter_rate;
 }
 
 double RealMotor::theta_rad() const

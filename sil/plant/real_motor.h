@@ -7,7 +7,10 @@
  *   d theta/dt = w
  *   C dV/dt  = source and brake - share . i   u = share V -+ diode drops
  *
- * At rest the rotor sticks until the other torques exceed Tc. Taylor series in time as for the
+ * At rest the rotor sticks until the other torques exceed Tc, which a jam adds to. The current of a
+ * phase with a broken lead is 0 and its voltage, which is measured at the bridge, that of the legs.
+ * The measured voltage passes a filter, tf dv/dt = u - v.
+ * Taylor series in time as for the
  * plain motor (motor.h); what depends on the rotor angle is a Taylor series in the angle turned,
  * and so the sum of its powers.
  */
@@ -34,6 +37,8 @@ struct RealMotorState {
     bool blocked[2] = {true, true}; /* diodes hold the phase's current at 0 */
     bool braking = false;           /* the brake resistor is connected */
     bool released = false;          /* friction has just ceased to hold the rotor, to rounding */
+    bool open[2] = {false, false};  /* a lead of the phase is broken */
+    Phases filtered_V = {0.0, 0.0}; /* phase voltages behind the filter */
 };
 
 /* Configuration as the equations want it: torques over inertia, rad/s^2. */
@@ -43,7 +48,8 @@ struct RealCoefficients {
     double resistance = 0.0, diode_drop = 0.0;
     double inverse_inertia = 0.0;
     double torque = 0.0, friction = 0.0, load = 0.0, coulomb = 0.0; /* Kx, Kv, T_L, Tc over J */
-    double stiffness = 0.0; /* of the detent, 1/s^2: the greatest slope over J */
+    double stiffness = 0.0;   /* of the detent, 1/s^2: the greatest slope over J */
+    double filter_rate = 0.0; /* 1 / tf, 1/s; 0: no filter */
 
     /* -R/L0 and 1/L0 over k + 1: from Taylor coefficient k to k + 1. */
     struct Share {
@@ -62,9 +68,15 @@ class RealMotor
   public:
     /* Throws std::invalid_argument. */
     RealMotor(const Config &config);
+    /* Goes on where a motor of the same parameters is; the bus is config's. */
+    RealMotor(const Config &config, const Motor &motor, double load_torque_Nm);
 
     void set_parameters(const MotorConfig &config); /* currents, angle and speed go on */
     void set_load_torque(double load_torque_Nm);
+    void set_coulomb_friction(double share);
+    void set_bus(const SupplyConfig &config, double source_V);
+    void jam(double torque_Nm);
+    void open_phase(int phase, bool open);
 
     void begin_period();
     /* A timetable of a bus of 1 V with diodes of 1 V: voltages scale with the bus as it is. */
@@ -79,6 +91,8 @@ class RealMotor
     {
         return state_.omega_rad_s;
     }
+    /* Integral of the phase voltages behind the filter, since begin_period. */
+    Phases filtered_Vs() const;
     double theta_rad() const;
     double torque_Nm() const; /* of the magnetic circuit, detent included */
     double bus_V() const
@@ -97,6 +111,8 @@ class RealMotor
     MotorIntegrals integrals_;
     bool track_energy_;
     double rate_ = 0.0; /* 1/s: how fast the solution can change, bounds the step */
+    double jam_Nm_ = 0.0;
+    Phases filtered_at_begin_V_ = {0.0, 0.0};
 };
 
 } // namespace plant

@@ -10,8 +10,8 @@ namespace plant
 namespace
 {
 
-/* Channels of the noise; each serves both phases. */
-enum Channel : std::uint64_t { current_channel = 1, phase_voltage_channel = 2 };
+/* Streams of the noise; each of the first two serves both phases, behind them those of faults. */
+enum Stream : std::uint64_t { current_stream = 1, phase_voltage_stream = 2, fault_stream = 3 };
 
 /* A code 0...highest; the clamp first, so that no conversion is out of range. */
 int converted(double codes, double highest)
@@ -35,6 +35,11 @@ void require_gain(double gain, const char *field)
     require(gain >= 0.1 && gain <= 10.0, field, gain, "0.1...10");
 }
 
+bool is_signed(Channel channel)
+{
+    return channel == Channel::phase_voltage_a || channel == Channel::phase_voltage_b;
+}
+
 void require_range(double range, const char *field)
 {
     require(range > 0.0 && range <= 1e4, field, range, "0...10000, not 0");
@@ -52,6 +57,23 @@ int current_zero_code(const SensorConfig &config)
     return converter_codes(config) / 2;
 }
 
+int code_of(const Samples &samples, Channel channel)
+{
+    switch (channel) {
+    case Channel::current_a:
+        return samples.current_a;
+    case Channel::current_b:
+        return samples.current_b;
+    case Channel::phase_voltage_a:
+        return samples.phase_voltage_a;
+    case Channel::phase_voltage_b:
+        return samples.phase_voltage_b;
+    case Channel::bus_voltage:
+        break;
+    }
+    return samples.bus_voltage;
+}
+
 double current_A_per_code(const SensorConfig &config)
 {
     return 2.0 * config.current_range_A / converter_codes(config);
@@ -67,8 +89,14 @@ double bus_V_per_code(const SensorConfig &config)
     return config.bus_range_V / converter_codes(config);
 }
 
-Sensors::Sensors(const SensorConfig &config, std::uint64_t seed) : config_(config), seed_(seed)
+Sensors::Sensors(const SensorConfig &config, std::uint64_t seed) : seed_(seed)
 {
+    set(config);
+}
+
+void Sensors::set(const SensorConfig &config)
+{
+    config_ = config;
     require_range(config.current_range_A, "current_range_A");
     require_range(config.phase_voltage_range_V, "phase_voltage_range_V");
     require_range(config.bus_range_V, "bus_range_V");
@@ -134,10 +162,10 @@ Samples Sensors::sample(std::uint64_t period, const True &now) const
     if (!config_.exact) {
         const int on = now.bridge_on ? 1 : 0;
         current_A = current_gain_ * current_A + current_offset_A_[on] +
-                    config_.current_noise_rms_A * gaussian_pair(seed_, current_channel, period);
+                    config_.current_noise_rms_A * gaussian_pair(seed_, current_stream, period);
         phase_voltage_V +=
             phase_voltage_offset_V_[on] +
-            config_.phase_voltage_noise_rms_V * gaussian_pair(seed_, phase_voltage_channel, period);
+            config_.phase_voltage_noise_rms_V * gaussian_pair(seed_, phase_voltage_stream, period);
     }
     const Phases current = current_A * codes_per_A_ + middle_code_;
     const Phases voltage = phase_voltage_V * codes_per_phase_V_ + middle_code_;
@@ -154,7 +182,77 @@ Samples Sensors::sample(std::uint64_t period, const True &now) const
     if (config_.encoder_counts_per_turn > 0) {
         samples.encoder_count = encoder_count(now.theta_rad);
     }
+    if (faulty_) {
+        apply_faults(samples, period);
+    }
     return samples;
+}
+
+/* Clamped to what the converter can say. */
+void Sensors::write(Samples &samples, Channel channel, int code) const
+{
+    const int codes = converter_codes(config_);
+    const int lowest = is_signed(channel) ? -codes / 2 : 0;
+    const int highest = lowest + codes - 1;
+    const int written = code < lowest ? lowest : (code > highest ? highest : code);
+    switch (channel) {
+    case Channel::current_a:
+        samples.current_a = static_cast<std::uint16_t>(written);
+        break;
+    case Channel::current_b:
+        samples.current_b = static_cast<std::uint16_t>(written);
+        break;
+    case Channel::phase_voltage_a:
+        samples.phase_voltage_a = static_cast<std::int16_t>(written);
+        break;
+    case Channel::phase_voltage_b:
+        samples.phase_voltage_b = static_cast<std::int16_t>(written);
+        break;
+    case Channel::bus_voltage:
+        samples.bus_voltage = static_cast<std::uint16_t>(written);
+        break;
+    }
+}
+
+void Sensors::apply_faults(Samples &samples, std::uint64_t period) const
+{
+    for (int n = 0; n < channels; n++) {
+        const Fault &fault = faults_[n];
+        const Channel channel = static_cast<Channel>(n);
+        if (fault.stuck) {
+            write(samples, channel, fault.code);
+        } else if (fault.noise_rms > 0.0) {
+            const std::uint64_t stream = fault_stream + static_cast<std::uint64_t>(n);
+            const double noise = fault.noise_rms * gaussian_pair(seed_, stream, period)[0];
+            write(samples, channel,
+                  code_of(samples, channel) + static_cast<int>(nearest_whole(noise)));
+        }
+    }
+}
+
+void Sensors::stick(Channel channel, int code)
+{
+    const int codes = converter_codes(config_);
+    const int lowest = is_signed(channel) ? -codes / 2 : 0;
+    require(code >= lowest && code < lowest + codes, "code", code,
+            is_signed(channel) ? (config_.exact ? "-32768...32767" : "-2048...2047")
+                               : (config_.exact ? "0...65535" : "0...4095"));
+    Fault &fault = faults_[static_cast<int>(channel)];
+    fault.stuck = true;
+    fault.code = code;
+    faulty_ = true;
+}
+
+void Sensors::release(Channel channel)
+{
+    faults_[static_cast<int>(channel)].stuck = false;
+}
+
+void Sensors::add_noise(Channel channel, double rms_codes)
+{
+    require(rms_codes >= 0.0 && rms_codes <= 1e4, "noise_codes", rms_codes, "0...10000");
+    faults_[static_cast<int>(channel)].noise_rms = rms_codes;
+    faulty_ = true;
 }
 
 } // namespace plant

@@ -1,5 +1,6 @@
 /*
- * From true values to the codes of the converters: offset, Gaussian noise, 12 bits, saturation.
+ * From true values to the codes of the converters: offset, Gaussian noise, 12 bits, saturation. A
+ * faulty converter sticks at a code, or has more noise than its kind.
  * Rounding is to the nearest code, ties upwards; codes clamp at the ends of their range. An encoder
  * counts whole steps: the floor of the angle.
  */
@@ -21,6 +22,9 @@ double current_A_per_code(const SensorConfig &config);
 double phase_voltage_V_per_code(const SensorConfig &config);
 double bus_V_per_code(const SensorConfig &config);
 
+constexpr int channels = 5;
+int code_of(const Samples &samples, Channel channel);
+
 /* The quantities that are sensed, as they are. */
 struct True {
     Phases current_A, phase_voltage_V;
@@ -33,11 +37,20 @@ class Sensors
   public:
     Sensors(const SensorConfig &config, std::uint64_t seed); /* throws std::invalid_argument */
 
+    /* The same converters with other offsets, gains and noise; their faults stay. */
+    void set(const SensorConfig &config);
+
+    void stick(Channel channel, int code);
+    void release(Channel channel);
+    void add_noise(Channel channel, double rms_codes);
+
     /* At S(period); phase_voltage_V: mean over the period that ends there, in which the bridge
        was on or off. */
     Samples sample(std::uint64_t period, const True &now) const;
 
   private:
+    void apply_faults(Samples &samples, std::uint64_t period) const;
+    void write(Samples &samples, Channel channel, int code) const;
     std::int32_t encoder_count(double theta_rad) const;
 
     SensorConfig config_;
@@ -48,6 +61,13 @@ class Sensors
     double codes_per_A_, codes_per_phase_V_, codes_per_bus_V_;
     double middle_code_, highest_code_;
     double encoder_error_at_zero_rad_ = 0.0;
+    struct Fault {
+        bool stuck = false;
+        int code = 0; /* at which it is stuck */
+        double noise_rms = 0.0;
+    };
+    Fault faults_[channels];
+    bool faulty_ = false;
 };
 
 } // namespace plant

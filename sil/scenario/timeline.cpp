@@ -179,24 +179,6 @@ drive_command read_command(TableReader &reader, double time_left_s)
     return command;
 }
 
-void read_drift(TableReader &reader, const Value &table, const std::string &path, Event &event)
-{
-    TableReader plant(table, path + ".plant");
-    for (const PlantScaleField &field : plant_scale_fields()) {
-        if (plant.number(field.key, event.drift_to, 0.01, 100)) {
-            if (event.drift != nullptr) {
-                plant.fail(field.key, "expected one scale per event");
-            }
-            event.drift = field.scale;
-        }
-    }
-    plant.finish();
-    if (event.drift == nullptr) {
-        reader.fail("plant", "expected a scale");
-    }
-    reader.number("ramp_s", event.drift_ramp_s, 0, longest_ramp_s);
-}
-
 void read_short_circuit(TableReader &reader, Event &event)
 {
     std::size_t leg = 0;
@@ -204,6 +186,15 @@ void read_short_circuit(TableReader &reader, Event &event)
     event.shorted_leg = static_cast<int>(leg);
     reader.require("short_circuit_A");
     reader.number("short_circuit_A", event.short_circuit_A, 0, largest_short_circuit_A);
+}
+
+std::string listed(const std::vector<std::string> &names)
+{
+    std::string text;
+    for (const std::string &name : names) {
+        text += (text.empty() ? "" : ", ") + name;
+    }
+    return text;
 }
 
 Event read_event(const Value &table, const std::string &path, double duration_s)
@@ -221,6 +212,14 @@ Event read_event(const Value &table, const std::string &path, double duration_s)
     if (reader.number("stall_us", stall_us, shortest_stall_us, longest_stall_us)) {
         event.stall_us = stall_us;
     }
+    for (const std::string &name : plant_fault_names()) {
+        if (reader.any(name) != nullptr) {
+            if (event.fault) {
+                reader.fail(name, "expected one fault per event");
+            }
+            event.fault = read_plant_fault(reader, name);
+        }
+    }
     std::string typed, expected;
     if (reader.text("type", typed)) {
         event.type = typed;
@@ -229,10 +228,12 @@ Event read_event(const Value &table, const std::string &path, double duration_s)
         event.expects = expected;
     }
     if ((command != nullptr) + (plant != nullptr) + has_load + event.type.has_value() +
-            event.expects.has_value() + has_short_circuit + event.stall_us.has_value() !=
+            event.expects.has_value() + has_short_circuit + event.stall_us.has_value() +
+            static_cast<bool>(event.fault) !=
         1) {
         reader.fail("command", "expected exactly one of command, type, expect, load_torque_Nm, "
-                               "plant.<scale>, short_circuit, stall_us");
+                               "plant.<key>, short_circuit, stall_us, " +
+                                   listed(plant_fault_names()));
     }
     if (command != nullptr && command->kind == Value::Kind::text && command->text == power_cycle) {
         event.power_cycle = true;
@@ -242,13 +243,14 @@ Event read_event(const Value &table, const std::string &path, double duration_s)
             event.set_points_rad = read_set_points(reader, event.location);
             event.command->position_rad = event.set_points_rad.front();
         }
-    } else if (event.type || event.expects || event.stall_us) {
+    } else if (event.type || event.expects || event.stall_us || event.fault) {
         reader.finish();
         return event;
     } else if (has_short_circuit) {
         read_short_circuit(reader, event);
     } else if (plant != nullptr) {
-        read_drift(reader, *plant, path, event);
+        event.drifts = read_drifts(*plant, path);
+        reader.number("ramp_s", event.drift_ramp_s, 0, longest_ramp_s);
     } else {
         double load_torque_Nm = 0;
         reader.number("load_torque_Nm", load_torque_Nm, -100, 100);
@@ -357,18 +359,6 @@ std::string element(const std::string &array, std::size_t index)
 }
 
 } // namespace
-
-const std::vector<PlantScaleField> &plant_scale_fields()
-{
-    static const std::vector<PlantScaleField> fields = {
-        {"resistance_scale", &PlantScales::resistance},
-        {"inductance_scale", &PlantScales::inductance},
-        {"km_scale", &PlantScales::km},
-        {"inertia_scale", &PlantScales::inertia},
-        {"viscous_friction_scale", &PlantScales::viscous_friction},
-    };
-    return fields;
-}
 
 std::string Expectation::bound() const
 {

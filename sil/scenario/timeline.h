@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sil/board/board.h"
+#include "sil/scenario/disturbance.h"
 #include "sil/scenario/document.h"
 #include "sil/scenario/metrics.h"
 #include "sil/scenario/table_reader.h"
@@ -17,19 +18,7 @@
 namespace scenario
 {
 
-/* The true motor, relative to the motor file; the drive goes on believing the file. */
-struct PlantScales {
-    double resistance = 1, inductance = 1, km = 1, inertia = 1, viscous_friction = 1;
-};
-
-struct PlantScaleField {
-    const char *key; /* as written under [plant] */
-    double PlantScales::*scale;
-};
-
-const std::vector<PlantScaleField> &plant_scale_fields();
-
-/* Something that happens at a time; exactly one of the eight. */
+/* Something that happens at a time; exactly one of the nine. */
 struct Event {
     double time_s = 0; /* 0 is the first S(k) with the drive ready */
     std::optional<drive_command> command;
@@ -42,9 +31,9 @@ struct Event {
     std::optional<int> shorted_leg; /* A+, A-, B+, B- */
     double short_circuit_A = 0;
     std::optional<double> stall_us; /* holds the control interrupt up until then behind S(k) */
-    double PlantScales::*drift = nullptr; /* this scale goes to drift_to within drift_ramp_s */
-    double drift_to = 1;
+    std::vector<Drift> drifts;      /* within drift_ramp_s */
     double drift_ramp_s = 0;
+    PlantFault fault; /* of motor, winding or converters */
     Location location;
 };
 

@@ -1,0 +1,184 @@
+#include "sil/scenario/disturbance.h"
+
+#include <cstdint>
+
+namespace scenario
+{
+
+namespace
+{
+
+template <double PlantScales::*scale> double &scale_of(PlantValues &values)
+{
+    return values.scales.*scale;
+}
+
+template <double plant::SensorConfig::*member> double &sensing_of(PlantValues &values)
+{
+    return values.sensors.*member;
+}
+
+template <double PlantValues::*member> double &value_of(PlantValues &values)
+{
+    return values.*member;
+}
+
+/* Ranges are those of [plant]; an inertia may jump further, as when a load is clutched in. */
+const std::vector<DriftField> &drift_fields()
+{
+    using Sensing = plant::SensorConfig;
+    constexpr PlantPart motor = PlantPart::motor, sensors = PlantPart::sensors;
+    static const std::vector<DriftField> fields = {
+        {"resistance_scale", motor, scale_of<&PlantScales::resistance>, 0.01, 100},
+        {"inductance_scale", motor, scale_of<&PlantScales::inductance>, 0.01, 100},
+        {"km_scale", motor, scale_of<&PlantScales::km>, 0.01, 100},
+        {"inertia_scale", motor, scale_of<&PlantScales::inertia>, 0.01, 1000},
+        {"viscous_friction_scale", motor, scale_of<&PlantScales::viscous_friction>, 0.01, 100},
+        {"coulomb_friction", PlantPart::friction, value_of<&PlantValues::coulomb_friction>, 0, 10},
+        {"bus_V", PlantPart::bus, value_of<&PlantValues::bus_V>, 1, 1000},
+        {"current_offset_a_A", sensors, sensing_of<&Sensing::current_offset_a_A>, -10, 10},
+        {"current_offset_b_A", sensors, sensing_of<&Sensing::current_offset_b_A>, -10, 10},
+        {"current_gain_a", sensors, sensing_of<&Sensing::current_gain_a>, 0.1, 10},
+        {"current_gain_b", sensors, sensing_of<&Sensing::current_gain_b>, 0.1, 10},
+        {"current_noise_rms_A", sensors, sensing_of<&Sensing::current_noise_rms_A>, 0, 10},
+        {"phase_voltage_offset_a_V", sensors, sensing_of<&Sensing::phase_voltage_offset_a_V>, -100,
+         100},
+        {"phase_voltage_offset_b_V", sensors, sensing_of<&Sensing::phase_voltage_offset_b_V>, -100,
+         100},
+        {"phase_voltage_noise_rms_V", sensors, sensing_of<&Sensing::phase_voltage_noise_rms_V>, 0,
+         100},
+    };
+    return fields;
+}
+
+const std::vector<std::string> &channel_names()
+{
+    static const std::vector<std::string> names = {"current_a", "current_b", "phase_voltage_a",
+                                                   "phase_voltage_b", "bus"};
+    return names;
+}
+
+PlantFault read_jam(TableReader &event)
+{
+    bool jammed = true;
+    double torque_Nm = plant::Plant::held_Nm;
+    event.boolean("jam", jammed);
+    if (event.number("jam_torque_Nm", torque_Nm, 1e-6, 1e6) && !jammed) {
+        event.fail("jam_torque_Nm", "expected with jam = true only");
+    }
+    return [torque_Nm = jammed ? torque_Nm : 0.0](plant::Plant &plant) { plant.jam(torque_Nm); };
+}
+
+PlantFault read_open_phase(TableReader &event)
+{
+    std::size_t phase = 0;
+    bool open = true;
+    event.choice("open_phase", phase, {"a", "b"});
+    event.boolean("open", open);
+    return [phase = static_cast<int>(phase), open](plant::Plant &plant) {
+        plant.open_phase(phase, open);
+    };
+}
+
+PlantFault read_stuck_adc(TableReader &event)
+{
+    std::size_t index = 0;
+    bool stuck = true;
+    std::int64_t value = 0;
+    event.choice("stuck_adc", index, channel_names());
+    event.boolean("stuck", stuck);
+    const bool given = event.integer("code", value, -32768, 65535);
+    if (given && !stuck) {
+        event.fail("code", "expected without stuck = false only");
+    }
+    const plant::Channel channel = static_cast<plant::Channel>(index);
+    const int code = static_cast<int>(value);
+    return [channel, stuck, given, code](plant::Plant &plant) {
+        if (!stuck) {
+            plant.release(channel);
+        } else if (given) {
+            plant.stick(channel, code);
+        } else {
+            plant.stick(channel);
+        }
+    };
+}
+
+PlantFault read_noisy_adc(TableReader &event)
+{
+    std::size_t index = 0;
+    double rms = 0;
+    event.choice("noisy_adc", index, channel_names());
+    event.require("noise_codes");
+    event.number("noise_codes", rms, 0, 1e4);
+    const plant::Channel channel = static_cast<plant::Channel>(index);
+    return [channel, rms](plant::Plant &plant) { plant.add_noise(channel, rms); };
+}
+
+struct FaultReader {
+    const char *name;
+    PlantFault (*read)(TableReader &event);
+};
+
+constexpr FaultReader fault_readers[] = {
+    {"jam", read_jam},
+    {"open_phase", read_open_phase},
+    {"stuck_adc", read_stuck_adc},
+    {"noisy_adc", read_noisy_adc},
+};
+
+} // namespace
+
+const std::vector<PlantScaleField> &plant_scale_fields()
+{
+    static const std::vector<PlantScaleField> fields = {
+        {"resistance_scale", &PlantScales::resistance},
+        {"inductance_scale", &PlantScales::inductance},
+        {"km_scale", &PlantScales::km},
+        {"inertia_scale", &PlantScales::inertia},
+        {"viscous_friction_scale", &PlantScales::viscous_friction},
+    };
+    return fields;
+}
+
+std::vector<Drift> read_drifts(const Value &table, const std::string &path)
+{
+    TableReader plant(table, path + ".plant");
+    std::vector<Drift> drifts;
+    for (const DriftField &field : drift_fields()) {
+        double to = 0;
+        if (plant.number(field.key, to, field.min, field.max)) {
+            drifts.push_back({&field, to});
+        }
+    }
+    plant.finish();
+    if (drifts.empty()) {
+        throw InputError(table.location.text() + ": " + path +
+                         ".plant: expected a scale or another key that can change in a run");
+    }
+    return drifts;
+}
+
+const std::vector<std::string> &plant_fault_names()
+{
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        for (const FaultReader &reader : fault_readers) {
+            all.push_back(reader.name);
+        }
+        return all;
+    }();
+    return names;
+}
+
+PlantFault read_plant_fault(TableReader &event, const std::string &name)
+{
+    for (const FaultReader &reader : fault_readers) {
+        if (name == reader.name) {
+            return reader.read(event);
+        }
+    }
+    event.fail(name, "expected " + one_of(name, plant_fault_names()));
+}
+
+} // namespace scenario

@@ -1,0 +1,68 @@
+/*
+ * What the timeline does to the plant, unseen by the drive: parameters, bus and sensing that drift
+ * or jump, and parts that fail.
+ */
+#ifndef STEADYSTEP_SCENARIO_DISTURBANCE_H
+#define STEADYSTEP_SCENARIO_DISTURBANCE_H
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sil/plant/plant.h"
+#include "sil/scenario/table_reader.h"
+
+namespace scenario
+{
+
+/* The true motor, relative to the motor file; the drive goes on believing the file. */
+struct PlantScales {
+    double resistance = 1, inductance = 1, km = 1, inertia = 1, viscous_friction = 1;
+};
+
+struct PlantScaleField {
+    const char *key; /* as written under [plant] */
+    double PlantScales::*scale;
+};
+
+const std::vector<PlantScaleField> &plant_scale_fields();
+
+/* All that can drift, as it is at a time of the run. */
+struct PlantValues {
+    PlantScales scales;
+    plant::SensorConfig sensors;
+    double bus_V = 0;            /* of the source */
+    double coulomb_friction = 0; /* share of the holding torque */
+};
+
+/* What a value belongs to; each is handed to the plant as a whole. */
+enum class PlantPart { motor, sensors, bus, friction };
+
+struct DriftField {
+    const char *key; /* as written under [plant] */
+    PlantPart part;
+    double &(*of)(PlantValues &values);
+    double min, max;
+};
+
+/* A value that goes somewhere; the event says how long it takes. */
+struct Drift {
+    const DriftField *field = nullptr;
+    double to = 0;
+};
+
+/* The keys of an event's `plant`, at least one; throws InputError. */
+std::vector<Drift> read_drifts(const Value &table, const std::string &path);
+
+/* The names of the faults, by which an event is recognised as one. */
+const std::vector<std::string> &plant_fault_names();
+
+/* What the plant suffers at the S(k) of its event. */
+using PlantFault = std::function<void(plant::Plant &plant)>;
+
+/* The fault `name` of an event; throws InputError. */
+PlantFault read_plant_fault(TableReader &event, const std::string &name);
+
+} // namespace scenario
+
+#endif
