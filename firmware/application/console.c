@@ -62,6 +62,26 @@ static bool announce_state(const struct application *application,
     return text->length > 0u;
 }
 
+/* While the drive is in operation; a fault has its own announcement. */
+static bool announce_synchronism(const struct application *application,
+                                 struct console_announced *announced, struct text *text)
+{
+    const struct drive *drive = &application->drive;
+    const enum drive_synchronism now =
+        *(const volatile enum drive_synchronism *)&drive->synchronism;
+
+    if (announced->state != DRIVE_OPERATION_ENABLED) {
+        announced->synchronism = DRIVE_SYNCHRONISM_SURE;
+        return false;
+    }
+    if (now == announced->synchronism) {
+        return false;
+    }
+    announced->synchronism = now;
+    report_synchronism(text, now);
+    return true;
+}
+
 static bool announce(struct application *application)
 {
     struct console *console = &application->console;
@@ -77,7 +97,8 @@ static bool announce(struct application *application)
     } else if (application->drive.planner.underruns != announced->underruns) {
         announced->underruns = application->drive.planner.underruns;
         text_put(&text, "warning: the reference came to rest: what continues it came too late");
-    } else if (!announce_state(application, announced, &text)) {
+    } else if (!announce_state(application, announced, &text) &&
+               !announce_synchronism(application, announced, &text)) {
         return false;
     }
     end_answer(console, &text);

@@ -36,6 +36,7 @@ struct console_announced {
     enum drive_state state;
     uint32_t state_since;
     uint32_t underruns;
+    enum drive_synchronism synchronism;
 };
 
 struct console {

@@ -111,6 +111,15 @@ void report_fault_reason(struct text *text, const struct application *applicatio
     case DRIVE_FAULT_OFFSET_RANGE:
         text_put(text, ": a current sensor's offset is too large to be one");
         break;
+    case DRIVE_FAULT_LOST_SYNCHRONISM:
+        text_put(text, ": the rotor is not where the estimate has it");
+        break;
+    case DRIVE_FAULT_STALLED:
+        text_put(text, ": the rotor does not follow: overloaded, or held");
+        break;
+    case DRIVE_FAULT_POSITION_NOT_FOUND:
+        text_put(text, ": no current flows, or the rotor has not followed the alignment");
+        break;
     default:
         break;
     }
@@ -125,6 +134,22 @@ void report_fault(struct text *text, const struct application *application)
     text_put(text, ", disable clears the fault");
 }
 
+void report_synchronism(struct text *text, enum drive_synchronism synchronism)
+{
+    switch (synchronism) {
+    case DRIVE_SYNCHRONISM_SURE:
+        text_put(text, "synchronism: sure again");
+        break;
+    case DRIVE_SYNCHRONISM_DOUBTFUL:
+        text_put(text, "warning: synchronism doubtful: near the end of the torque, or the rotor "
+                       "beside its estimate");
+        break;
+    default:
+        text_put(text, "warning: synchronism lost: the rotor is not where the estimate has it");
+        break;
+    }
+}
+
 void report_ready(struct text *text, const struct application *application)
 {
     struct drive_signals signals;
@@ -134,6 +159,11 @@ void report_ready(struct text *text, const struct application *application)
     put_count(text, "period", application->drive.state_since);
     put_number(text, "reference_rad", signals.theta_ref_rad);
     put_number(text, "resistance_ohm", signals.resistance_est_ohm);
+    if (application->drive.params.finds_position) {
+        put_word(text, "found_by",
+                 application->drive.finding.by_impulses ? "impulses" : "alignment");
+        put_number(text, "confidence", initial_position_confidence(&application->drive.finding));
+    }
 }
 
 void report_state(struct text *text, const struct application *application)
@@ -152,6 +182,7 @@ void report_state(struct text *text, const struct application *application)
     put_number(text, "reference_rad_s", signals.omega_ref_rad_s);
     put_word(text, "moving", signals.reference_moving ? "yes" : "no");
     put_word(text, "holding", signals.holding ? "yes" : "no");
+    put_word(text, "synchronism", drive_synchronism_name(signals.synchronism));
     put_number(text, "i_d_A", signals.i_d_A);
     put_number(text, "i_q_A", signals.i_q_A);
     put_number(text, "resistance_ohm", signals.resistance_est_ohm);

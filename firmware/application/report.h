@@ -3,6 +3,7 @@
 #define STEADYSTEP_REPORT_H
 
 #include "firmware/design/text.h"
+#include "firmware/drive/drive_interface.h"
 
 struct application;
 struct line_form;
@@ -18,6 +19,9 @@ void report_fault(struct text *text, const struct application *application);
 
 /* "overcurrent: a phase current beyond 5.4 A" */
 void report_fault_reason(struct text *text, const struct application *application);
+
+/* "warning: synchronism doubtful: ...", "... lost: ..." or "synchronism: sure again" */
+void report_synchronism(struct text *text, enum drive_synchronism synchronism);
 
 /* "ready: ..." */
 void report_ready(struct text *text, const struct application *application);

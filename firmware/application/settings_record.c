@@ -5,13 +5,13 @@ enum {
     AT_TEETH = 56,
     AT_ENCODER = 60,
     AT_CHOICES = 64,
-    AT_FLAGS = 68,
-    AT_NUMBERS = 72,
-    AT_GAINS = 200,
-    AT_DETENT = 296,
+    AT_FLAGS = 72,
+    AT_NUMBERS = 80,
+    AT_GAINS = 216,
+    AT_DETENT = 312,
     MOTOR_NUMBERS = 7,
-    NUMBERS = 16,
-    FLAGS = 8
+    NUMBERS = 17,
+    FLAGS = 9
 };
 
 static const struct record_log log_of_settings = {.first_page = SETTINGS_RECORD_FIRST_PAGE,
@@ -53,10 +53,11 @@ static struct fields fields_of(struct drive_settings *s)
                    &s->overcurrent_trip_A, &s->speed_limit_rad_s, &s->observer_bandwidth_rad_s,
                    &s->high_gain_epsilon_s, &s->encoder_zero_rad, &s->initial_load_torque_Nm,
                    &s->hold_on_enable_s, &s->hold_current_A, &s->hold_ramp_s, &s->hold_delay_s,
-                   &s->hold_bandwidth_rad_s, &s->initial_angle_rad, &s->initial_angle_error_rad},
+                   &s->hold_bandwidth_rad_s, &s->initial_angle_rad, &s->initial_angle_error_rad,
+                   &s->motion_current_A},
         .flag = {&s->feed_forward, &s->detent_learning, &s->bridge_loss_compensation,
                  &s->resistance_adaptation, &s->encoder_zero_known, &s->calibrate_offsets,
-                 &s->hold_on_enable, &s->hold_at_rest},
+                 &s->hold_on_enable, &s->hold_at_rest, &s->standstill_pulses},
     };
 }
 
@@ -75,10 +76,14 @@ static void encode(const struct stored_settings *settings, uint8_t *payload)
     payload[AT_CHOICES + 1] = (uint8_t)drive.feedback;
     payload[AT_CHOICES + 2] = (uint8_t)drive.estimator;
     payload[AT_CHOICES + 3] = (uint8_t)drive.observer;
+    payload[AT_CHOICES + 4] = (uint8_t)drive.voltage_source;
+    payload[AT_CHOICES + 5] = (uint8_t)drive.initial_position;
+    payload[AT_CHOICES + 6] = (uint8_t)drive.synchronism_policy;
+    payload[AT_CHOICES + 7] = 0;
     for (int i = 0; i < FLAGS; i++) {
         flags |= *fields.flag[i] ? 1u << i : 0u;
     }
-    record_put(&payload[AT_FLAGS], flags, 4);
+    record_put(&payload[AT_FLAGS], flags, 8);
     for (int i = 0; i < NUMBERS; i++) {
         put_double(&payload[AT_NUMBERS + 8 * i], *fields.number[i]);
     }
@@ -94,7 +99,11 @@ static bool choices_are_known(const uint8_t *payload)
 {
     return payload[AT_CHOICES + 0] < POSITION_LAW_COUNT &&
            payload[AT_CHOICES + 1] < DRIVE_FEEDBACKS &&
-           payload[AT_CHOICES + 2] < DRIVE_ESTIMATORS && payload[AT_CHOICES + 3] < DRIVE_OBSERVERS;
+           payload[AT_CHOICES + 2] < DRIVE_ESTIMATORS &&
+           payload[AT_CHOICES + 3] < DRIVE_OBSERVERS &&
+           payload[AT_CHOICES + 4] < DRIVE_VOLTAGE_SOURCES &&
+           payload[AT_CHOICES + 5] < DRIVE_INITIAL_POSITIONS &&
+           payload[AT_CHOICES + 6] < DRIVE_SYNCHRONISM_POLICIES;
 }
 
 static bool decode(struct stored_settings *settings, const uint8_t *payload)
@@ -116,6 +125,9 @@ static bool decode(struct stored_settings *settings, const uint8_t *payload)
     drive->feedback = (enum drive_feedback)payload[AT_CHOICES + 1];
     drive->estimator = (enum drive_estimator)payload[AT_CHOICES + 2];
     drive->observer = (enum drive_observer)payload[AT_CHOICES + 3];
+    drive->voltage_source = (enum drive_voltage_source)payload[AT_CHOICES + 4];
+    drive->initial_position = (enum drive_initial_position)payload[AT_CHOICES + 5];
+    drive->synchronism_policy = (enum drive_synchronism_policy)payload[AT_CHOICES + 6];
     for (int i = 0; i < FLAGS; i++) {
         *fields.flag[i] = ((flags >> i) & 1u) != 0u;
     }

@@ -14,6 +14,7 @@ struct standstill_hold_params standstill_hold_design(const struct per_unit *base
 
     params.current = num_from_double(task->current_A / base->current_A);
     params.current_ramp = num_from_double(task->current_A / base->current_A / ramp_periods);
+    params.motion_current = num_from_double(task->motion_current_A / base->current_A);
     params.current_limit = num_from_double(task->current_limit_A / base->current_A);
     params.damping =
         coef_from_double(2.0 * task->speed_gain_As_rad * base->speed_rad_s / base->current_A);
@@ -38,8 +39,9 @@ void standstill_hold_enter(struct standstill_hold *hold, angle_t reference)
 num_t standstill_hold_step(struct standstill_hold *hold,
                            const struct standstill_hold_params *params)
 {
-    hold->i_d += hold->active ? params->current_ramp : -params->current_ramp;
-    hold->i_d = num_clamp(hold->i_d, NUM(0.0), params->current);
+    const num_t target = hold->active ? params->current : params->motion_current;
+
+    hold->i_d += num_limit(target - hold->i_d, params->current_ramp);
     return hold->i_d;
 }
 

@@ -17,10 +17,11 @@
 #include "firmware/motor/per_unit.h"
 
 struct standstill_hold_params {
-    num_t current;       /* i_d* when ramped in */
-    num_t current_ramp;  /* per period */
-    num_t current_limit; /* of the q current */
-    coef_t damping;      /* 2 K_w */
+    num_t current;        /* i_d* when ramped in */
+    num_t motion_current; /* i_d* when ramped out */
+    num_t current_ramp;   /* per period */
+    num_t current_limit;  /* of the q current */
+    coef_t damping;       /* 2 K_w */
     uint32_t delay_periods;
     num_t error_limit; /* electrical turns within which the hold may be entered */
     num_t speed_limit;
@@ -34,6 +35,7 @@ struct standstill_hold {
 
 struct standstill_hold_task {
     double current_A;
+    double motion_current_A;
     double ramp_s;
     double delay_s;
     double current_limit_A;

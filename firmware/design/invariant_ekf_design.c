@@ -4,16 +4,14 @@
 #include "firmware/design/motor_check.h"
 #include "firmware/design/riccati.h"
 
-/* States of the error model; in motion the first five. */
-enum { I_D, I_Q, SPEED, ANGLE, LOAD, BIAS_D, BIAS_Q };
-enum { STATES_MOTION = 5, STATES_HOLD = 7 };
+/* States of the error model. */
+enum { I_D, I_Q, SPEED, ANGLE, LOAD, STATES };
 
 /*
  * What the filter is told about the drive, in ratios that follow the motor. Random walks are
  * densities, so that they follow the control period too; errors of a sample are per sample.
  */
 struct tuning {
-    int states;
     int doublings;           /* of the Riccati equation */
     double back_emf;         /* at the design speed, of the supply */
     double i_d_A;            /* of the linearisation */
@@ -22,7 +20,6 @@ struct tuning {
     double torque_noise;     /* white torque, of the rated torque, sqrt(s) */
     double load_walk;        /* of the rated torque, 1/sqrt(s) */
     double angle_walk;       /* electrical rad, 1/sqrt(s) */
-    double bias_d, bias_q;   /* rms of the voltage biases, of the supply */
 };
 
 /*
@@ -34,7 +31,7 @@ struct tuning {
  *
  * In motion the currents are trusted half as much as their noise (3 mA rms and a 12-bit step:
  * 9.7e-6 A^2) would allow, and the angle is given a walk of its own: both stand for parameter
- * errors. In hold R, the largest of them, is covered by the bias states.
+ * errors. In hold R, the largest of them, is known.
  */
 #define SUPPLY_V        24.0
 #define RATED_A         3.0
@@ -43,7 +40,6 @@ struct tuning {
 
 /* 2^11 periods settle the gains of every motor file to 1e-6 at 50 us and more. */
 static const struct tuning motion_tuning = {
-    .states = STATES_MOTION,
     .doublings = 11,
     .back_emf = BACK_EMF_V(5.0) / SUPPLY_V,
     .current_variance = 3.9e-5 / (RATED_A * RATED_A),
@@ -53,9 +49,8 @@ static const struct tuning motion_tuning = {
     .angle_walk = 0.5,                          /* 1e-4 rad mechanical per period */
 };
 
-/* The slowest mode of the hold's filter, load against displacement, decays with 4 1/s: 2^14. */
+/* The slowest mode of the hold's filter, load against displacement, needs 2^14. */
 static const struct tuning hold_tuning = {
-    .states = STATES_HOLD,
     .doublings = 14,
     .back_emf = BACK_EMF_V(1.0) / SUPPLY_V,
     .current_variance = 9.7e-6 / (RATED_A * RATED_A),
@@ -63,28 +58,33 @@ static const struct tuning hold_tuning = {
     .torque_noise = 1.562e-5 / RATED_TORQUE_NM,
     .load_walk = 0.1 / RATED_TORQUE_NM,
     .angle_walk = 0.005, /* 1e-6 rad mechanical per period */
-    .bias_d = 0.05 / SUPPLY_V,
-    .bias_q = 0.02 / SUPPLY_V,
 };
 
-/* The fast hold expects ten times the variance of the load and a quarter of the bias in q. */
-#define FAST_LOAD_WALK (0.316227766 / RATED_TORQUE_NM)
-#define FAST_BIAS_Q    (0.005 / SUPPLY_V)
+/* A hold that follows a load step expects four times the variance of the load. */
+#define FOLLOWING_LOAD_WALK (0.2 / RATED_TORQUE_NM)
 
 /* Speed at which the angle's odd gain acts in full, as a back-EMF of the supply. */
 #define FULL_ANGLE_BACK_EMF (BACK_EMF_V(1.0) / SUPPLY_V)
 
-/* Correlation times of the hold's voltage bias and of the fast hold's load estimate, s. */
-#define BIAS_TIME_S      0.05
-#define LOAD_LEAK_TIME_S 0.1
 /*
- * Load and displacement cannot be told apart at rest, so an offset of a millivolt that is left in
- * the voltages would walk the load estimate away, by 12 mN m/s in the worst of eight runs, until
- * the hold lost the rotor. Forgotten within 2 s, it stays below a tenth of the rated torque.
+ * How fast the voltage offset is moved towards what the innovation shows, 1/s. Most of an offset is
+ * first taken for speed or load, so that it is found more slowly: in motion with 3 1/s at every
+ * speed from 1 rad/s, in hold with 8 1/s, where no load is expected with 50 1/s. Its noise is then
+ * 1 mV rms.
  */
-#define HOLD_LOAD_LEAK_TIME_S 2.0
-/* R_est follows b_d / i_d with this rate, 1/s: slower than the bias that it empties. */
+#define BIAS_RATE_MOTION 14.0
+#define BIAS_RATE_HOLD   65.0
+/* Likewise of the resistance in hold; nothing else answers to nu_d there. */
 #define RESISTANCE_RATE 45.0
+/*
+ * A quiet hold returns to its load in 30 ms. Left alone, a millivolt of offset would walk the
+ * estimate away by 12 mN m/s. What noise makes of the load in that time is 2 mN m rms, a seventh
+ * of the step; a load that stays unseen moves the rotor by 1.3 mrad.
+ */
+#define LOAD_RETURN_TIME_S 0.03
+#define LOAD_STEP          (0.015 / RATED_TORQUE_NM)
+/* The settled load is the mean of the estimate over this time. */
+#define LOAD_SETTLE_TIME_S 2e-3
 
 static double square(double x)
 {
@@ -117,12 +117,6 @@ static void error_model(const struct motor_params *motor, double period_s,
     a->at[SPEED][ANGLE] = -per_inertia * km * motor->rotor_teeth * tuning->i_d_A;
     a->at[SPEED][LOAD] = -per_inertia;
     a->at[ANGLE][SPEED] = period_s;
-    if (tuning->states == STATES_HOLD) {
-        a->at[I_D][BIAS_D] = -per_inductance;
-        a->at[I_Q][BIAS_Q] = -per_inductance;
-        a->at[BIAS_D][BIAS_D] = -period_s / BIAS_TIME_S;
-        a->at[BIAS_Q][BIAS_Q] = -period_s / BIAS_TIME_S;
-    }
 }
 
 static bool solve(const struct motor_params *motor, double period_s, const struct tuning *tuning,
@@ -130,10 +124,9 @@ static bool solve(const struct motor_params *motor, double period_s, const struc
 {
     double rated_torque = motor->torque_constant_Nm_A * motor->rated_current_A;
     double current_per_voltage = period_s / motor->inductance_H * motor->supply_V;
-    double bias_renewal = 1.0 - square(exponential(-period_s / BIAS_TIME_S));
     double current = square(tuning->voltage_noise * current_per_voltage);
     struct riccati_problem problem = {
-        .states = tuning->states,
+        .states = STATES,
         .doublings = tuning->doublings,
         .process_noise =
             {
@@ -143,16 +136,26 @@ static bool solve(const struct motor_params *motor, double period_s, const struc
                     square(tuning->torque_noise * rated_torque / motor->inertia_kgm2) * period_s,
                 [ANGLE] = square(tuning->angle_walk / motor->rotor_teeth) * period_s,
                 [LOAD] = square(tuning->load_walk * rated_torque) * period_s,
-                [BIAS_D] = square(tuning->bias_d * motor->supply_V) * bias_renewal,
-                [BIAS_Q] = square(tuning->bias_q * motor->supply_V) * bias_renewal,
             },
         .measurement_noise = tuning->current_variance * square(motor->rated_current_A),
     };
     struct matrix model;
 
     error_model(motor, period_s, tuning, &model);
-    matrix_exponential(tuning->states, &model, &problem.transition);
+    matrix_exponential(STATES, &model, &problem.transition);
     return riccati_solve(&problem, solution);
+}
+
+/*
+ * Voltage that one ampere of steady innovation stands for, when a share of `k_current` of it is
+ * corrected each period: V (1 - (1 - k) a) / b with a = exp(-T R/L) and b = (1 - a)/R.
+ */
+static double voltage_per_innovation(const struct motor_params *motor, double period_s,
+                                     double k_current)
+{
+    const double a = exponential(-period_s * motor->resistance_ohm / motor->inductance_H);
+
+    return motor->resistance_ohm * (1.0 - (1.0 - k_current) * a) / (1.0 - a);
 }
 
 static const char no_gain[] = "estimator gains: none that make sense for this motor and period";
@@ -185,7 +188,8 @@ bool invariant_ekf_motion_design(const struct motor_params *motor, double period
         .k_angle_q_rad_A = solution.gain[ANGLE][I_Q],
         .k_load_q_Nm_A = solution.gain[LOAD][I_Q],
         .angle_d_full_speed_rad_s = speed_of_back_emf(motor, FULL_ANGLE_BACK_EMF),
-        .load_decay = 1.0,
+        .k_bias_d_V_A = -BIAS_RATE_MOTION * period_s *
+                        voltage_per_innovation(motor, period_s, solution.gain[I_D][I_D]),
     };
     return gains_plausible(gains) || design_refuse(error, no_gain);
 }
@@ -194,7 +198,7 @@ bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s
                                double hold_current_A, enum invariant_ekf_hold hold,
                                struct invariant_ekf_gains *gains, char error[DESIGN_ERROR_TEXT])
 {
-    bool fast = hold == INVARIANT_EKF_HOLD_FAST;
+    const bool following = hold == INVARIANT_EKF_HOLD_FOLLOWING;
     struct tuning tuning = hold_tuning;
     struct riccati_solution solution;
 
@@ -203,25 +207,27 @@ bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s
         return false;
     }
     tuning.i_d_A = hold_current_A;
-    if (fast) {
-        tuning.load_walk = FAST_LOAD_WALK;
-        tuning.bias_q = FAST_BIAS_Q;
+    if (following) {
+        tuning.load_walk = FOLLOWING_LOAD_WALK;
     }
     if (!solve(motor, period_s, &tuning, &solution)) {
         return design_refuse(error, no_gain);
     }
+    const double k_current = solution.gain[I_D][I_D];
+    const double voltage = voltage_per_innovation(motor, period_s, k_current);
+
     *gains = (struct invariant_ekf_gains){
-        .k_current_d = solution.gain[I_D][I_D],
+        .k_current_d = k_current,
         .k_current_q = solution.gain[I_Q][I_Q],
         .k_speed_q_rad_As = solution.gain[SPEED][I_Q],
         .k_angle_q_rad_A = solution.gain[ANGLE][I_Q],
         .k_load_q_Nm_A = solution.gain[LOAD][I_Q],
         .angle_d_full_speed_rad_s = speed_of_back_emf(motor, FULL_ANGLE_BACK_EMF),
-        .k_bias_d_V_A = solution.gain[BIAS_D][I_D],
-        .k_bias_q_V_A = solution.gain[BIAS_Q][I_Q],
-        .bias_decay = exponential(-period_s / BIAS_TIME_S),
-        .load_decay = exponential(-period_s / (fast ? LOAD_LEAK_TIME_S : HOLD_LOAD_LEAK_TIME_S)),
-        .k_resistance_ohm_AV = RESISTANCE_RATE * period_s / square(hold_current_A),
+        .k_bias_q_V_A = following ? 0.0 : -BIAS_RATE_HOLD * period_s * voltage,
+        .k_resistance_ohm_A2 = -RESISTANCE_RATE * period_s * voltage / square(hold_current_A),
+        .load_return = following ? 0.0 : 1.0 - exponential(-period_s / LOAD_RETURN_TIME_S),
+        .load_settle = following ? 1.0 - exponential(-period_s / LOAD_SETTLE_TIME_S) : 0.0,
+        .load_step_Nm = LOAD_STEP * motor->torque_constant_Nm_A * motor->rated_current_A,
     };
     return gains_plausible(gains) || design_refuse(error, no_gain);
 }

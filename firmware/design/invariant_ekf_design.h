@@ -7,7 +7,7 @@
  *   d eps/dt    = -(R/L + j N w) eps + (Km/L) N w dtheta - j (Km/L) dw - b/L
  *   d dw/dt     = (Km/J) (eps_q - N i_d dtheta) - (Kv/J) dw - dT_L / J
  *   d dtheta/dt = dw
- *   d b/dt      = -b / tau          voltage bias in the frame, in hold only
+ * A voltage offset, constant in phase coordinates, enters as -b/L and turns with -N w in the frame.
  */
 #ifndef STEADYSTEP_INVARIANT_EKF_DESIGN_H
 #define STEADYSTEP_INVARIANT_EKF_DESIGN_H
@@ -23,9 +23,11 @@
  *   w_est     += k_speed_q nu_q
  *   theta_est += k_angle_d sat(w_est / angle_d_full_speed) nu_d + k_angle_q nu_q
  *   T_L_est   += k_load_q nu_q
- *   b_d       += k_bias_d nu_d           b_q       += k_bias_q nu_q         (hold)
- * and in the prediction, once a period,
- *   b *= bias_decay, T_L_est *= load_decay, b subtracted from the voltage in the frame.
+ *   b_q       += k_bias_d sat(w_est / angle_d_full_speed) nu_d + k_bias_q nu_q
+ *   R_est     += k_resistance i_d nu_d
+ *   T_L_est   += load_return (T_settled - T_L_est)     T_settled += load_settle (T_L_est -
+ * T_settled) with b_q a step of the offset b in the direction of the frame's q axis; b is
+ * subtracted from the measured voltage.
  */
 struct invariant_ekf_gains {
     double k_current_d;              /* A per A */
@@ -35,17 +37,18 @@ struct invariant_ekf_gains {
     double k_angle_q_rad_A;          /* mechanical rad per A */
     double k_load_q_Nm_A;            /* N m per A */
     double angle_d_full_speed_rad_s; /* |w_est| above which k_angle_d acts in full */
-    double k_bias_d_V_A;             /* V per A; 0 in motion */
-    double k_bias_q_V_A;             /* V per A; 0 in motion */
-    double bias_decay;               /* factor per period; 0 in motion: the bias is cleared */
-    double load_decay;               /* factor per period; 1: the load estimate does not leak */
-    double k_resistance_ohm_AV;      /* R_est += k_resistance i_d b_d per period; 0 in motion */
+    double k_bias_d_V_A;             /* V per A; odd in the speed; 0 in hold */
+    double k_bias_q_V_A;             /* V per A; 0 in motion and while a load step is followed */
+    double k_resistance_ohm_A2;      /* ohm per A^2; 0 in motion */
+    double load_return;              /* share per period; of the quiet hold, else 0 */
+    double load_settle;              /* share per period; while a load step is followed, else 0 */
+    double load_step_Nm;             /* change that ends the quiet hold; 0 in motion */
 };
 
 /* How the load estimate behaves in the d-axis hold. */
 enum invariant_ekf_hold {
-    INVARIANT_EKF_HOLD_ROBUST, /* bears 20 mA current offset and unmeasured dead time */
-    INVARIANT_EKF_HOLD_FAST    /* follows a load step in a few ms; for measured voltages */
+    INVARIANT_EKF_HOLD_QUIET,    /* the load stays what it was, the voltage offset is learned */
+    INVARIANT_EKF_HOLD_FOLLOWING /* the load is learned, the offset stays what it was */
 };
 
 /* Gains in motion. False, with text in `error`, if the motor is outside what the model bears. */

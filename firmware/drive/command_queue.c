@@ -138,6 +138,5 @@ void command_queue_accept_take_over(struct command_queue *queue)
 
 void command_queue_rest(struct command_queue *queue)
 {
-    queue->attention = queue->stop.posted || queue->disable.posted || queue->take_over.posted ||
-                       queue->written != queue->read;
+    queue->attention = queue->stop.posted || queue->disable.posted || queue->written != queue->read;
 }

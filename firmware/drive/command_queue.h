@@ -114,7 +114,8 @@ const struct motion_plan *command_queue_take_over(struct command_queue *queue, u
 /* Interrupt: the reference has accepted it; its command leaves the queue. */
 void command_queue_accept_take_over(struct command_queue *queue);
 
-/* Interrupt: lowers `attention` if nothing waits. The background cannot run in between. */
+/* Interrupt, when no take-over waits: lowers `attention` if nothing else does. The background
+   cannot run in between. */
 void command_queue_rest(struct command_queue *queue);
 
 #endif

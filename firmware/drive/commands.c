@@ -181,8 +181,9 @@ static bool enable(struct drive *drive, uint32_t at_period, char error[DRIVE_ERR
     }
     if (found != DRIVE_OPERATION_ENABLED) {
         drive->planned_end = drive->params.initial_position;
-        drive->end_known =
-            drive->params.encoder_zero_known ? PLANNED_END_AFTER_ENABLING : PLANNED_END_KNOWN;
+        drive->end_known = drive->params.encoder_zero_known || drive->params.finds_position
+                               ? PLANNED_END_AFTER_ENABLING
+                               : PLANNED_END_KNOWN;
     }
     return true;
 }
@@ -237,6 +238,7 @@ void drive_signals_read(const struct drive *drive, struct drive_signals *signals
 
     signals->state = drive->state;
     signals->fault = drive->fault;
+    signals->synchronism = drive->synchronism;
     signals->period = drive->period;
     signals->holding = drive->hold.active;
     signals->reference_moving = reference->moving;

@@ -8,7 +8,10 @@
  * with the voltage already committed, and compared with the reference of S(k+1).
  */
 #include "firmware/drive/drive.h"
+#include "firmware/drive/finding_position.h"
+#include "firmware/drive/standstill_angle.h"
 #include "firmware/drive/state_machine.h"
+#include "firmware/drive/synchronism.h"
 
 /* The blocks that both paths of control() go through are compiled into each of them. */
 #define IN_PLACE __attribute__((always_inline)) static inline
@@ -216,10 +219,14 @@ __attribute__((noinline)) static struct hal_outputs control_in_full(struct drive
 {
     const struct drive_params *params = &drive->params;
     const bool held = drive->hold.active;
+    const struct current_control before = drive->current_control;
     struct prediction next;
     struct phases voltage;
     struct hal_outputs duties;
 
+    if (params->standstill_pulses) {
+        standstill_angle_begin(drive);
+    }
     if (params->immediate) {
         present(&next, drive, estimate);
     } else {
@@ -232,6 +239,9 @@ __attribute__((noinline)) static struct hal_outputs control_in_full(struct drive
     voltage = !drive->hold.active && position_law_gives_voltage(params->position_law)
                   ? regulate_voltage(drive, estimate, &next)
                   : regulate_current(drive, estimate, &next);
+    if (params->standstill_pulses) {
+        standstill_angle_step(drive, estimate, &before, &voltage);
+    }
     remember_demand(drive, estimate, &next, voltage);
     duties = modulate(drive, params->bridge_loss_compensation
                                  ? actuation_compensate(&drive->actuation, voltage)
@@ -257,31 +267,71 @@ IN_PLACE struct hal_outputs control_current(struct drive *drive, const struct es
     return duties;
 }
 
-static struct hal_outputs control(struct drive *drive, const struct estimate *estimate)
+IN_PLACE struct hal_outputs control(struct drive *drive, const struct estimate *estimate)
 {
     reference_step(&drive->reference, &drive->params.reference);
     return drive->params.in_full ? control_in_full(drive, estimate)
                                  : control_current(drive, estimate);
 }
 
-static const struct estimate *observe(struct drive *drive, const struct sample_set *now)
+/* Of a board that does not measure it: what was commanded, less what the bridge took of it. */
+__attribute__((noinline)) static struct phases inferred_voltage(struct drive *drive,
+                                                                struct phases current)
 {
-    const struct estimator_input input = {.current = now->current,
-                                          .voltage = now->voltage,
-                                          .encoder_count = now->encoder_count,
-                                          .holding = drive->hold.active};
+    const struct phases before = drive->past_current;
+
+    drive->past_current = current;
+    return bridge_loss_voltage(&drive->params.bridge_loss, drive->actuation.past, before, current,
+                               drive->modulator.bus, drive->modulator.bus_reciprocal);
+}
+
+/*
+ * What the estimator gets in place of a measurement, into drive->prepared. A current that a pulse
+ * has made is not for the estimator, which goes by its model meanwhile. Apart, and by value, so
+ * that the default path keeps its samples in registers.
+ */
+__attribute__((noinline)) static void prepare_input(struct drive *drive, struct phases current,
+                                                    struct phases voltage)
+{
+    if (drive->params.infers_voltage) {
+        voltage = inferred_voltage(drive, current);
+    }
+    drive->prepared.voltage = voltage;
+    drive->prepared.current = current;
+    if (standstill_pulses_hides_sample(&drive->pulses, &drive->pulses_params)) {
+        drive->prepared.current =
+            estimator_expected_current(&drive->estimator, &drive->params.estimator, voltage);
+        standstill_pulses_sample(&drive->pulses, &drive->pulses_params, current,
+                                 drive->prepared.current);
+    }
+}
+
+IN_PLACE const struct estimate *observe(struct drive *drive, const struct sample_set *now)
+{
+    struct estimator_input input = {.current = now->current,
+                                    .voltage = now->voltage,
+                                    .encoder_count = now->encoder_count,
+                                    .holding = drive->hold.active};
 
     modulator_track_bus(&drive->modulator, now->bus);
-    actuation_observe(&drive->actuation, now->voltage);
+    if (drive->params.in_full && drive->params.prepares_input) {
+        prepare_input(drive, now->current, now->voltage);
+        input.current = drive->prepared.current;
+        input.voltage = drive->prepared.voltage;
+    }
+    actuation_observe(&drive->actuation, input.voltage);
     return estimator_step(&drive->estimator, &drive->params.estimator, &input);
 }
 
 /* The bridge is on and stays on for this period: what it needs of estimate and duties. */
-static struct hal_outputs powered_cycle(struct drive *drive, const struct sample_set *now)
+IN_PLACE struct hal_outputs powered_cycle(struct drive *drive, const struct sample_set *now)
 {
     const struct estimate *estimate = observe(drive, now);
-    const enum drive_fault fault = protection_check_estimate(&drive->params.protection, estimate);
+    enum drive_fault fault = protection_check_estimate(&drive->params.protection, estimate);
 
+    if (synchronism_is_due(drive) && fault == DRIVE_FAULT_NONE) {
+        fault = synchronism_watch(drive, &estimate->rotor);
+    }
     if (fault != DRIVE_FAULT_NONE) {
         state_machine_fault(drive, fault);
         return bridge_off;
@@ -297,5 +347,9 @@ struct hal_outputs drive_control_cycle(struct drive *drive, const struct hal_sam
     drive->bus = now.bus;
     drive->encoder_count = now.encoder_count;
     drive->period++;
-    return state_machine_step(drive, samples) ? powered_cycle(drive, &now) : bridge_off;
+    if (state_machine_step(drive, samples)) {
+        return powered_cycle(drive, &now);
+    }
+    return drive->state == DRIVE_FINDING_POSITION ? finding_position_cycle(drive, samples)
+                                                  : bridge_off;
 }

@@ -2,6 +2,7 @@
 
 #include "firmware/design/state_feedback_design.h"
 #include "firmware/drive/parameter_store.h"
+#include "firmware/drive/synchronism.h"
 
 static bool design_high_gain_observer(struct drive *drive, const struct drive_settings *settings,
                                       double period_s, char error[DRIVE_ERROR_TEXT])
@@ -60,14 +61,14 @@ static bool design_estimator(struct drive *drive, const struct drive_settings *s
 
         if (!invariant_ekf_motion_design(motor, period_s, &moving, error) ||
             !invariant_ekf_hold_design(motor, period_s, settings->hold_current_A,
-                                       INVARIANT_EKF_HOLD_ROBUST, &holding, error) ||
+                                       INVARIANT_EKF_HOLD_QUIET, &holding, error) ||
             !invariant_ekf_hold_design(motor, period_s, settings->hold_current_A,
-                                       INVARIANT_EKF_HOLD_FAST, &following, error)) {
+                                       INVARIANT_EKF_HOLD_FOLLOWING, &following, error)) {
             return false;
         }
         if (!settings->resistance_adaptation) {
-            holding.k_resistance_ohm_AV = 0.0;
-            following.k_resistance_ohm_AV = 0.0;
+            holding.k_resistance_ohm_A2 = 0.0;
+            following.k_resistance_ohm_A2 = 0.0;
         }
         params->kind = ESTIMATOR_INVARIANT_EKF;
         params->invariant =
@@ -143,6 +144,48 @@ static bool design_law(struct drive *drive, const struct drive_settings *setting
            position_law_design(settings->law, &drive->params.law, &task, error);
 }
 
+/* Shares of the overcurrent trip: of a pulse on the hold, and on the hold under load. */
+static const double standstill_peak = 0.8;
+static const double standstill_max = 0.88;
+
+static bool design_finding(struct drive *drive, const struct drive_settings *settings,
+                           double period_s, char error[DRIVE_ERROR_TEXT])
+{
+    const struct hal_facts *facts = drive->board->facts;
+    const struct initial_position_task task = {
+        .period_s = period_s,
+        .acts_at_once = facts->acts_at_once,
+        .order = settings->initial_position == DRIVE_INITIAL_POSITION_PUBLISHED_IMPULSES
+                     ? IMPULSE_ORDER_PUBLISHED
+                     : IMPULSE_ORDER_PALINDROMIC,
+        .current_A_per_code = facts->current_A_per_code,
+        .current_range_A = facts->current_A_per_code * (double)facts->current_zero_code,
+        .overcurrent_trip_A = settings->overcurrent_trip_A,
+        .hold_current_A = settings->hold_current_A,
+        .hold_ramp_s = settings->hold_ramp_s,
+    };
+
+    const struct standstill_pulses_task pulses = {
+        .period_s = period_s,
+        .peak_A = standstill_peak * task.overcurrent_trip_A,
+        .current_max_A = standstill_max * task.overcurrent_trip_A,
+        .impulse_peak_A = initial_position_peak_A(&task),
+        .hold_current_A = settings->hold_current_A,
+        .hold_ramp_s = settings->hold_ramp_s,
+    };
+
+    drive->params.standstill_pulses = settings->standstill_pulses;
+    drive->params.prepares_input = drive->params.infers_voltage || settings->standstill_pulses;
+    standstill_pulses_design(&drive->pulses_params, &drive->params.model, &settings->motor,
+                             &drive->base, &pulses);
+    standstill_pulses_reset(&drive->pulses, &drive->pulses_params, NUM(0.0));
+    drive->start = drive->params.initial_position;
+    drive->params.finds_position = settings->initial_position != DRIVE_INITIAL_POSITION_TOLD;
+    return !drive->params.finds_position ||
+           initial_position_design(&drive->finding_params, &drive->params.model, &settings->motor,
+                                   &drive->base, &task, error);
+}
+
 static bool design_hold(struct drive *drive, const struct drive_settings *settings, double period_s,
                         char error[DRIVE_ERROR_TEXT])
 {
@@ -154,6 +197,7 @@ static bool design_hold(struct drive *drive, const struct drive_settings *settin
     }
     const struct standstill_hold_task task = {
         .current_A = settings->hold_current_A,
+        .motion_current_A = settings->motion_current_A,
         .ramp_s = settings->hold_ramp_s,
         .delay_s = settings->hold_delay_s,
         .current_limit_A = settings->current_limit_A,
@@ -208,8 +252,14 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
     params->immediate = facts->acts_at_once;
     params->hold_at_rest = settings->hold_at_rest;
     params->bridge_loss_compensation = settings->bridge_loss_compensation;
+    params->infers_voltage =
+        settings->voltage_source == DRIVE_VOLTAGE_COMMANDED || !facts->has_phase_voltages;
+    params->bridge_loss =
+        bridge_loss_design(&settings->motor, &drive->base, period_s,
+                           settings->bridge_loss_compensation ? facts->dead_time_s : 0.0);
     params->in_full = position_law_gives_voltage(settings->law) || settings->detent_learning ||
-                      params->immediate || !settings->bridge_loss_compensation;
+                      settings->standstill_pulses || params->infers_voltage || params->immediate ||
+                      !settings->bridge_loss_compensation;
     params->encoder_zero_known =
         settings->feedback == DRIVE_FEEDBACK_ENCODER && settings->encoder_zero_known;
     params->encoder_zero =
@@ -225,7 +275,11 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
     reference_reset(&drive->reference, params->initial_position);
     drive->planned_end = params->initial_position;
     planner_init(drive);
-    return design_estimator(drive, &drive->settings, period_s, error) &&
-           design_law(drive, &drive->settings, period_s, error) &&
-           design_hold(drive, settings, period_s, error);
+    if (!design_estimator(drive, &drive->settings, period_s, error)) {
+        return false;
+    }
+    synchronism_design(drive, settings, period_s);
+    return design_law(drive, &drive->settings, period_s, error) &&
+           design_hold(drive, settings, period_s, error) &&
+           design_finding(drive, &drive->settings, period_s, error);
 }

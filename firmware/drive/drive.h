@@ -16,8 +16,12 @@
 #include "firmware/drive/planner.h"
 #include "firmware/drive/protection.h"
 #include "firmware/estimator/estimator.h"
+#include "firmware/estimator/initial_position.h"
+#include "firmware/estimator/standstill_pulses.h"
+#include "firmware/estimator/synchronism_monitor.h"
 #include "firmware/motion/reference.h"
 #include "firmware/motor/actuation.h"
+#include "firmware/motor/bridge_loss.h"
 #include "hal/hal.h"
 
 /* Constants: written at start-up, read by the interrupt. */
@@ -39,13 +43,21 @@ struct drive_params {
     bool in_full;   /* more is in use than a current law with delay and loss compensation */
     bool hold_at_rest;
     bool bridge_loss_compensation;
+    bool infers_voltage; /* the phase voltages are not measured */
     bool detent_learning;
     bool encoder_zero_known;
+    bool finds_position; /* a step of enabling */
+    bool standstill_pulses;
+    bool prepares_input;               /* the estimator's, beyond what is measured */
     struct position encoder_zero;      /* rotor where count 0 begins */
     struct position encoder_zero_told; /* with initial_angle_error_rad */
     num_t initial_load_torque;
     union position_law_params law; /* large, so behind what every law uses */
     struct detent_compensation_params detent;
+    struct bridge_loss_params bridge_loss;
+    struct synchronism_monitor_params synchronism_monitor;
+    enum drive_synchronism_policy synchronism_policy;
+    bool monitors_synchronism;
 };
 
 struct drive {
@@ -65,11 +77,12 @@ struct drive {
     /* supervision */
     enum drive_state state;
     enum drive_fault fault;
-    uint32_t period;       /* index of the present or last control interrupt; 0 is the first */
-    uint32_t state_since;  /* period in which the state was entered */
-    int32_t encoder_count; /* of this S(k) */
-    bool aligns;           /* draws the rotor to where it is told to be: what the encoder then knows
-                              of the frame, and with it load and detent, is worth nothing */
+    uint32_t synchronism_due; /* the period for it */
+    uint32_t period;          /* index of the present or last control interrupt; 0 is the first */
+    uint32_t state_since;     /* period in which the state was entered */
+    int32_t encoder_count;    /* of this S(k) */
+    bool aligns; /* draws the rotor to where it is told to be: what the encoder then knows
+                    of the frame, and with it load and detent, is worth nothing */
 
     struct phases demanded_voltage;  /* of the last S(k) */
     struct phases predicted_current; /* for this S(k), had what was demanded acted */
@@ -81,6 +94,14 @@ struct drive {
     struct dq voltage_command;
     num_t bus;
 
+    /* of the synchronism monitor, and what only a few settings use */
+    enum drive_synchronism synchronism;
+    struct synchronism_monitor synchronism_monitor;
+    uint32_t synchronism_step;  /* the monitor's next */
+    uint32_t synchronism_block; /* period in which its block began */
+    struct phases past_current; /* of S(k-1), where the phase voltages are inferred from it */
+    struct channels prepared;   /* of this S(k), what the estimator gets instead of samples */
+
     struct command_queue commands; /* supervision too; large, so behind what is used more */
 
     /* background */
@@ -90,6 +111,14 @@ struct drive {
     struct position planned_end; /* where the reference rests when all posted moves are done */
     enum planned_end end_known;  /* whether it is */
     struct planner planner;
+
+    /* enabling, with its constants: behind all that an interrupt in operation uses */
+    struct position start; /* rotor, as told or as found */
+    struct initial_position finding;
+    struct initial_position_params finding_params;
+    struct standstill_pulses pulses;
+    struct standstill_pulses_params pulses_params;
+    struct phases loss_before_pulse;
 };
 
 /*

@@ -18,6 +18,7 @@
 enum drive_state {
     DRIVE_SWITCH_ON_DISABLED,  /* bridge off, waits for an enable command */
     DRIVE_CALIBRATING_OFFSETS, /* bridge off, converter offsets are averaged */
+    DRIVE_FINDING_POSITION,    /* voltage impulses, or a gentle alignment, find the rotor */
     DRIVE_ALIGNING,            /* d-axis hold at the known angle; series resistance is calibrated */
     DRIVE_OPERATION_ENABLED,   /* ready: holds or moves */
     DRIVE_FAULT,               /* bridge open until the drive is disabled */
@@ -33,6 +34,9 @@ enum drive_fault {
     DRIVE_FAULT_BUS_VOLTAGE,          /* measured bus outside 0.5...1.3 x nominal */
     DRIVE_FAULT_ESTIMATE_RANGE,       /* an estimate left its physical range or is not finite */
     DRIVE_FAULT_OFFSET_RANGE,         /* a converter offset too large to be an offset */
+    DRIVE_FAULT_POSITION_NOT_FOUND,   /* neither impulses nor alignment have shown the rotor */
+    DRIVE_FAULT_LOST_SYNCHRONISM,     /* the rotor is not where the estimate has it */
+    DRIVE_FAULT_STALLED, /* the rotor does not follow, although the estimate is sound */
     DRIVE_FAULTS
 };
 
@@ -57,6 +61,40 @@ enum drive_observer {
     DRIVE_OBSERVERS
 };
 
+/* Where the estimator's voltage comes from. */
+enum drive_voltage_source {
+    DRIVE_VOLTAGE_MEASURED,  /* the board's leg voltages, averaged over a period */
+    DRIVE_VOLTAGE_COMMANDED, /* what was commanded, less what the bridge is known to take of it: for
+                                boards without leg-voltage dividers */
+    DRIVE_VOLTAGE_SOURCES
+};
+
+/* How a sensorless drive knows where its rotor stands when it is enabled. */
+enum drive_initial_position {
+    DRIVE_INITIAL_POSITION_TOLD,     /* initial_angle_rad, into which the hold draws it */
+    DRIVE_INITIAL_POSITION_IMPULSES, /* found by voltage impulses within the electrical turn nearest
+                                        to initial_angle_rad; by alignment if the motor does not
+                                        show it */
+    DRIVE_INITIAL_POSITION_PUBLISHED_IMPULSES, /* the same in Bendjedia's order; for comparison */
+    DRIVE_INITIAL_POSITIONS
+};
+
+/* What comes of a rotor that has lost step with its estimate. */
+enum drive_synchronism_policy {
+    DRIVE_SYNCHRONISM_FAULT, /* opens the bridge */
+    DRIVE_SYNCHRONISM_WARN,  /* says so and goes on */
+    DRIVE_SYNCHRONISM_OFF,
+    DRIVE_SYNCHRONISM_POLICIES
+};
+
+/* Whether a sensorless drive's rotor runs with its estimate, in operation. */
+enum drive_synchronism {
+    DRIVE_SYNCHRONISM_SURE,
+    DRIVE_SYNCHRONISM_DOUBTFUL, /* half of what makes a loss, or nothing left of the torque */
+    DRIVE_SYNCHRONISM_LOST,     /* until the bridge is switched on anew */
+    DRIVE_SYNCHRONISMS
+};
+
 /* Room for the gains that a law can be given by name. */
 enum { DRIVE_LAW_GAINS = 12 };
 
@@ -68,12 +106,15 @@ struct drive_settings {
 
     /* law and feedback */
     enum position_law law;
-    enum drive_feedback feedback;      /* sensorless */
-    enum drive_estimator estimator;    /* of sensorless feedback; invariant EKF */
-    enum drive_observer observer;      /* on the encoder; model */
+    enum drive_feedback feedback;                     /* sensorless */
+    enum drive_estimator estimator;                   /* of sensorless feedback; invariant EKF */
+    enum drive_observer observer;                     /* on the encoder; model */
+    enum drive_voltage_source voltage_source;         /* measured */
+    enum drive_initial_position initial_position;     /* told */
+    enum drive_synchronism_policy synchronism_policy; /* fault; of sensorless feedback */
     bool feed_forward;                 /* reference speed and acceleration into the law; true */
     bool detent_learning;              /* with an encoder only; true for its default law */
-    bool bridge_loss_compensation;     /* dead time and diodes, from measured voltages; true */
+    bool bridge_loss_compensation;     /* dead time and diodes; true */
     bool resistance_adaptation;        /* track the series resistance while holding; true */
     double law_bandwidth_rad_s;        /* w0 of the position law, pole pair; 200, of the default law
                                           with an encoder 900 */
@@ -99,17 +140,20 @@ struct drive_settings {
     double initial_load_torque_Nm;   /* load that the model observer begins with; 0 */
 
     /* enabling and hold */
-    bool encoder_zero_known;     /* absolute encoder or indexed: the rotor's angle follows from the
-                                    count; else it is initial_angle_rad at the end of the hold; false */
-    bool calibrate_offsets;      /* step of enabling; true */
-    bool hold_on_enable;         /* step of enabling: 150 ms hold before ready; true */
-    bool hold_at_rest;           /* d-axis current at rest; true, with an encoder false */
-    double hold_on_enable_s;     /* 0.150 */
-    double hold_current_A;       /* d-axis current at rest; half the rated current */
-    double hold_ramp_s;          /* time for the hold current to ramp in or out; 0.010 */
-    double hold_delay_s;         /* from the end of a profile to the hold; 0.015 */
-    double hold_bandwidth_rad_s; /* w0 of the state feedback whose damping the hold takes; 200 */
-    double initial_angle_rad;    /* mechanical rotor angle the drive is told; 0 */
+    bool encoder_zero_known; /* absolute encoder or indexed: the rotor's angle follows from the
+                                count; else it is initial_angle_rad at the end of the hold; false */
+    bool calibrate_offsets;  /* step of enabling; true */
+    bool hold_on_enable;     /* step of enabling: 150 ms hold before ready; true */
+    bool hold_at_rest;       /* d-axis current at rest; true, with an encoder false */
+    bool standstill_pulses;  /* pulses on the hold current show the rotor's angle under load; needs
+                                a motor that saturates; false */
+    double hold_on_enable_s; /* 0.150 */
+    double hold_current_A;   /* d-axis current at rest; half the rated current */
+    double motion_current_A; /* d-axis current in motion; 0 */
+    double hold_ramp_s;      /* time for the hold current to ramp in or out; 0.010 */
+    double hold_delay_s;     /* from the end of a profile to the hold; 0.015 */
+    double hold_bandwidth_rad_s;    /* w0 of the state feedback whose damping the hold takes; 200 */
+    double initial_angle_rad;       /* mechanical rotor angle the drive is told; 0 */
     double initial_angle_error_rad; /* added to it, to tell the drive something wrong; an encoder
                                        whose zero is known still measures right; 0 */
 };
@@ -189,6 +233,7 @@ struct drive_command {
 struct drive_signals {
     enum drive_state state;
     enum drive_fault fault;
+    enum drive_synchronism synchronism;
     uint32_t period; /* index k of the control interrupt */
     bool holding;    /* d-axis hold in force */
     bool reference_moving;
@@ -235,6 +280,10 @@ const char *drive_law_name(enum position_law law);
 const char *drive_estimator_name(enum drive_estimator estimator);
 const char *drive_feedback_name(enum drive_feedback feedback);
 const char *drive_observer_name(enum drive_observer observer);
+const char *drive_voltage_source_name(enum drive_voltage_source source);
+const char *drive_initial_position_name(enum drive_initial_position position);
+const char *drive_synchronism_name(enum drive_synchronism synchronism);
+const char *drive_synchronism_policy_name(enum drive_synchronism_policy policy);
 
 #ifdef __cplusplus
 }

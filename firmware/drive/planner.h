@@ -23,7 +23,7 @@ enum planned_end {
     PLANNED_END_KNOWN,
     PLANNED_END_AFTER_STOP,     /* where the reference comes to rest after a stop */
     PLANNED_END_AFTER_MOTION,   /* likewise after sine, set-points or velocity */
-    PLANNED_END_AFTER_ENABLING, /* where the encoder shows the rotor when the drive is ready */
+    PLANNED_END_AFTER_ENABLING, /* where the rotor is when the drive is ready */
 };
 
 /* What the plan in force belongs to. */

@@ -109,6 +109,7 @@ bool drive_settings_check(const struct drive_settings *settings, char error[DRIV
         {"overcurrent_trip_A", settings->overcurrent_trip_A, 0.1 * rated, 4.0 * rated, "A"},
         {"speed_limit_rad_s", settings->speed_limit_rad_s, 0.1, 1e4, "rad/s"},
         {"hold_current_A", settings->hold_current_A, 0.01 * rated, rated, "A"},
+        {"motion_current_A", settings->motion_current_A, 0.0, rated, "A"},
         {"hold_ramp_s", settings->hold_ramp_s, 1e-3, 1.0, "s"},
         {"hold_delay_s", settings->hold_delay_s, 0.0, 100.0, "s"},
         {"hold_on_enable_s", settings->hold_on_enable_s, 0.01, 10.0, "s"},
@@ -133,6 +134,15 @@ bool drive_settings_check(const struct drive_settings *settings, char error[DRIV
                                       settings->observer != DRIVE_OBSERVER_MODEL)) {
         return design_refuse(error, "detent_learning: needs an encoder and its model observer");
     }
+    if (settings->standstill_pulses && settings->initial_position == DRIVE_INITIAL_POSITION_TOLD) {
+        return design_refuse(error, "standstill_pulses: needs initial_position impulses, which "
+                                    "show what the motor's saturation is");
+    }
+    if (settings->feedback == DRIVE_FEEDBACK_ENCODER &&
+        settings->initial_position != DRIVE_INITIAL_POSITION_TOLD) {
+        return design_refuse(error,
+                             "initial_position: an encoder has its own way, encoder_zero_known");
+    }
     return true;
 }
 
@@ -141,6 +151,7 @@ const char *drive_state_name(enum drive_state state)
     static const char *const names[DRIVE_STATES] = {
         [DRIVE_SWITCH_ON_DISABLED] = "switch-on-disabled",
         [DRIVE_CALIBRATING_OFFSETS] = "calibrating-offsets",
+        [DRIVE_FINDING_POSITION] = "finding-position",
         [DRIVE_ALIGNING] = "aligning",
         [DRIVE_OPERATION_ENABLED] = "operation-enabled",
         [DRIVE_FAULT] = "fault",
@@ -158,6 +169,9 @@ const char *drive_fault_name(enum drive_fault fault)
         [DRIVE_FAULT_BUS_VOLTAGE] = "bus-voltage",
         [DRIVE_FAULT_ESTIMATE_RANGE] = "estimate-range",
         [DRIVE_FAULT_OFFSET_RANGE] = "offset-range",
+        [DRIVE_FAULT_POSITION_NOT_FOUND] = "position-not-found",
+        [DRIVE_FAULT_LOST_SYNCHRONISM] = "lost-synchronism",
+        [DRIVE_FAULT_STALLED] = "stalled",
     };
     return names[fault];
 }
@@ -195,4 +209,43 @@ const char *drive_estimator_name(enum drive_estimator estimator)
         [DRIVE_ESTIMATOR_STEADY_STATE_EKF] = "steady-state-ekf",
     };
     return names[estimator];
+}
+
+const char *drive_voltage_source_name(enum drive_voltage_source source)
+{
+    static const char *const names[DRIVE_VOLTAGE_SOURCES] = {
+        [DRIVE_VOLTAGE_MEASURED] = "measured",
+        [DRIVE_VOLTAGE_COMMANDED] = "commanded",
+    };
+    return names[source];
+}
+
+const char *drive_initial_position_name(enum drive_initial_position position)
+{
+    static const char *const names[DRIVE_INITIAL_POSITIONS] = {
+        [DRIVE_INITIAL_POSITION_TOLD] = "told",
+        [DRIVE_INITIAL_POSITION_IMPULSES] = "impulses",
+        [DRIVE_INITIAL_POSITION_PUBLISHED_IMPULSES] = "published-impulses",
+    };
+    return names[position];
+}
+
+const char *drive_synchronism_name(enum drive_synchronism synchronism)
+{
+    static const char *const names[DRIVE_SYNCHRONISMS] = {
+        [DRIVE_SYNCHRONISM_SURE] = "sure",
+        [DRIVE_SYNCHRONISM_DOUBTFUL] = "doubtful",
+        [DRIVE_SYNCHRONISM_LOST] = "lost",
+    };
+    return names[synchronism];
+}
+
+const char *drive_synchronism_policy_name(enum drive_synchronism_policy policy)
+{
+    static const char *const names[DRIVE_SYNCHRONISM_POLICIES] = {
+        [DRIVE_SYNCHRONISM_FAULT] = "fault",
+        [DRIVE_SYNCHRONISM_WARN] = "warn",
+        [DRIVE_SYNCHRONISM_OFF] = "off",
+    };
+    return names[policy];
 }

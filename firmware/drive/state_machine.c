@@ -1,19 +1,21 @@
 #include "firmware/drive/state_machine.h"
 
+#include "firmware/drive/synchronism.h"
+
 static void enter(struct drive *drive, enum drive_state state)
 {
     drive->state = state;
     drive->state_since = drive->period;
 }
 
-/* The position the drive is told, or the one its encoder shows. */
+/* The position the drive is told, has found, or its encoder shows. */
 static struct position initial_position(const struct drive *drive, struct position encoder_zero)
 {
     const struct drive_params *params = &drive->params;
 
     return params->encoder_zero_known ? encoder_position(&params->estimator.encoder.encoder,
                                                          encoder_zero, drive->encoder_count)
-                                      : params->initial_position;
+                                      : drive->start;
 }
 
 /* All blocks at rest at the initial position; a calibrated resistance is kept. */
@@ -25,6 +27,7 @@ static void reset_blocks(struct drive *drive)
         .encoder_position = initial_position(drive, params->encoder_zero),
         .load_torque = params->initial_load_torque,
         .resistance = estimator_estimate(&drive->estimator, &params->estimator)->winding.resistance,
+        .unloaded_periods = params->hold_on_enable_periods,
         .encoder_count = drive->encoder_count,
     };
 
@@ -35,8 +38,10 @@ static void reset_blocks(struct drive *drive)
     detent_compensation_reset(&drive->detent);
     current_control_reset(&drive->current_control);
     actuation_reset(&drive->actuation);
+    synchronism_reset(drive);
     drive->predicted_current = (struct phases){NUM(0.0), NUM(0.0)};
     drive->demanded_voltage = drive->predicted_current;
+    drive->past_current = drive->predicted_current;
     drive->predicted_frame = (struct sincos){UNIT(1.0), UNIT(0.0)};
 }
 
@@ -50,6 +55,7 @@ static void end_aligning(struct drive *drive)
     }
     drive->aligns = false;
     drive->hold.active = params->hold_at_rest;
+    synchronism_start(drive);
     enter(drive, DRIVE_OPERATION_ENABLED);
 }
 
@@ -80,7 +86,29 @@ static void power_up(struct drive *drive)
                                                 (drive->aligns ? QUARTER_TURN : 0u));
         enter(drive, DRIVE_ALIGNING);
     } else {
+        synchronism_start(drive);
         enter(drive, DRIVE_OPERATION_ENABLED);
+    }
+}
+
+/* The turn is the one that the drive is told; nearest, if it is told wrong by less than half. */
+void state_machine_position_found(struct drive *drive, angle_t angle)
+{
+    const struct position told = drive->params.initial_position;
+
+    drive->start = position_add(told, (int32_t)(angle - told.fraction));
+    power_up(drive);
+}
+
+static void find_position_or_power_up(struct drive *drive)
+{
+    drive->start = drive->params.initial_position;
+    if (drive->params.finds_position) {
+        reset_blocks(drive);
+        initial_position_start(&drive->finding, &drive->finding_params, drive->start.fraction);
+        enter(drive, DRIVE_FINDING_POSITION);
+    } else {
+        power_up(drive);
     }
 }
 
@@ -90,7 +118,7 @@ static void start_enabling(struct drive *drive)
     if (drive->params.calibrate_offsets) {
         enter(drive, DRIVE_CALIBRATING_OFFSETS);
     } else {
-        power_up(drive);
+        find_position_or_power_up(drive);
     }
 }
 
@@ -166,8 +194,10 @@ static void take_commands(struct drive *drive)
         command_queue_drop(queue);
     } else if (queue->take_over.posted) {
         take_over(drive);
-    } else if (command == NULL) {
-        command_queue_rest(queue);
+    } else if (command == NULL && (!drive->hold.active || !reference_busy(&drive->reference)) &&
+               reference_goes_on(&drive->reference)) {
+        command_queue_rest(queue); /* it can wait where the interrupt begins a phase or leaves the
+                                      hold */
     }
 }
 
@@ -177,7 +207,7 @@ static void calibrate_offsets(struct drive *drive, const struct hal_samples *sam
     case OFFSETS_PENDING:
         break;
     case OFFSETS_FOUND:
-        power_up(drive);
+        find_position_or_power_up(drive);
         break;
     case OFFSETS_OUT_OF_RANGE:
         state_machine_fault(drive, DRIVE_FAULT_OFFSET_RANGE);
@@ -193,6 +223,20 @@ void state_machine_fault(struct drive *drive, enum drive_fault fault)
     }
 }
 
+/* The states other than operation; true: the bridge is on, and the control runs. */
+static bool step_outside_operation(struct drive *drive, const struct hal_samples *samples)
+{
+    if (drive->state == DRIVE_CALIBRATING_OFFSETS) {
+        calibrate_offsets(drive, samples);
+    } else if (drive->state == DRIVE_ALIGNING) {
+        align(drive);
+    }
+    if (drive->state == DRIVE_FINDING_POSITION) {
+        state_machine_fault(drive, protection_check_samples(&drive->params.protection, samples));
+    }
+    return state_machine_powered(drive);
+}
+
 bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
 {
     const bool was_powered = state_machine_powered(drive);
@@ -200,12 +244,7 @@ bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
     if (drive->commands.attention) {
         take_commands(drive);
     }
-    if (drive->state == DRIVE_CALIBRATING_OFFSETS) {
-        calibrate_offsets(drive, samples);
-    } else if (drive->state == DRIVE_ALIGNING) {
-        align(drive);
-    }
-    if (!state_machine_powered(drive)) {
+    if (drive->state != DRIVE_OPERATION_ENABLED && !step_outside_operation(drive, samples)) {
         return false;
     }
     const enum drive_fault fault = protection_check_samples(&drive->params.protection, samples);

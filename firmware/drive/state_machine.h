@@ -1,19 +1,20 @@
 /*
  * States of the drive (CiA 402 names) and what leads from one to the next:
  *
- *   switch-on-disabled --enable--> calibrating-offsets --> aligning --> operation-enabled
- *          ^                                                                  |
+ *   switch-on-disabled --enable--> calibrating-offsets --> finding-position --> aligning -->
+ *          ^                                                           operation-enabled
+ *          |                                                                  |
  *          +-------------------- disable (from anywhere) <--------------------+
- *   any powered state --protection--> fault --disable--> switch-on-disabled
+ *   any state with the bridge on --protection--> fault --disable--> switch-on-disabled
  *
- * The first two steps of enabling can be left out by the settings.
+ * All three steps of enabling can be left out by the settings.
  */
 #ifndef STEADYSTEP_STATE_MACHINE_H
 #define STEADYSTEP_STATE_MACHINE_H
 
 #include "firmware/drive/drive.h"
 
-/* The bridge is on and the control runs. */
+/* The bridge is on and the control runs; finding-position has the bridge for itself. */
 static inline bool state_machine_powered(const struct drive *drive)
 {
     return drive->state == DRIVE_ALIGNING || drive->state == DRIVE_OPERATION_ENABLED;
@@ -25,6 +26,9 @@ static inline bool state_machine_powered(const struct drive *drive)
  * no interrupt pays for both.
  */
 bool state_machine_step(struct drive *drive, const struct hal_samples *samples);
+
+/* The steps of enabling behind finding-position: the rotor stands at this electrical angle. */
+void state_machine_position_found(struct drive *drive, angle_t angle);
 
 /* Enters the fault state if there is a fault; the bridge opens in the same period. */
 void state_machine_fault(struct drive *drive, enum drive_fault fault);

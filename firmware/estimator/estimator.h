@@ -63,6 +63,7 @@ struct estimator_start {
     struct position encoder_position; /* that the count stands for */
     num_t load_torque;
     num_t resistance;
+    uint32_t unloaded_periods; /* of the hold that follows: no load begins in them */
     int32_t encoder_count;
 };
 
@@ -72,7 +73,7 @@ static inline void estimator_reset(struct estimator *estimator,
 {
     if (params->kind == ESTIMATOR_INVARIANT_EKF) {
         invariant_ekf_reset(&estimator->invariant, &params->invariant, start->position,
-                            start->resistance);
+                            start->resistance, start->unloaded_periods);
     } else if (params->kind == ESTIMATOR_STEADY_STATE_EKF) {
         steady_state_ekf_reset(&estimator->steady_state, &params->steady_state, start->position,
                                start->resistance);
@@ -82,6 +83,52 @@ static inline void estimator_reset(struct estimator *estimator,
     } else {
         high_gain_observer_reset(&estimator->high_gain, &params->high_gain, start->position,
                                  start->encoder_position, start->resistance, start->encoder_count);
+    }
+}
+
+/* Without an encoder, behind a reset: this current flows already. */
+static inline void estimator_take_current(struct estimator *estimator,
+                                          const struct estimator_params *params,
+                                          struct phases current)
+{
+    if (params->kind == ESTIMATOR_INVARIANT_EKF) {
+        estimator->invariant.estimate.current = current;
+        estimate_look_ahead(&estimator->invariant.estimate, &params->invariant.model);
+    } else if (params->kind == ESTIMATOR_STEADY_STATE_EKF) {
+        estimator->steady_state.estimate.current = current;
+        estimator->steady_state.current =
+            park(current, estimate_begin_of_period(&estimator->steady_state.estimate));
+        estimate_look_ahead(&estimator->steady_state.estimate, &params->steady_state.model);
+    }
+}
+
+/* Held, without an encoder: the current of the coming S(k), had this voltage acted since S(k-1). */
+static inline struct phases estimator_expected_current(const struct estimator *estimator,
+                                                       const struct estimator_params *params,
+                                                       struct phases voltage)
+{
+    const struct estimate *x = estimator_estimate(estimator, params);
+    struct phases driving = voltage;
+
+    if (params->kind == ESTIMATOR_INVARIANT_EKF) {
+        driving.a -= estimator->invariant.bias.a;
+        driving.b -= estimator->invariant.bias.b;
+    }
+    return forced_current(&x->winding, x->free_current, driving);
+}
+
+/* At rest, without an encoder: the rotor is known from elsewhere. */
+static inline void estimator_tell_rotor(struct estimator *estimator,
+                                        const struct estimator_params *params,
+                                        const struct rotor *rotor)
+{
+    if (params->kind == ESTIMATOR_INVARIANT_EKF) {
+        estimator->invariant.estimate.rotor = *rotor;
+        estimator->invariant.settled_load = rotor->load_torque;
+        estimate_look_ahead(&estimator->invariant.estimate, &params->invariant.model);
+    } else if (params->kind == ESTIMATOR_STEADY_STATE_EKF) {
+        estimator->steady_state.estimate.rotor = *rotor;
+        estimate_look_ahead(&estimator->steady_state.estimate, &params->steady_state.model);
     }
 }
 

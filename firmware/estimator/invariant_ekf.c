@@ -1,12 +1,10 @@
 #include "firmware/estimator/invariant_ekf.h"
 
-/*
- * The mean innovation of a quiet hold is 1.2 mA rms at 6 A base (12-bit codes, 3 mA and 20 mV rms
- * of noise); a load step of a fifth of the rated torque passes 4 mA within a millisecond.
- */
-#define LOAD_STEP_INNOVATION NUM(0.004 / 6.0)
-#define INNOVATION_SHARE     UNIT(0.1)
-#define FOLLOWING_PERIODS    100u
+/* The quick gains settle in 2 ms; what they take in later than that is noise. */
+#define FOLLOWING_PERIODS 20u
+
+/* A rotor that is drawn into place from where it was told not to be comes to rest within 50 ms. */
+#define SWING_PERIODS 500u
 
 static struct invariant_ekf_gain_set scale(const struct per_unit *base,
                                            const struct invariant_ekf_gains *k)
@@ -14,17 +12,20 @@ static struct invariant_ekf_gain_set scale(const struct per_unit *base,
     const double i = base->current_A;
     const double turns_per_current = i / base->rad_per_turn;
     const double full_speed = k->angle_d_full_speed_rad_s / base->speed_rad_s;
+    const double volts_per_turn = base->rad_per_turn / base->voltage_V;
+    const bool odd = k->k_angle_d_rad_A != 0.0;
     const struct invariant_ekf_gain_set set = {
         .current = coef_from_double(0.5 * (k->k_current_d + k->k_current_q)),
         .speed_q = coef_from_double(k->k_speed_q_rad_As * i / base->speed_rad_s),
         .angle_d = coef_from_double(k->k_angle_d_rad_A * turns_per_current / full_speed),
         .angle_q = coef_from_double(k->k_angle_q_rad_A * turns_per_current),
         .load_q = coef_from_double(k->k_load_q_Nm_A * i / base->torque_Nm),
-        .load_leak = coef_from_double(1.0 - k->load_decay),
-        .bias_decay = coef_from_double(k->bias_decay),
-        .bias_d = coef_from_double(k->k_bias_d_V_A / base->resistance_ohm),
+        .bias_per_turn =
+            coef_from_double(odd ? k->k_bias_d_V_A / k->k_angle_d_rad_A * volts_per_turn : 0.0),
         .bias_q = coef_from_double(k->k_bias_q_V_A / base->resistance_ohm),
-        .resistance = coef_from_double(k->k_resistance_ohm_AV * i * i),
+        .resistance = coef_from_double(k->k_resistance_ohm_A2 * i * i / base->resistance_ohm),
+        .load_return = coef_from_double(k->load_return),
+        .load_settle = coef_from_double(k->load_settle),
     };
     return set;
 }
@@ -35,29 +36,38 @@ struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params 
                                                 const struct invariant_ekf_gains *holding,
                                                 const struct invariant_ekf_gains *following)
 {
-    const struct invariant_ekf_params params = {
+    struct invariant_ekf_params params = {
         .model = *model,
         .moving = scale(base, moving),
         .holding = scale(base, holding),
         .following = scale(base, following),
         .odd_gain_speed = num_from_double(moving->angle_d_full_speed_rad_s / base->speed_rad_s),
+        .load_step = num_from_double(holding->load_step_Nm / base->torque_Nm),
     };
+    /* A displacement is then the only other thing that an offset can be taken for; it decays by
+       itself, with the rotor's swing. */
+    params.unloaded = params.holding;
+    params.unloaded.angle_q = coef_from_double(0.0);
+    params.unloaded.load_q = coef_from_double(0.0);
     return params;
 }
 
-static void reset_hold(struct invariant_ekf *ekf)
+/* The load a hold begins with is the one that was estimated in motion. */
+static void settle(struct invariant_ekf *ekf)
 {
-    ekf->bias.d = NUM(0.0);
-    ekf->bias.q = NUM(0.0);
-    ekf->innovation_mean = NUM(0.0);
+    ekf->settled_load = ekf->estimate.rotor.load_torque;
     ekf->following_periods = 0;
 }
 
 void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                         struct position position, num_t resistance)
+                         struct position position, num_t resistance, uint32_t unloaded_periods)
 {
     estimate_reset(&ekf->estimate, &params->model, position, resistance);
-    reset_hold(ekf);
+    ekf->bias = (struct phases){NUM(0.0), NUM(0.0)};
+    ekf->innovation_sum = NUM(0.0);
+    ekf->unloaded_periods = unloaded_periods;
+    ekf->swing_end = unloaded_periods > SWING_PERIODS ? unloaded_periods - SWING_PERIODS : 0u;
+    settle(ekf);
 }
 
 static void predict(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
@@ -77,25 +87,30 @@ static struct dq correct(struct invariant_ekf *ekf, const struct invariant_ekf_p
 {
     struct estimate *x = &ekf->estimate;
     const struct phases error = {current.a - x->current.a, current.b - x->current.b};
-    const struct dq innovation = park(error, estimate_end_of_period(x));
+    const struct sincos frame = estimate_end_of_period(x);
+    const struct dq innovation = park(error, frame);
     const num_t direction = num_limit(x->rotor.speed, params->odd_gain_speed);
-    const num_t turns = num_mul(innovation.d, num_mul_coef(direction, gain->angle_d)) +
-                        num_mul_coef(innovation.q, gain->angle_q);
+    const num_t odd = num_mul(innovation.d, num_mul_coef(direction, gain->angle_d));
+    const num_t turns = odd + num_mul_coef(innovation.q, gain->angle_q);
+    const num_t bias = num_mul_coef_nearest(odd, gain->bias_per_turn) +
+                       num_mul_coef_nearest(innovation.q, gain->bias_q);
 
     x->current.a += num_mul_coef(error.a, gain->current);
     x->current.b += num_mul_coef(error.b, gain->current);
     x->rotor.speed += num_mul_coef(innovation.q, gain->speed_q);
     x->rotor.position = position_add(x->rotor.position, angle_from_any_turns(turns));
     x->rotor.load_torque += num_mul_coef(innovation.q, gain->load_q);
+    ekf->bias.a -= num_mul_unit_nearest(bias, frame.sin);
+    ekf->bias.b += num_mul_unit_nearest(bias, frame.cos);
     return innovation;
 }
 
 static void adapt_resistance(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                             const struct invariant_ekf_gain_set *gain)
+                             const struct invariant_ekf_gain_set *gain, num_t innovation_d)
 {
     struct estimate *x = &ekf->estimate;
     const num_t i_d = park(x->current, x->mid_period).d;
-    const num_t change = num_mul_coef(num_mul(ekf->bias.d, i_d), gain->resistance);
+    const num_t change = num_mul_coef(num_mul(innovation_d, i_d), gain->resistance);
 
     winding_set_resistance(&x->winding, &params->model, x->winding.resistance + change);
 }
@@ -104,7 +119,16 @@ static void adapt_resistance(struct invariant_ekf *ekf, const struct invariant_e
 static const struct invariant_ekf_gain_set *hold_gains(struct invariant_ekf *ekf,
                                                        const struct invariant_ekf_params *params)
 {
-    if (num_abs(ekf->innovation_mean) > LOAD_STEP_INNOVATION) {
+    const num_t change = ekf->estimate.rotor.load_torque - ekf->settled_load;
+
+    if (ekf->unloaded_periods > 0u) {
+        ekf->unloaded_periods--;
+        if (ekf->unloaded_periods == ekf->swing_end) { /* the back-EMF was taken for an offset */
+            ekf->bias = (struct phases){NUM(0.0), NUM(0.0)};
+        }
+        return &params->unloaded;
+    }
+    if (num_abs(change) > params->load_step) {
         ekf->following_periods = FOLLOWING_PERIODS;
     }
     if (ekf->following_periods == 0u) {
@@ -114,42 +138,31 @@ static const struct invariant_ekf_gain_set *hold_gains(struct invariant_ekf *ekf
     return &params->following;
 }
 
-/* The voltage bias and what follows from it can be told apart from the back-EMF only at rest. */
-static struct phases without_bias(const struct invariant_ekf *ekf, struct phases voltage)
-{
-    const struct phases bias = inverse_park(ekf->bias, ekf->estimate.mid_period);
-    const struct phases driving = {voltage.a - bias.a, voltage.b - bias.b};
-
-    return driving;
-}
-
 static void correct_hold(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
                          const struct invariant_ekf_gain_set *gain, struct dq innovation)
 {
     struct rotor *rotor = &ekf->estimate.rotor;
+    const num_t change = rotor->load_torque - ekf->settled_load;
 
-    rotor->load_torque -= num_mul_coef(rotor->load_torque, gain->load_leak);
-    ekf->innovation_mean += num_mul_unit(innovation.q - ekf->innovation_mean, INNOVATION_SHARE);
-    ekf->bias.d =
-        num_mul_coef(ekf->bias.d, gain->bias_decay) + num_mul_coef(innovation.d, gain->bias_d);
-    ekf->bias.q =
-        num_mul_coef(ekf->bias.q, gain->bias_decay) + num_mul_coef(innovation.q, gain->bias_q);
-    adapt_resistance(ekf, params, gain);
+    rotor->load_torque -= num_mul_coef(change, gain->load_return);
+    ekf->settled_load += num_mul_coef(change, gain->load_settle);
+    adapt_resistance(ekf, params, gain, innovation.d);
 }
 
 void invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
                         struct phases current, struct phases voltage, bool holding)
 {
     const struct invariant_ekf_gain_set *gain = holding ? hold_gains(ekf, params) : &params->moving;
-    const struct phases driving = holding ? without_bias(ekf, voltage) : voltage;
+    const struct phases driving = {voltage.a - ekf->bias.a, voltage.b - ekf->bias.b};
     struct dq innovation;
 
     predict(ekf, params, driving);
     innovation = correct(ekf, params, gain, current);
+    ekf->innovation_sum += innovation.d;
     if (holding) {
         correct_hold(ekf, params, gain, innovation);
     } else {
-        reset_hold(ekf);
+        settle(ekf);
     }
     estimate_look_ahead(&ekf->estimate, &params->model);
 }

@@ -11,13 +11,17 @@
  *   i_hat += k_i (i - i_hat)          w_hat  += k_w nu_q
  *   theta += k_td sat(w/w_s) nu_d + k_tq nu_q
  *   T_L   += k_T nu_q
- *   b     =  s b + (k_bd nu_d, k_bq nu_q)     voltage bias in the rotor frame, while holding
- *   R     += k_R i_d b_d                      series resistance, while holding
+ *   b     += (k_bd sat(w/w_s) nu_d + k_bq nu_q) q      q: the q axis, in phase coordinates
+ *   R     += k_R i_d nu_d                              while holding
+ *
+ * b is the offset of the voltage measurement, constant in phase coordinates, where the back-EMF
+ * turns. In motion an offset shows as an angle error that turns with it, so in nu_d; at rest, where
+ * the mean back-EMF is null, in nu_q.
  *
  * At rest no innovation tells load from displacement; only the back-EMF of the rotor's own motion
- * does. Gains quick enough to follow a load step would let the noise carry the estimate away over
- * a long hold. So the hold has two sets: a slow one, and for 10 ms after the mean innovation has
- * shown a load step a quick one.
+ * does, and what is integrated of it walks away with noise and offset. So the hold follows the load
+ * at once, but returns within 30 ms to the load it had settled at, unless the difference shows a
+ * load step: then what is estimated is the load from there on.
  *
  * Gains: design/invariant_ekf_design.h.
  */
@@ -34,26 +38,31 @@ struct invariant_ekf_gain_set {
     coef_t angle_d; /* per unit of the clamped speed */
     coef_t angle_q; /* electrical turns per current */
     coef_t load_q;
-    coef_t load_leak; /* share of the load torque forgotten each period */
-    coef_t bias_decay;
-    coef_t bias_d;
+    coef_t bias_per_turn; /* voltage in q per odd correction of the angle, electrical turns */
     coef_t bias_q;
-    coef_t resistance; /* per product of d current and d bias */
+    coef_t resistance;  /* per product of d current and d innovation */
+    coef_t load_return; /* share of its way back to the settled load, each period */
+    coef_t load_settle; /* share of the settled load's way to the estimate, each period */
 };
 
 struct invariant_ekf_params {
     struct motor_model_params model;
     struct invariant_ekf_gain_set moving;
     struct invariant_ekf_gain_set holding;
+    struct invariant_ekf_gain_set unloaded;  /* holding, where no load is expected */
     struct invariant_ekf_gain_set following; /* holding, after a load step */
     num_t odd_gain_speed;                    /* w_s */
+    num_t load_step;                         /* what a quiet hold takes for a step of the load */
 };
 
 struct invariant_ekf {
     struct estimate estimate;
-    struct dq bias;             /* voltage, in the rotor frame */
-    num_t innovation_mean;      /* of nu_q over a millisecond: a load step shows in it */
+    struct phases bias;         /* offset of the measured voltage */
+    num_t innovation_sum;       /* of nu_d since the synchronism monitor has taken it */
+    num_t settled_load;         /* torque that a hold returns to */
     uint32_t following_periods; /* left of the gains that follow a load step */
+    uint32_t swing_end;         /* of unloaded_periods, when the rotor has swung into place */
+    uint32_t unloaded_periods;  /* left of the hold in which no load step is expected */
 };
 
 /* Per-unit parameters. */
@@ -63,9 +72,12 @@ struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params 
                                                 const struct invariant_ekf_gains *holding,
                                                 const struct invariant_ekf_gains *following);
 
-/* At rest at a known position, without current and load. */
+/*
+ * At rest at a known position, without current and load. In the first `unloaded_periods` of holding
+ * a torque is taken for a voltage offset that is still to be found, not for a load.
+ */
 void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                         struct position position, num_t resistance);
+                         struct position position, num_t resistance, uint32_t unloaded_periods);
 
 /* From S(k-1) to S(k). `voltage`: mean over that period; `current`: sampled at S(k). */
 void invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,

@@ -100,6 +100,13 @@ static inline bool reference_busy(const struct reference *reference)
     return reference->phase != REFERENCE_REST;
 }
 
+/* The coming step begins no phase and no stop: it is a short one. */
+static inline bool reference_goes_on(const struct reference *reference)
+{
+    return reference->phase == REFERENCE_REST ||
+           (reference->periods_left > 1u && !reference->stop_requested);
+}
+
 /*
  * Takes a planned profile over, without copying it: it must live until the reference rests, and a
  * stop changes it. Refused (false) while another one runs or if it does not start where the

@@ -75,9 +75,27 @@ static inline num_t num_mul_unit(num_t a, unit_t u)
 #endif
 }
 
+/* ..._nearest rounds to nearest: a sum of steps that little calls back would walk away by floor. */
+static inline num_t num_mul_unit_nearest(num_t a, unit_t u)
+{
+#if defined(__ARM_ARCH_6M__)
+    return (num_t)((uint32_t)(a >> 15) * (uint32_t)u +
+                   (uint32_t)(((a & 0x7fff) * u + 0x4000) >> 15));
+#else
+    return (num_t)(((int64_t)a * u + 0x4000) >> 15);
+#endif
+}
+
 static inline num_t num_mul_coef(num_t a, coef_t k)
 {
     return num_shift_left(num_mul_high16(a, k.mantissa), k.left) >> k.right;
+}
+
+static inline num_t num_mul_coef_nearest(num_t a, coef_t k)
+{
+    const num_t half = (num_t)((1u << k.right) >> 1);
+
+    return (num_shift_left(num_mul_high16(a, k.mantissa), k.left) + half) >> k.right;
 }
 
 /*
@@ -168,7 +186,17 @@ static inline num_t num_mul_unit(num_t a, unit_t u)
     return a * u;
 }
 
+static inline num_t num_mul_unit_nearest(num_t a, unit_t u)
+{
+    return a * u;
+}
+
 static inline num_t num_mul_coef(num_t a, coef_t k)
+{
+    return a * k;
+}
+
+static inline num_t num_mul_coef_nearest(num_t a, coef_t k)
 {
     return a * k;
 }

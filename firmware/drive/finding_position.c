@@ -1,0 +1,85 @@
+#include "firmware/drive/finding_position.h"
+
+#include "firmware/drive/state_machine.h"
+
+/* Mean over the past period: measured, or what was commanded less what the bridge took of it. */
+static struct phases past_voltage(struct drive *drive, const struct sample_set *now)
+{
+    const struct phases before = drive->past_current;
+
+    drive->past_current = now->current;
+    return drive->params.infers_voltage
+               ? bridge_loss_voltage(&drive->params.bridge_loss, drive->actuation.past, before,
+                                     now->current, drive->modulator.bus,
+                                     drive->modulator.bus_reciprocal)
+               : now->voltage;
+}
+
+static struct hal_outputs modulate(struct drive *drive, struct initial_position_output output)
+{
+    struct hal_outputs duties = {.bridge_on = output.bridge_on};
+
+    if (!output.bridge_on) {
+        actuation_reset(&drive->actuation);
+        return duties;
+    }
+    const struct phases command =
+        output.in_full ? actuation_compensate(&drive->actuation, output.voltage) : output.voltage;
+    const struct modulation out =
+        modulator_step(&drive->modulator, &drive->params.modulator, command);
+
+    actuation_commit(&drive->actuation, out.voltage);
+    if (drive->params.immediate) {
+        actuation_commit_past(&drive->actuation);
+    }
+    duties.high_counts[HAL_LEG_A_PLUS] = out.a.plus;
+    duties.high_counts[HAL_LEG_A_MINUS] = out.a.minus;
+    duties.high_counts[HAL_LEG_B_PLUS] = out.b.plus;
+    duties.high_counts[HAL_LEG_B_MINUS] = out.b.minus;
+    return duties;
+}
+
+/* After an alignment its current flows on, now in the d axis of the hold. */
+static void go_on(struct drive *drive, const struct sample_set *now)
+{
+    const struct initial_position *finding = &drive->finding;
+    const struct actuation actuation = drive->actuation;
+
+    state_machine_position_found(drive, finding->angle);
+    standstill_pulses_reset(&drive->pulses, &drive->pulses_params,
+                            finding->by_impulses
+                                ? initial_position_full_asymmetry(finding, &drive->finding_params)
+                                : NUM(0.0));
+    if (!finding->by_impulses) {
+        drive->actuation = actuation;
+        drive->past_current = now->current;
+        drive->hold.i_d = finding->current_reference;
+        drive->current_control.integral.d = finding->voltage;
+        estimator_take_current(&drive->estimator, &drive->params.estimator, now->current);
+    }
+}
+
+struct hal_outputs finding_position_cycle(struct drive *drive, const struct hal_samples *samples)
+{
+    const struct sample_set set =
+        measurement_step(&drive->measurement, &drive->params.measurement, samples);
+    const struct sample_set *now = &set;
+
+    modulator_track_bus(&drive->modulator, now->bus);
+
+    const struct phases voltage = past_voltage(drive, now);
+
+    actuation_observe(&drive->actuation, voltage);
+
+    const struct initial_position_output output =
+        initial_position_step(&drive->finding, &drive->finding_params, now->current, voltage);
+    const struct hal_outputs duties = modulate(drive, output);
+
+    if (drive->finding.stage == INITIAL_POSITION_FOUND) {
+        go_on(drive, now);
+    } else if (drive->finding.stage == INITIAL_POSITION_NOT_FOUND) {
+        state_machine_fault(drive, DRIVE_FAULT_POSITION_NOT_FOUND);
+        return (struct hal_outputs){.bridge_on = false};
+    }
+    return duties;
+}

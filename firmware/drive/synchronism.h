@@ -1,0 +1,41 @@
+/* What comes of the synchronism monitor's verdicts in a drive: estimator/synchronism_monitor.h. */
+#ifndef STEADYSTEP_SYNCHRONISM_H
+#define STEADYSTEP_SYNCHRONISM_H
+
+#include "firmware/drive/drive.h"
+
+/* At start-up, behind the estimator's design; only an invariant EKF is monitored. */
+void synchronism_design(struct drive *drive, const struct drive_settings *settings,
+                        double period_s);
+
+/* When the bridge is switched on: nothing is watched yet. */
+void synchronism_reset(struct drive *drive);
+
+/* When operation begins. */
+void synchronism_start(struct drive *drive);
+
+/*
+ * The monitor's steps follow one another in periods in which the reference just goes on: where a
+ * command has loaded or stops it, or it begins a phase, they wait, so that no interrupt pays for
+ * both.
+ */
+static inline bool synchronism_is_due(struct drive *drive)
+{
+    if (drive->period != drive->synchronism_due) {
+        return false;
+    }
+    if (!reference_goes_on(&drive->reference)) {
+        drive->synchronism_due++;
+        return false;
+    }
+    return true;
+}
+
+/*
+ * In a period in which it is due, with the rotor as estimated at S(k): the fault to enter, if any.
+ * Not part of the interrupt's body, whose registers it would cost.
+ */
+__attribute__((noinline)) enum drive_fault synchronism_watch(struct drive *drive,
+                                                             const struct rotor *rotor);
+
+#endif

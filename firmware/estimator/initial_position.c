@@ -1,0 +1,457 @@
+#include "firmware/estimator/initial_position.h"
+
+#include "firmware/numeric/arctangent.h"
+
+#define QUARTER_TURN (1u << 30)
+
+/* ---- design ---- */
+
+/* Share of the nominal supply: the bus may sag, and duties end at 0.92. */
+static const double voltage_share = 0.8;
+
+/* Beyond a millisecond the rotor turns too far under an impulse. */
+static const double impulse_max_s = 1e-3;
+
+/* What may pass for an asymmetry: a code of the converter, or a bend of it or of the bridge. */
+static const double bend = 1e-3;
+
+/* Offsets are ten codes at most, a hundredth of an impulse. */
+static const double quiet_share = 1e-2;
+
+/* Five standard errors are 11 degrees electrical. */
+static const double confidence_min = 5.0;
+
+static const double current_bandwidth_rad_s = 60.0;
+static const double resistance_bandwidth_rad_s = 300.0;
+static const double ramps_of_hold = 5.0;
+
+/* A rotor swings about the vector for some 10 ms. */
+static const double quarter_s = 0.025;
+static const double rest_s = 0.040;
+static const double drawing_s = 0.075; /* behind the ramp, from anywhere */
+
+enum { QUIET_PERIODS = 64, QUIET_BEGIN = 4, ATTEMPTS = 2, REPETITIONS = 8 };
+
+static uint32_t impulses_of(const struct initial_position_params *params)
+{
+    return params->order == IMPULSE_ORDER_PUBLISHED ? 4u : IMPULSES;
+}
+
+/* Length and voltage of an impulse that ends at `peak`; false: the supply does not get there. */
+static bool design_impulse(struct initial_position_params *params, double period_s, double peak)
+{
+    const double resistance = num_to_double(params->model.nominal_resistance);
+    const double admittance = num_to_double(params->model.nominal_admittance);
+    double current = 0.0; /* of a voltage of one */
+
+    for (uint32_t n = 1; n * period_s <= impulse_max_s; n++) {
+        current += admittance * (1.0 - resistance * current);
+        if (peak / current <= voltage_share) {
+            params->impulse_periods = n;
+            params->impulse_voltage = num_from_double(peak / current);
+            return true;
+        }
+    }
+    return false;
+}
+
+static void design_alignment(struct initial_position_params *params,
+                             const struct motor_params *motor, const struct per_unit *base,
+                             const struct initial_position_task *task)
+{
+    const double current = task->hold_current_A / base->current_A;
+    const double magnet_flux =
+        motor->torque_constant_Nm_A / motor->rotor_teeth / (base->voltage_V * task->period_s);
+
+    params->alignment_current = num_from_double(current);
+    params->current_ramp =
+        num_from_double(current * task->period_s / (ramps_of_hold * task->hold_ramp_s));
+    params->current_gain = coef_from_double(current_bandwidth_rad_s * task->period_s *
+                                            num_to_double(params->model.nominal_resistance));
+    params->resistance_gain =
+        coef_from_double(resistance_bandwidth_rad_s * task->period_s / current);
+    params->flux = coef_from_double(1.0 / magnet_flux);
+    params->flux_per_current =
+        coef_from_double(motor->inductance_H / task->period_s / base->resistance_ohm / magnet_flux);
+    params->quarter_periods = (uint32_t)(quarter_s / task->period_s + 0.5);
+    params->quarter_step = QUARTER_TURN / params->quarter_periods;
+    params->rest_periods = (uint32_t)(rest_s / task->period_s + 0.5);
+    params->drawing_periods =
+        (uint32_t)((drawing_s + ramps_of_hold * task->hold_ramp_s) / task->period_s + 0.5);
+}
+
+double initial_position_peak_A(const struct initial_position_task *task)
+{
+    return INITIAL_POSITION_PEAK * (task->overcurrent_trip_A < task->current_range_A
+                                        ? task->overcurrent_trip_A
+                                        : task->current_range_A);
+}
+
+bool initial_position_design(struct initial_position_params *params,
+                             const struct motor_model_params *model,
+                             const struct motor_params *motor, const struct per_unit *base,
+                             const struct initial_position_task *task,
+                             char error[DESIGN_ERROR_TEXT])
+{
+    const double peak_A = initial_position_peak_A(task);
+    const double floor_A =
+        task->current_A_per_code > bend * peak_A ? task->current_A_per_code : bend * peak_A;
+
+    params->model = *model;
+    params->order = task->order;
+    params->lag = task->acts_at_once ? 0u : 1u;
+    if (!design_impulse(params, task->period_s, peak_A / base->current_A)) {
+        return design_refuse_limit(
+            error, (struct refusal){.quantity = "current of an initial position impulse",
+                                    .value = peak_A,
+                                    .relation = "reached within",
+                                    .limit = impulse_max_s,
+                                    .unit = "A",
+                                    .reason = "a lower overcurrent_trip_A shortens it"});
+    }
+    const double impulses = impulses_of(params);
+    const double floor = floor_A / base->current_A * impulses / 2.0;
+    const double response = peak_A / base->current_A * impulses / 2.0 / IMPULSES;
+
+    params->quiet_max = num_from_double(quiet_share * peak_A / base->current_A);
+    params->floor_squared = num_from_double(floor * floor);
+    params->response_min = num_from_double(0.5 * response);
+    params->response_max = num_from_double(1.6 * response);
+    params->per_response = coef_from_double(1.0 / response);
+    params->certainty = coef_from_double(confidence_min * confidence_min);
+    design_alignment(params, motor, base, task);
+    return true;
+}
+
+/* ---- impulses ---- */
+
+static const struct phases nothing = {NUM(0.0), NUM(0.0)};
+
+static const struct sincos no_turn = {UNIT(1.0), UNIT(0.0)};
+
+static void enter(struct initial_position *finding, enum initial_position_stage stage)
+{
+    finding->stage = stage;
+    finding->periods = 0;
+}
+
+void initial_position_start(struct initial_position *finding,
+                            const struct initial_position_params *params, angle_t home)
+{
+    const struct initial_position begin = {.home = home};
+
+    *finding = begin;
+    winding_set_resistance(&finding->winding, &params->model, params->model.nominal_resistance);
+    enter(finding, INITIAL_POSITION_QUIET);
+}
+
+static void add(struct phases *sum, struct phases x)
+{
+    sum->a += x.a;
+    sum->b += x.b;
+}
+
+static struct phases difference(struct phases x, struct phases y)
+{
+    return (struct phases){x.a - y.a, x.b - y.b};
+}
+
+/* A square, of what has a reasonable size. */
+static num_t square(num_t x)
+{
+    const num_t limited = num_limit(x, NUM(1.9));
+
+    return num_mul(limited, limited);
+}
+
+static num_t length_squared(struct phases x)
+{
+    return square(x.a) + square(x.b);
+}
+
+static struct phases divide(struct phases sum, unit_t share)
+{
+    return (struct phases){num_mul_unit(sum.a, share), num_mul_unit(sum.b, share)};
+}
+
+static void begin_alignment(struct initial_position *finding,
+                            const struct initial_position_params *params)
+{
+    finding->direction = finding->home;
+    finding->resistance = params->model.nominal_resistance;
+    enter(finding, INITIAL_POSITION_DRAWING);
+}
+
+/* The rotor turns still: all over again, but not for ever. */
+static void wait_for_rest(struct initial_position *finding,
+                          const struct initial_position_params *params)
+{
+    finding->current_offset = finding->voltage_offset = nothing;
+    if (++finding->repetitions == REPETITIONS) {
+        begin_alignment(finding, params);
+        return;
+    }
+    finding->response = nothing;
+    for (int round = 0; round < IMPULSE_ROUNDS; round++) {
+        finding->round[round] = nothing;
+    }
+    finding->impulse = 0;
+    enter(finding, INITIAL_POSITION_QUIET);
+}
+
+/* Currents and voltages that are measured while there are none. */
+static void listen(struct initial_position *finding, const struct initial_position_params *params,
+                   struct phases current, struct phases voltage)
+{
+    if (finding->periods >= QUIET_BEGIN) {
+        add(&finding->current_offset, current);
+        add(&finding->voltage_offset, voltage);
+    }
+    if (++finding->periods == QUIET_BEGIN + QUIET_PERIODS) {
+        finding->current_offset = divide(finding->current_offset, UNIT(1.0 / QUIET_PERIODS));
+        finding->voltage_offset = divide(finding->voltage_offset, UNIT(1.0 / QUIET_PERIODS));
+        if (num_abs(finding->current_offset.a) < params->quiet_max &&
+            num_abs(finding->current_offset.b) < params->quiet_max) {
+            enter(finding, INITIAL_POSITION_IMPULSES);
+        } else {
+            wait_for_rest(finding, params);
+        }
+    }
+}
+
+static struct impulse present_impulse(const struct initial_position *finding,
+                                      const struct initial_position_params *params)
+{
+    if (params->order == IMPULSE_ORDER_PUBLISHED) {
+        return (struct impulse){.in_b = finding->impulse >= 2u,
+                                .negative = finding->impulse % 2u == 1u};
+    }
+    return impulse_of(finding->impulse);
+}
+
+/* The sample at the end of an impulse. */
+static void take_peak(struct initial_position *finding, struct impulse impulse,
+                      struct phases current)
+{
+    const num_t measured = impulse.in_b ? current.b : current.a;
+    const num_t expected = impulse.in_b ? finding->expected.b : finding->expected.a;
+    struct phases *round = &finding->round[impulse.round];
+
+    *(impulse.in_b ? &round->b : &round->a) += measured - expected;
+    *(impulse.in_b ? &finding->response.b : &finding->response.a) +=
+        num_mul_unit(num_abs(measured), UNIT(1.0 / IMPULSES));
+}
+
+/* Neither open nor shorted. */
+static bool winding_responds(const struct initial_position_params *params, num_t response)
+{
+    return response > params->response_min && response < params->response_max;
+}
+
+/* The rounds differ by as much as their sum is uncertain. */
+static void evaluate(struct initial_position *finding, const struct initial_position_params *params)
+{
+    const struct phases *round = finding->round;
+    const struct phases sum = {round[0].a + round[1].a, round[0].b + round[1].b};
+    const num_t asymmetry = length_squared(sum);
+    num_t error = params->floor_squared;
+
+    if (params->order == IMPULSE_ORDER_PALINDROMIC) {
+        error += length_squared(difference(round[0], round[1]));
+    }
+    finding->asymmetry = num_sqrt(asymmetry);
+    finding->uncertainty = num_sqrt(error);
+    if (!winding_responds(params, finding->response.a) ||
+        !winding_responds(params, finding->response.b)) {
+        enter(finding, INITIAL_POSITION_NOT_FOUND);
+    } else if (asymmetry > num_mul_coef(error, params->certainty)) {
+        finding->by_impulses = true;
+        finding->angle = angle_of_vector(sum.a, sum.b);
+        enter(finding, INITIAL_POSITION_FOUND);
+    } else if (asymmetry > num_mul_coef(params->floor_squared, params->certainty)) {
+        wait_for_rest(finding, params); /* the iron shows something, but not the same each time */
+    } else {
+        begin_alignment(finding, params);
+    }
+}
+
+/*
+ * Period 0: the bridge goes on, without voltage. Periods 1...n: the impulse is commanded; it acts
+ * `lag` periods later. Its last sample taken, the bridge opens: the diodes bring the current to
+ * zero faster than it came, and keep it there.
+ */
+static struct initial_position_output give_impulse(struct initial_position *finding,
+                                                   const struct initial_position_params *params,
+                                                   struct phases current, struct phases voltage)
+{
+    const uint32_t period = finding->periods++;
+    const uint32_t begin = 1u + params->lag;
+    const uint32_t end = begin + params->impulse_periods;
+    const struct impulse impulse = present_impulse(finding, params);
+    struct initial_position_output output = {.bridge_on = period < end, .voltage = nothing};
+
+    if (period <= begin) {
+        finding->expected = nothing;
+    } else if (period <= end) {
+        finding->expected = forced_current(
+            &finding->winding,
+            free_current(&params->model, &finding->winding, finding->expected, NUM(0.0), no_turn),
+            voltage);
+    }
+    if (period == end) {
+        take_peak(finding, impulse, current);
+    }
+    if (period > 0u) {
+        output.voltage =
+            impulse_phases(impulse, period > params->impulse_periods ? -params->impulse_voltage
+                                                                     : params->impulse_voltage);
+    }
+    if (period == end + params->impulse_periods) {
+        finding->periods = 0;
+        if (++finding->impulse == impulses_of(params)) {
+            evaluate(finding, params);
+        }
+    }
+    return output;
+}
+
+double initial_position_confidence(const struct initial_position *finding)
+{
+    return num_to_double(finding->asymmetry) / num_to_double(finding->uncertainty);
+}
+
+/* 1/(1 + e)^2 = 1 - 2 e + 3 e^2 - ..., where e is below 0.2. */
+num_t initial_position_full_asymmetry(const struct initial_position *finding,
+                                      const struct initial_position_params *params)
+{
+    const num_t response = num_half(finding->response.a + finding->response.b);
+    const num_t excess =
+        num_limit(num_mul_coef(response, params->per_response) - NUM(1.0), NUM(0.2));
+
+    return finding->asymmetry -
+           num_mul(finding->asymmetry,
+                   excess + excess - num_mul(NUM(3.0), num_mul(excess, excess)));
+}
+
+/* ---- alignment ---- */
+
+/* Turns the vector evenly by a quarter from `from`, and rests. */
+static void turn_vector(struct initial_position *finding,
+                        const struct initial_position_params *params, angle_t from, bool onwards)
+{
+    const uint32_t turned = finding->periods < params->quarter_periods
+                                ? params->quarter_step * finding->periods
+                                : QUARTER_TURN;
+
+    finding->direction = onwards ? from + turned : from - turned;
+}
+
+/* The magnet's flux has turned from a quarter aside to home; all in units of that flux. */
+static bool rotor_has_followed(const struct initial_position *finding,
+                               const struct initial_position_params *params, struct phases current)
+{
+    const struct sincos home = sincos_of(finding->home);
+    const struct phases change = difference(current, finding->current_before);
+    const struct phases turned = {num_from_unit(home.cos) + num_from_unit(home.sin),
+                                  num_from_unit(home.sin) - num_from_unit(home.cos)};
+    const struct phases error = {
+        finding->flux.a - num_mul_coef(change.a, params->flux_per_current) - turned.a,
+        finding->flux.b - num_mul_coef(change.b, params->flux_per_current) - turned.b};
+
+    return length_squared(error) < NUM(2.0 * 0.4 * 0.4);
+}
+
+static void end_stage(struct initial_position *finding,
+                      const struct initial_position_params *params, struct phases current)
+{
+    switch (finding->stage) {
+    case INITIAL_POSITION_DRAWING:
+        enter(finding, INITIAL_POSITION_ASIDE);
+        break;
+    case INITIAL_POSITION_ASIDE:
+        finding->flux = nothing;
+        finding->current_before = current;
+        enter(finding, INITIAL_POSITION_HOME);
+        break;
+    default:
+        if (rotor_has_followed(finding, params, current)) {
+            finding->angle = finding->home;
+            enter(finding, INITIAL_POSITION_FOUND);
+        } else if (++finding->attempts == ATTEMPTS) {
+            enter(finding, INITIAL_POSITION_NOT_FOUND);
+        } else {
+            enter(finding, INITIAL_POSITION_ASIDE);
+        }
+    }
+}
+
+/* Resistance while aside and at rest, flux on the way home. */
+static void measure(struct initial_position *finding, const struct initial_position_params *params,
+                    struct phases current, struct phases voltage, num_t along)
+{
+    if (finding->stage == INITIAL_POSITION_HOME) {
+        const struct phases magnet = {voltage.a - num_mul(current.a, finding->resistance),
+                                      voltage.b - num_mul(current.b, finding->resistance)};
+
+        finding->flux.a += num_mul_coef(magnet.a, params->flux);
+        finding->flux.b += num_mul_coef(magnet.b, params->flux);
+    } else if (finding->stage == INITIAL_POSITION_ASIDE &&
+               finding->periods > params->quarter_periods + params->rest_periods / 2u) {
+        const num_t across_winding = park(voltage, sincos_of(finding->direction)).d;
+
+        finding->resistance += num_mul_coef(across_winding - num_mul(along, finding->resistance),
+                                            params->resistance_gain);
+    }
+}
+
+static struct initial_position_output align(struct initial_position *finding,
+                                            const struct initial_position_params *params,
+                                            struct phases current, struct phases voltage)
+{
+    const struct sincos direction = sincos_of(finding->direction);
+    const num_t along = park(current, direction).d;
+    const uint32_t length = finding->stage == INITIAL_POSITION_DRAWING
+                                ? params->drawing_periods
+                                : params->quarter_periods + params->rest_periods;
+
+    measure(finding, params, current, voltage, along);
+    finding->current_reference = num_clamp(finding->current_reference + params->current_ramp,
+                                           NUM(0.0), params->alignment_current);
+    finding->voltage += num_mul_coef(finding->current_reference - along, params->current_gain);
+    if (finding->stage == INITIAL_POSITION_ASIDE) {
+        turn_vector(finding, params, finding->home, true);
+    } else if (finding->stage == INITIAL_POSITION_HOME) {
+        turn_vector(finding, params, finding->home + QUARTER_TURN, false);
+    }
+    if (++finding->periods == length) {
+        end_stage(finding, params, current);
+    }
+    return (struct initial_position_output){
+        .bridge_on = true,
+        .in_full = true,
+        .voltage = inverse_park((struct dq){finding->voltage, NUM(0.0)}, direction)};
+}
+
+struct initial_position_output initial_position_step(struct initial_position *finding,
+                                                     const struct initial_position_params *params,
+                                                     struct phases current, struct phases voltage)
+{
+    const struct phases driven = difference(current, finding->current_offset);
+    const struct phases driving = difference(voltage, finding->voltage_offset);
+
+    switch (finding->stage) {
+    case INITIAL_POSITION_QUIET:
+        listen(finding, params, current, voltage);
+        return (struct initial_position_output){.bridge_on = true, .voltage = nothing};
+    case INITIAL_POSITION_IMPULSES:
+        return give_impulse(finding, params, driven, driving);
+    case INITIAL_POSITION_DRAWING:
+    case INITIAL_POSITION_ASIDE:
+    case INITIAL_POSITION_HOME:
+        return align(finding, params, driven, driving);
+    case INITIAL_POSITION_FOUND:
+    case INITIAL_POSITION_NOT_FOUND:
+        break;
+    }
+    return (struct initial_position_output){.bridge_on = false, .voltage = nothing};
+}

@@ -1,0 +1,184 @@
+#include "firmware/estimator/synchronism_monitor.h"
+
+static num_t quarter(num_t x)
+{
+    return num_half(num_half(x));
+}
+
+/* Of an unbroken row. */
+static uint32_t count(uint32_t blocks_in_row, bool goes_on)
+{
+    return goes_on ? blocks_in_row + 1u : 0u;
+}
+
+/*
+ * All from some thousand random runs of the motor bendjedia-2012 (campaign `slip`, 24 V). In none
+ * that a drive has to live with does the disturbance come to half of what is allowed; within 20 ms
+ * of a loss it comes to twice and more.
+ */
+static const double voltage_floor = 0.25 / 24.0; /* of the supply */
+static const double settled_floor = 0.06 / 24.0;
+
+/* What motion has left unknown of the resistance is found in a hold within five times 22 ms. */
+static const double settled_s = 0.11;
+
+/* Share of the resistance: what its adaptation leaves in a hold under load; all of it, where the
+   bridge's switches and a winding of any temperature come on top of the motor's own. */
+static const double resistance_error_known = 0.05;
+static const double resistance_error_unknown = 0.75;
+
+/* With a twentieth of the rated torque left a rotor that can move is faster than the bound within
+   the time that it takes to be called standing. */
+static const double standing_s = 14.4e-3;
+static const double standing_torque = 0.05;
+
+/* Moves that ask for more than the motor has are caught up with in half of this. */
+static const double lagging_s = 0.1;
+
+static const double torn_load = 1.6; /* of the rated torque */
+static const double torn_s = 3.2e-3;
+static const double doubt_s = 5e-3;
+static const double doubtful_s = 20e-3;
+
+static uint32_t blocks(double time_s, double period_s)
+{
+    const double count = time_s / (period_s * SYNCHRONISM_BLOCK_PERIODS);
+
+    return count > 1.0 ? (uint32_t)(count + 0.5) : 1u;
+}
+
+/* c / 16 for a share k_i of the innovation that is corrected each period. */
+static coef_t voltage_per_sum(const struct motor_model_params *model, double current_gain)
+{
+    const double admittance = num_to_double(model->nominal_admittance);
+    const double left = 1.0 - admittance * num_to_double(model->nominal_resistance); /* a */
+
+    return coef_from_double((1.0 - (1.0 - current_gain) * left) / admittance /
+                            SYNCHRONISM_BLOCK_PERIODS);
+}
+
+struct synchronism_monitor_params
+synchronism_monitor_design(const struct synchronism_monitor_task *task)
+{
+    const struct motor_params *motor = task->motor;
+    const struct per_unit *base = task->base;
+    const double resistance = num_to_double(task->model->nominal_resistance);
+    const double rated_torque_Nm = motor->torque_constant_Nm_A * motor->rated_current_A;
+    const double standing_rad_s =
+        standing_torque * rated_torque_Nm / motor->inertia_kgm2 * standing_s;
+
+    return (struct synchronism_monitor_params){
+        .voltage_per_sum_moving = voltage_per_sum(task->model, task->current_gain_moving),
+        .voltage_per_sum_holding = voltage_per_sum(task->model, task->current_gain_holding),
+        .voltage_per_current =
+            coef_from_double(resistance * (task->resistance_known ? resistance_error_known
+                                                                  : resistance_error_unknown)),
+        .voltage_floor = num_from_double(voltage_floor * motor->supply_V / base->voltage_V),
+        .settled_floor = num_from_double(settled_floor * motor->supply_V / base->voltage_V),
+        .standing_speed = num_from_double(standing_rad_s / base->speed_rad_s),
+        .full_current = num_from_double(0.99 * task->current_limit_A / base->current_A),
+        .load_limit = num_from_double(torn_load * rated_torque_Nm / base->torque_Nm),
+        .standing_blocks = blocks(standing_s, task->period_s),
+        .lagging_blocks = blocks(lagging_s, task->period_s),
+        .torn_blocks = blocks(torn_s, task->period_s),
+        .settled_blocks = task->resistance_known ? blocks(settled_s, task->period_s) : UINT32_MAX,
+        .doubt_blocks = blocks(doubt_s, task->period_s),
+        .doubtful_blocks = blocks(doubtful_s, task->period_s),
+    };
+}
+
+void synchronism_monitor_reset(struct synchronism_monitor *monitor)
+{
+    *monitor = (struct synchronism_monitor){.disturbance = NUM(0.0)};
+}
+
+void synchronism_monitor_take(struct synchronism_monitor *monitor,
+                              const struct synchronism_monitor_params *params, num_t innovation_sum,
+                              bool holding)
+{
+    const coef_t per_sum =
+        holding ? params->voltage_per_sum_holding : params->voltage_per_sum_moving;
+    const num_t mean = num_mul_coef(innovation_sum, per_sum);
+
+    monitor->disturbance = num_abs(num_half(mean + monitor->past_mean));
+    monitor->past_mean = mean;
+}
+
+enum synchronism synchronism_monitor_judge_voltage(struct synchronism_monitor *monitor,
+                                                   const struct synchronism_monitor_params *params,
+                                                   num_t speed, num_t i_d)
+{
+    const num_t allowed = params->voltage_floor + quarter(num_abs(speed)) +
+                          num_mul_coef(num_abs(i_d), params->voltage_per_current);
+
+    if (!(monitor->disturbance < allowed)) { /* a NaN is a loss, too */
+        return SYNCHRONISM_LOST;
+    }
+    if (monitor->disturbance > num_half(allowed)) {
+        monitor->doubtful = params->doubtful_blocks;
+    }
+    return SYNCHRONISM_SURE;
+}
+
+enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *monitor,
+                                                const struct synchronism_monitor_params *params,
+                                                num_t speed, bool holding)
+{
+    const num_t allowed = params->settled_floor + quarter(num_abs(speed));
+    const num_t eighth = num_half(quarter(monitor->past_mean - monitor->settled));
+
+    if (!holding || monitor->held < params->settled_blocks) {
+        monitor->held = count(monitor->held, holding);
+        monitor->settled = NUM(0.0);
+        return SYNCHRONISM_SURE;
+    }
+    monitor->settled += eighth;
+    if (num_abs(monitor->settled) > num_half(allowed)) {
+        monitor->doubtful = params->doubtful_blocks;
+    }
+    return num_abs(monitor->settled) < allowed ? SYNCHRONISM_SURE : SYNCHRONISM_LOST;
+}
+
+enum synchronism synchronism_monitor_judge_torque(struct synchronism_monitor *monitor,
+                                                  const struct synchronism_monitor_params *params,
+                                                  num_t wanted, const struct rotor *rotor)
+{
+    const bool slow = num_abs(rotor->speed) < params->standing_speed;
+
+    monitor->full = num_abs(wanted) > params->full_current;
+    monitor->standing = count(monitor->standing, monitor->full && slow);
+    monitor->torn = count(monitor->torn, num_abs(rotor->load_torque) > params->load_limit);
+    if (monitor->standing >= params->standing_blocks || monitor->torn >= params->torn_blocks) {
+        monitor->doubtful = params->doubtful_blocks;
+        return SYNCHRONISM_STALLED;
+    }
+    return SYNCHRONISM_SURE;
+}
+
+/* Electrical turns beside its reference at which what holds a rotor loses its grip. */
+#define GRIP NUM(0.25)
+
+enum synchronism
+synchronism_monitor_judge_following(struct synchronism_monitor *monitor,
+                                    const struct synchronism_monitor_params *params, num_t error,
+                                    num_t deficit, bool holding)
+{
+    const num_t opening = error < NUM(0.0) ? -deficit : deficit;
+    const num_t distance = num_abs(error);
+
+    monitor->lagging = count(monitor->lagging,
+                             monitor->full && distance > GRIP && opening > -params->standing_speed);
+    if ((holding && distance > GRIP) || monitor->lagging >= params->lagging_blocks) {
+        monitor->doubtful = params->doubtful_blocks;
+        return SYNCHRONISM_STALLED;
+    }
+    if ((holding && distance > num_half(GRIP)) || monitor->lagging >= params->doubt_blocks ||
+        monitor->standing >= params->doubt_blocks) {
+        monitor->doubtful = params->doubtful_blocks;
+    }
+    if (monitor->doubtful == 0u) {
+        return SYNCHRONISM_SURE;
+    }
+    monitor->doubtful--;
+    return SYNCHRONISM_DOUBTFUL;
+}

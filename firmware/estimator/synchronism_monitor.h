@@ -1,0 +1,118 @@
+/*
+ * Does the rotor still run with its estimate? Watches an invariant EKF while the drive is in
+ * operation, in blocks of 16 periods, and tells two things apart:
+ *
+ * Lost synchronism: the estimate no longer belongs to the rotor. A rotor that stands delta beside
+ * its estimate induces, in the estimated frame, Km w (-sin N delta, cos N delta). The q part is
+ * taken for speed; the d part is a voltage that no right estimate leaves unexplained:
+ *
+ *   e_d = c nu_d,   c = (1 - (1 - k_i) a) / b:   stationary voltage per innovation
+ *
+ *   lost if |mean of e_d over two blocks| >= V_0 + Km |w_hat| / 4 + r |i_d|
+ *
+ * V_0 stands for offsets of the voltage sensing and for what a quick change of load leaves, the
+ * quarter for errors of Km and L (the sine of 15 degrees), r for the resistance as far as it is
+ * not calibrated.
+ *
+ * In motion and for the first tenth of a second of a hold. A rotor that a growing load draws out of
+ * a settled hold, whose resistance is known by then, creeps past the quarter turn: there the mean
+ * over eight blocks has the same bound with V_1 for V_0, a quarter of it.
+ *
+ * Stalled: the estimate is sound and says that the rotor does not follow:
+ *   standing    all current is in use and yet the rotor stands
+ *   lagging     all current is in use and yet the rotor falls further behind
+ *   torn        a load of 1.6 times the rated torque, or, holding, a rotor a quarter of an
+ * electrical turn beside its reference, where the current that holds it has lost its grip
+ *
+ * Doubtful: half of what makes a loss, half of the way to being torn off, or no torque left.
+ *
+ * Limits. A rotor that stands radiates nothing: a wrong angle shows as soon as it moves, in motion
+ * with V_0 / Km (1.6 rad/s on the reference motor) and more. Drawn out of its hold by a load that
+ * grows so slowly that it never moves faster than V_1 / Km (0.4 rad/s), it is seen when it falls.
+ */
+#ifndef STEADYSTEP_SYNCHRONISM_MONITOR_H
+#define STEADYSTEP_SYNCHRONISM_MONITOR_H
+
+#include "firmware/estimator/estimate.h"
+
+#define SYNCHRONISM_BLOCK_PERIODS 16u /* a power of two */
+
+struct synchronism_monitor_task {
+    const struct motor_params *motor;
+    const struct per_unit *base;
+    const struct motor_model_params *model;
+    double period_s;
+    double current_gain_moving; /* k_i of the estimator, 0...1 */
+    double current_gain_holding;
+    double current_limit_A; /* of the position law and of the hold */
+    bool resistance_known;  /* calibrated before operation, and adapted */
+};
+
+struct synchronism_monitor_params {
+    coef_t voltage_per_sum_moving; /* c, of a block's sum of innovations */
+    coef_t voltage_per_sum_holding;
+    coef_t voltage_per_current; /* r */
+    num_t voltage_floor;        /* V_0 */
+    num_t settled_floor;        /* V_1 */
+    num_t standing_speed;
+    num_t full_current;
+    num_t load_limit;
+    uint32_t standing_blocks; /* in a row, to be called so */
+    uint32_t lagging_blocks;
+    uint32_t torn_blocks;
+    uint32_t settled_blocks;  /* of a hold, until it is */
+    uint32_t doubt_blocks;    /* in a row, standing or lagging, to be doubted */
+    uint32_t doubtful_blocks; /* that a doubt lasts */
+};
+
+enum synchronism { SYNCHRONISM_SURE, SYNCHRONISM_DOUBTFUL, SYNCHRONISM_STALLED, SYNCHRONISM_LOST };
+
+struct synchronism_monitor {
+    num_t past_mean;   /* e_d of the last block, per-unit voltage */
+    num_t disturbance; /* magnitude of its mean over the last two */
+    num_t settled;     /* mean of e_d over eight blocks of a hold */
+    uint32_t held;     /* blocks of the hold; in a row, as the next three */
+    bool full;         /* all current is in use */
+    uint32_t standing;
+    uint32_t lagging;
+    uint32_t torn;
+    uint32_t doubtful; /* blocks left */
+};
+
+struct synchronism_monitor_params
+synchronism_monitor_design(const struct synchronism_monitor_task *task);
+
+void synchronism_monitor_reset(struct synchronism_monitor *monitor);
+
+/* ---- The five steps of a block, each for a period of its own. ---- */
+
+/* Takes the block's sum of innovations in d. */
+void synchronism_monitor_take(struct synchronism_monitor *monitor,
+                              const struct synchronism_monitor_params *params, num_t innovation_sum,
+                              bool holding);
+
+/* Whether the disturbance is more than a right estimate leaves: lost, or sure. */
+enum synchronism synchronism_monitor_judge_voltage(struct synchronism_monitor *monitor,
+                                                   const struct synchronism_monitor_params *params,
+                                                   num_t speed, num_t i_d);
+
+/* The same of a hold, by the mean over eight blocks. */
+enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *monitor,
+                                                const struct synchronism_monitor_params *params,
+                                                num_t speed, bool holding);
+
+/* Whether the torque is used up in vain: stalled, or sure. `wanted`: the q current asked for. */
+enum synchronism synchronism_monitor_judge_torque(struct synchronism_monitor *monitor,
+                                                  const struct synchronism_monitor_params *params,
+                                                  num_t wanted, const struct rotor *rotor);
+
+/*
+ * Whether the rotor follows: stalled, or what is left of the doubts of all steps. `error`:
+ * reference less estimate, electrical turns; `deficit`: the same of the speeds.
+ */
+enum synchronism
+synchronism_monitor_judge_following(struct synchronism_monitor *monitor,
+                                    const struct synchronism_monitor_params *params, num_t error,
+                                    num_t deficit, bool holding);
+
+#endif
