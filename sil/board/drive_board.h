@@ -16,8 +16,8 @@
 namespace sil
 {
 
-/* Of the reference board (hal/stm32g474/board.h): trip of its comparators, and the time that its
-   deadline guard leaves the control interrupt. */
+/* Of the reference board (hal/stm32g474: pin map, board.h): trip of its comparators, and the time
+   that its deadline guard leaves the control interrupt. */
 constexpr double comparator_trip_A = 7.0;
 constexpr double control_deadline_s = 90e-6;
 

@@ -46,22 +46,12 @@ Value convert(const toml::node &node, const std::string &file)
     return value;
 }
 
-Value parse(const std::string &toml_text, const std::string &file)
-{
-    try {
-        return convert(toml::parse(toml_text), file);
-    } catch (const toml::parse_error &error) {
-        throw InputError(Location{file, error.source().begin.line}.text() +
-                         ": not valid TOML: " + std::string(error.description()));
-    }
-}
-
 /* The value of a --set: TOML if it is, a bare word otherwise (drive.law=pid). */
 Value parse_setting_value(const std::string &text, const Location &location)
 {
     Value value;
     try {
-        Value table = parse("value = " + text, location.file);
+        Value table = parse_toml("value = " + text, location.file);
         if (table.keys.size() == 1) {
             value = table.items.front();
             value.location = location;
@@ -120,7 +110,17 @@ Value read_toml(const std::filesystem::path &file)
     if (!stream) {
         throw InputError(file.string() + ": cannot be read");
     }
-    return parse(text.str(), file.string());
+    return parse_toml(text.str(), file.string());
+}
+
+Value parse_toml(const std::string &text, const std::string &name)
+{
+    try {
+        return convert(toml::parse(text), name);
+    } catch (const toml::parse_error &error) {
+        throw InputError(Location{name, error.source().begin.line}.text() +
+                         ": not valid TOML: " + std::string(error.description()));
+    }
 }
 
 void merge(Value &target, const Value &over)

@@ -51,6 +51,9 @@ struct Value {
 /* Throws InputError if the file cannot be read or is not TOML. */
 Value read_toml(const std::filesystem::path &file);
 
+/* The same of a text; `name` stands for its file in complaints. */
+Value parse_toml(const std::string &text, const std::string &name);
+
 /* Puts `over` on top of `target`: tables are merged key by key, everything else is replaced. */
 void merge(Value &target, const Value &over);
 

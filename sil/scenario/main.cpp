@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 
 #include "sil/scenario/batch.h"
+#include "sil/scenario/campaign.h"
 #include "sil/scenario/image_run.h"
 #include "sil/scenario/output.h"
 #include "sil/scenario/report.h"
@@ -32,6 +33,8 @@ struct Options {
     std::vector<std::string> scenarios;
     CommandLine given;
     std::string sweep = "bendjedia-robustness";
+    std::string campaign, scenario_file; /* --write-scenario */
+    double campaign_duration_s = 0;      /* 0: the kind's own */
     std::string numeric, seeds, out, folder;
     std::int64_t seed = 0;
     bool one_seed = false, json = false;
@@ -221,6 +224,41 @@ int sweep_command(Options options)
     return failed == 0 ? held : not_held;
 }
 
+const CampaignKind &campaign_kind(const std::string &name)
+{
+    for (const CampaignKind *kind : campaign_kinds()) {
+        if (name == kind->name) {
+            return *kind;
+        }
+    }
+    throw InputError("campaign " + name + ": unknown kind (steadystep-sil list names them)");
+}
+
+int campaign_command(const Options &options)
+{
+    const Catalogue catalogue = options.catalogue();
+    const Seeds seeds = seeds_of(options, 1);
+    CampaignOrder order;
+    order.kind = &campaign_kind(options.campaign);
+    order.duration_s =
+        options.campaign_duration_s > 0 ? options.campaign_duration_s : order.kind->duration_s;
+    order.first_seed = seeds.first;
+    order.seeds = seeds.count;
+    order.numeric = options.numeric.empty() ? "float" : options.numeric;
+    order.given = options.given;
+    order.out = options.out;
+    order.jobs = options.jobs;
+    order.json = options.json;
+    if (options.scenario_file.empty()) {
+        return run_campaign(catalogue, order) ? held : not_held;
+    }
+    if (order.seeds != 1 || !order.given.settings.empty() || !order.given.parameters.empty()) {
+        throw InputError("--write-scenario: expected one seed, without --set and --parameters");
+    }
+    write_file(options.scenario_file, order.kind->draw(order.first_seed, order.duration_s));
+    return held;
+}
+
 /* As it is asked for by name. */
 std::string name_of(const fs::path &file)
 {
@@ -264,6 +302,10 @@ int list_command(const Options &options)
          [](const fs::path &file) { return read_motor(file).description; });
     list("parameters", catalogue.parameters(),
          [](const fs::path &file) { return read_parameters(file).description; });
+    std::printf("campaigns\n");
+    for (const CampaignKind *kind : campaign_kinds()) {
+        std::printf("  %-32s %s\n", kind->name, kind->description);
+    }
     std::printf("laws, and the gains that can be given to them\n");
     for (int law = 0; law < POSITION_LAW_COUNT; ++law) {
         std::printf("  %-32s %s\n", drive_law_name(static_cast<position_law>(law)),
@@ -291,6 +333,15 @@ void add_run_options(CLI::App &command, Options &options)
         ->capture_default_str();
 }
 
+/* Options that `run` and `campaign` share. */
+void add_given_options(CLI::App &command, Options &options)
+{
+    command.add_option("--set", options.given.settings, "table.key=value, on top of every file")
+        ->allow_extra_args(false);
+    command.add_option("--parameters", options.given.parameters,
+                       "parameter set, on top of every file and below --set");
+}
+
 int run_program(int argc, char **argv)
 {
     Options options;
@@ -311,10 +362,7 @@ int run_program(int argc, char **argv)
 
     CLI::App *run = app.add_subcommand("run", "run scenarios and judge them");
     run->add_option("SCENARIO", options.scenarios, "names or paths")->required();
-    run->add_option("--set", options.given.settings, "table.key=value, on top of every file")
-        ->allow_extra_args(false);
-    run->add_option("--parameters", options.given.parameters,
-                    "parameter set, on top of every file and below --set");
+    add_given_options(*run, options);
     run->add_flag("--typed", options.given.typed,
                   "commands go to the drive as typed lines; time zero is 21 periods later");
     run->add_option("--image", options.given.image,
@@ -326,14 +374,28 @@ int run_program(int argc, char **argv)
     CLI::App *sweep = app.add_subcommand("sweep", "run a table of plant parameters");
     sweep->add_option("SWEEP", options.sweep, "name or path")->capture_default_str();
     add_run_options(*sweep, options);
+    CLI::App *campaign =
+        app.add_subcommand("campaign", "run scenarios drawn at random, one per seed");
+    campaign->add_option("KIND", options.campaign, "as `list` names them")->required();
+    campaign->add_option("--duration", options.campaign_duration_s, "of one run, s")
+        ->check(CLI::Range(0.1, 600.0));
+    campaign->add_option("--write-scenario", options.scenario_file,
+                         "writes the scenario of --seed to this file and runs nothing");
+    campaign->add_flag("--json", options.json, "JSON on standard output, no report");
+    add_given_options(*campaign, options);
+    add_run_options(*campaign, options);
     CLI::App *list = app.add_subcommand(
         "list", "scenarios, sweeps, motors, parameter sets and laws, in one line each");
 
     try {
         app.parse(argc, argv);
-        options.one_seed = run->count("--seed") + sweep->count("--seed") > 0;
+        options.one_seed =
+            run->count("--seed") + sweep->count("--seed") + campaign->count("--seed") > 0;
         if (*list) {
             return list_command(options);
+        }
+        if (*campaign) {
+            return campaign_command(options);
         }
         return *run ? run_command(options) : sweep_command(options);
     } catch (const CLI::Success &asked) {

@@ -275,7 +275,10 @@ const std::vector<MetricField> &metric_fields()
         {"voltage_q_ripple_V", &Metrics::voltage_q_ripple_V},
         {"slip_full_steps", &Metrics::slip_full_steps},
         {"resistance_estimate_error_ratio", &Metrics::resistance_estimate_error_ratio},
+        {"synchronism_worst", &Metrics::synchronism_worst},
         {"enabling_time_s", &Metrics::enabling_time_s},
+        {"enabling_motion_max_rad", &Metrics::enabling_motion_max_rad},
+        {"enabling_displacement_rad", &Metrics::enabling_displacement_rad},
     };
     return fields;
 }
@@ -286,7 +289,7 @@ Metrics evaluate(const Record &record, RowRange rows, const MetricSettings &sett
     if (rows.empty()) {
         return metrics;
     }
-    Magnitude position, estimate, speed, load, i_a, i_b, u_a, u_b, slip;
+    Magnitude position, estimate, speed, load, i_a, i_b, u_a, u_b, slip, synchronism;
     const double full_steps_per_rad = settings.rotor_teeth / quarter_turn;
     const double first_estimate_error =
         record.at(rows.first, THETA) - record.at(rows.first, THETA_EST);
@@ -302,6 +305,7 @@ Metrics evaluate(const Record &record, RowRange rows, const MetricSettings &sett
         u_a.add(row[U_A]);
         u_b.add(row[U_B]);
         slip.add((estimate_error - first_estimate_error) * full_steps_per_rad);
+        synchronism.add(row[SYNCHRONISM]);
         if (row[DRIVE_FAULT_CODE] != 0 && metrics.fault == "none") {
             metrics.fault =
                 drive_fault_name(static_cast<drive_fault>(static_cast<int>(row[DRIVE_FAULT_CODE])));
@@ -312,6 +316,7 @@ Metrics evaluate(const Record &record, RowRange rows, const MetricSettings &sett
     metrics.position_error_rms_rad = position.rms();
     metrics.position_error_final_rad = position.final;
     steady_tracking(record, rows, metrics);
+    metrics.synchronism_worst = synchronism.max;
     metrics.estimate_error_max_rad = estimate.max;
     metrics.estimate_error_rms_rad = estimate.rms();
     metrics.estimate_error_final_rad = estimate.final;
@@ -335,6 +340,8 @@ Metrics evaluate(const Record &record, RowRange rows, const MetricSettings &sett
     metrics.resistance_estimate_error_ratio =
         std::fabs(last[RESISTANCE_EST] - last[RESISTANCE]) / last[RESISTANCE];
     metrics.enabling_time_s = settings.enabling_time_s;
+    metrics.enabling_motion_max_rad = settings.enabling_motion_max_rad;
+    metrics.enabling_displacement_rad = settings.enabling_displacement_rad;
     return metrics;
 }
 

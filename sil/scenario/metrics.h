@@ -51,6 +51,8 @@ struct MetricSettings {
     int rotor_teeth = 50;
     double settling_band_rad = 2e-3;
     double enabling_time_s = 0;
+    double enabling_motion_max_rad = 0;
+    double enabling_displacement_rad = 0;
 };
 
 struct Metrics {
@@ -85,7 +87,10 @@ struct Metrics {
     double slip_full_steps = none; /* largest change of the estimate error since the window began,
                                       in full steps (90 degrees electrical), rounded */
     double resistance_estimate_error_ratio = none; /* |R^ - R| / R in the last row */
-    double enabling_time_s = none;                 /* first interrupt to the drive ready */
+    double synchronism_worst = none;         /* 0 sure, 1 doubtful, 2 lost; as the drive had it */
+    double enabling_time_s = none;           /* first interrupt to the drive ready */
+    double enabling_motion_max_rad = none;   /* of the true rotor from where it stood, until then */
+    double enabling_displacement_rad = none; /* what is left of it then */
 
     std::string fault = "none"; /* the first in the window, as drive_fault_name spells it */
 };

@@ -55,20 +55,6 @@ Json expectation_json(const Expectation &expectation, const Observation &observa
     return json;
 }
 
-std::string quoted(const std::string &argument)
-{
-    const std::string plain =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=./:+";
-    if (argument.find_first_not_of(plain) == std::string::npos) {
-        return argument;
-    }
-    std::string text = "'";
-    for (const char letter : argument) {
-        text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
-    }
-    return text + "'";
-}
-
 } // namespace
 
 void prepare_folder(const fs::path &folder)
@@ -233,6 +219,20 @@ std::string trace_csv(const Record &record)
         }
     }
     return csv;
+}
+
+std::string quoted(const std::string &argument)
+{
+    const std::string plain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=./:+";
+    if (argument.find_first_not_of(plain) == std::string::npos) {
+        return argument;
+    }
+    std::string text = "'";
+    for (const char letter : argument) {
+        text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+    }
+    return text + "'";
 }
 
 std::string reproduce_command(const Scenario &scenario, const std::string &numeric,

@@ -28,6 +28,9 @@ std::string summaries_json(const std::vector<Result> &results);
 /* trace.csv: time_s and every column of the record, shortest digits that read back the same. */
 std::string trace_csv(const Record &record);
 
+/* An argument as a shell takes it. */
+std::string quoted(const std::string &argument);
+
 /* One line for a shell that repeats this run. */
 std::string reproduce_command(const Scenario &scenario, const std::string &numeric,
                               std::uint64_t seed);

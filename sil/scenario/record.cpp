@@ -34,6 +34,7 @@ const char *column_name(Column column)
         "drive_fault",
         "holding",
         "reference_moving",
+        "synchronism",
     };
     return names[column];
 }

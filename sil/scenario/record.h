@@ -39,6 +39,7 @@ enum Column : std::size_t {
     DRIVE_FAULT_CODE,
     HOLDING,
     REFERENCE_MOVING,
+    SYNCHRONISM, /* drive_synchronism, likewise */
     COLUMNS
 };
 

@@ -93,7 +93,7 @@ Result execute(const Scenario &scenario, const firmware_image &image, std::uint6
     result.seed = seed;
 
     const double start_s = cpu_seconds();
-    Run run{Record(1), 0, 0, "", ""};
+    Run run{Record(1), 0, 0, 0, 0, "", ""};
     if (scenario.given.image.empty()) {
         run = scenario::run(scenario, image, seed);
     } else {
@@ -113,7 +113,8 @@ Result execute(const Scenario &scenario, const firmware_image &image, std::uint6
         static_cast<double>(record.rows() - record.time_zero_row()) * record.period_s();
 
     const MetricSettings settings{scenario.motor.params.rotor_teeth, scenario.settling_band_rad,
-                                  run.enabling_time_s};
+                                  run.enabling_time_s, run.enabling_motion_max_rad,
+                                  run.enabling_displacement_rad};
     result.move = evaluate_window(record, {Window::Kind::move}, settings);
     result.rest = evaluate_window(record, {Window::Kind::rest}, settings);
     result.all = evaluate_window(record, {Window::Kind::all}, settings);

@@ -23,6 +23,31 @@ std::uint32_t periods(double time_s, double period_s)
     return static_cast<std::uint32_t>(std::floor(time_s / period_s + 0.5));
 }
 
+PlantValues values_of(const Scenario &scenario)
+{
+    return {scenario.scales, scenario.plant.sensors, scenario.plant.bridge.bus_V,
+            scenario.plant.imperfections.coulomb_friction};
+}
+
+void hand_over(const Scenario &scenario, const PlantValues &values, PlantPart part,
+               plant::Plant &plant)
+{
+    switch (part) {
+    case PlantPart::motor:
+        plant.set_motor(scaled(scenario.motor.params, values.scales));
+        break;
+    case PlantPart::sensors:
+        plant.set_sensors(values.sensors);
+        break;
+    case PlantPart::bus:
+        plant.set_bus(values.bus_V);
+        break;
+    case PlantPart::friction:
+        plant.set_coulomb_friction(values.coulomb_friction);
+        break;
+    }
+}
+
 /* Steps a board through its timeline and writes the record. */
 class Runner
 {
@@ -31,9 +56,9 @@ class Runner
        are typed. */
     Runner(const Scenario &scenario, sil::DriveBoard &board, sil::Board *direct)
         : scenario_(scenario), board_(board), direct_(direct),
-          period_s_(scenario.plant.bridge.period_s), scales_(scenario.scales),
+          period_s_(scenario.plant.bridge.period_s), values_(values_of(scenario)),
           motor_(scaled(scenario.motor.params, scenario.scales)),
-          result_{Record(period_s_ * scenario.record_every), 0, 0, "", ""}, line_(board),
+          result_{Record(period_s_ * scenario.record_every), 0, 0, 0, 0, "", ""}, line_(board),
           tape_(scenario.events, period_s_)
     {
     }
@@ -78,6 +103,7 @@ class Runner
     bool enable()
     {
         ask_for_enabling();
+        stood_at_rad_ = board_.plant().state().theta_rad;
         const std::uint32_t last = periods(longest_enabling_s, period_s_);
         for (std::uint32_t k = 0;; ++k) {
             control();
@@ -101,6 +127,10 @@ class Runner
             record(k);
         }
         board_.advance();
+        result_.enabling_displacement_rad =
+            std::fabs(board_.plant().state().theta_rad - stood_at_rad_);
+        result_.enabling_motion_max_rad =
+            std::max(result_.enabling_motion_max_rad, result_.enabling_displacement_rad);
     }
 
     /* Commands are posted in their own period, but typed before it. */
@@ -159,9 +189,13 @@ class Runner
                 board_.stall_control_interrupt(*event.stall_us * 1e-6);
             } else if (event.load_torque_Nm) {
                 board_.plant().set_load_torque(*event.load_torque_Nm);
+            } else if (event.fault) {
+                event.fault(board_.plant());
             } else {
-                drifts_.push_back({event.drift, scales_.*event.drift, event.drift_to, n,
-                                   std::max(1u, periods(event.drift_ramp_s, period_s_))});
+                for (const Drift &drift : event.drifts) {
+                    courses_.push_back({drift, drift.field->of(values_), n,
+                                        std::max(1u, periods(event.drift_ramp_s, period_s_))});
+                }
             }
         }
         if (direct_ == nullptr) {
@@ -212,28 +246,29 @@ class Runner
         }
     }
 
-    struct Drift {
-        double PlantScales::*scale;
-        double from, to;
+    /* A drift on its way. */
+    struct Course {
+        Drift drift;
+        double from;
         std::uint32_t start, periods;
     };
 
     void drift(std::uint32_t n)
     {
-        if (drifts_.empty()) {
-            return;
+        for (const Course &course : courses_) {
+            const double part = (n - course.start + 1) / static_cast<double>(course.periods);
+            course.drift.field->of(values_) =
+                part < 1 ? course.from + (course.drift.to - course.from) * part : course.drift.to;
+            hand_over(scenario_, values_, course.drift.field->part, board_.plant());
         }
-        for (const Drift &drift : drifts_) {
-            const double part = (n - drift.start + 1) / static_cast<double>(drift.periods);
-            scales_.*drift.scale =
-                part < 1 ? drift.from + (drift.to - drift.from) * part : drift.to;
+        if (!courses_.empty()) {
+            motor_ = scaled(scenario_.motor.params, values_.scales);
         }
-        drifts_.erase(std::remove_if(
-                          drifts_.begin(), drifts_.end(),
-                          [n](const Drift &drift) { return n - drift.start + 1 >= drift.periods; }),
-                      drifts_.end());
-        motor_ = scaled(scenario_.motor.params, scales_);
-        board_.plant().set_motor(motor_);
+        courses_.erase(std::remove_if(courses_.begin(), courses_.end(),
+                                      [n](const Course &course) {
+                                          return n - course.start + 1 >= course.periods;
+                                      }),
+                       courses_.end());
     }
 
     void record(std::uint32_t period)
@@ -270,6 +305,7 @@ class Runner
         row[DRIVE_FAULT_CODE] = drive.fault;
         row[HOLDING] = drive.holding ? 1 : 0;
         row[REFERENCE_MOVING] = drive.reference_moving ? 1 : 0;
+        row[SYNCHRONISM] = drive.synchronism;
         result_.record.append(row);
     }
 
@@ -277,18 +313,19 @@ class Runner
     sil::DriveBoard &board_;
     sil::Board *direct_;
     double period_s_;
-    PlantScales scales_;
+    PlantValues values_;
     plant::MotorConfig motor_;
     Run result_;
     SerialLine line_;
     Tape tape_;
+    double stood_at_rad_ = 0; /* the rotor, when it was enabled */
     std::uint32_t time_zero_ = 0;
     std::size_t next_ = 0; /* first event that has not acted */
-    std::vector<Drift> drifts_;
+    std::vector<Course> courses_;
     std::vector<Stream> streams_;
 };
 
-constexpr int drive_queue_length = 16;
+constexpr int drive_queue_length = 15;
 
 /* As many as the drive takes at once: it plans a move, and may refuse it, when it is posted. */
 void post_commands(sil::Board &board, const Scenario &scenario)
@@ -310,13 +347,38 @@ void post_commands(sil::Board &board, const Scenario &scenario)
         } catch (const std::invalid_argument &refusal) {
             throw InputError(event.location.text() + ": " + refusal.what());
         }
-        const bool starts_at_encoder =
-            kind == DRIVE_COMMAND_ENABLE && scenario.drive.encoder_zero_known;
-        if (starts_at_encoder || kind == DRIVE_COMMAND_SINE || kind == DRIVE_COMMAND_VELOCITY ||
+        const bool starts_where_it_is =
+            kind == DRIVE_COMMAND_ENABLE &&
+            (scenario.drive.encoder_zero_known ||
+             scenario.drive.initial_position != DRIVE_INITIAL_POSITION_TOLD);
+        if (starts_where_it_is || kind == DRIVE_COMMAND_SINE || kind == DRIVE_COMMAND_VELOCITY ||
             kind == DRIVE_COMMAND_SET_POINT) {
             return; /* likewise */
         }
         ++posted;
+    }
+}
+
+/* The plant refuses at once what it would refuse in the run. */
+void disturb(plant::Plant &plant, const Scenario &scenario)
+{
+    PlantValues values = values_of(scenario);
+    for (const Event &event : scenario.events) {
+        try {
+            if (event.fault) {
+                event.fault(plant);
+            }
+            for (const Drift &drift : event.drifts) {
+                if (drift.field->part == PlantPart::sensors && scenario.plant.sensors.exact) {
+                    throw std::invalid_argument(std::string(drift.field->key) +
+                                                ": expected sensing that is not exact");
+                }
+                drift.field->of(values) = drift.to;
+                hand_over(scenario, values, drift.field->part, plant);
+            }
+        } catch (const std::invalid_argument &refusal) {
+            throw InputError(event.location.text() + ": " + refusal.what());
+        }
     }
 }
 
@@ -338,6 +400,7 @@ void check(const Scenario &scenario, const firmware_image &image)
     try {
         sil::Board board(scenario.plant, image, scenario.drive);
         post_commands(board, scenario);
+        disturb(board.plant(), scenario);
     } catch (const std::invalid_argument &refusal) {
         throw InputError(scenario.locate(refusal.what()) + refusal.what());
     }

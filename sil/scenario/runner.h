@@ -23,6 +23,7 @@ void check(const Scenario &scenario, const firmware_image &image);
 struct Run {
     Record record;
     double enabling_time_s = 0;
+    double enabling_motion_max_rad = 0, enabling_displacement_rad = 0; /* magnitudes */
     std::uint64_t drive_hash = 0;
     std::string failure; /* why the run ended early; "" if it did not */
     std::string serial;  /* transcript of the drive's serial line */

@@ -151,6 +151,7 @@ void read_drive(const Value &table, drive_settings &drive)
 {
     TableReader reader(table, "drive");
     std::size_t law = 0, estimator = 0, feedback = 0, observer = 0;
+    std::size_t voltage_source = 0, initial_position = 0, synchronism_policy = 0;
     if (reader.choice("feedback", feedback, names_of(drive_feedback_name, DRIVE_FEEDBACKS))) {
         drive_settings_select_feedback(&drive, static_cast<drive_feedback>(feedback));
     }
@@ -166,6 +167,18 @@ void read_drive(const Value &table, drive_settings &drive)
     }
     if (reader.choice("observer", observer, names_of(drive_observer_name, DRIVE_OBSERVERS))) {
         drive.observer = static_cast<drive_observer>(observer);
+    }
+    if (reader.choice("voltage_source", voltage_source,
+                      names_of(drive_voltage_source_name, DRIVE_VOLTAGE_SOURCES))) {
+        drive.voltage_source = static_cast<drive_voltage_source>(voltage_source);
+    }
+    if (reader.choice("initial_position", initial_position,
+                      names_of(drive_initial_position_name, DRIVE_INITIAL_POSITIONS))) {
+        drive.initial_position = static_cast<drive_initial_position>(initial_position);
+    }
+    if (reader.choice("synchronism_policy", synchronism_policy,
+                      names_of(drive_synchronism_policy_name, DRIVE_SYNCHRONISM_POLICIES))) {
+        drive.synchronism_policy = static_cast<drive_synchronism_policy>(synchronism_policy);
     }
     reader.number("observer_bandwidth_rad_s", drive.observer_bandwidth_rad_s, 1, 1e6);
     reader.number("high_gain_epsilon_s", drive.high_gain_epsilon_s, 1e-7, 1);
@@ -183,9 +196,11 @@ void read_drive(const Value &table, drive_settings &drive)
     reader.number("speed_limit_rad_s", drive.speed_limit_rad_s, 0, 1e5);
     reader.boolean("resistance_adaptation", drive.resistance_adaptation);
     reader.number("hold_current_A", drive.hold_current_A, 0, 1000);
+    reader.number("motion_current_A", drive.motion_current_A, 0, 1000);
     reader.number("hold_ramp_s", drive.hold_ramp_s, 0, 10);
     reader.number("hold_delay_s", drive.hold_delay_s, 0, 10);
     reader.boolean("hold_at_rest", drive.hold_at_rest);
+    reader.boolean("standstill_pulses", drive.standstill_pulses);
     reader.number("hold_bandwidth_rad_s", drive.hold_bandwidth_rad_s, 1, 1e4);
     reader.boolean("calibrate_offsets", drive.calibrate_offsets);
     reader.boolean("hold_on_enable", drive.hold_on_enable);
@@ -207,6 +222,7 @@ void make_real(plant::Config &plant)
     plant.imperfections.detent_1 = 0.0075;
     plant.imperfections.coulomb_friction = 0.015;
     plant.imperfections.bridge_resistance_ohm = 2 * 0.11;
+    plant.imperfections.phase_voltage_filter_s = 10e-6;
     plant.supply.bus_source_ohm = 0.1;
     plant.supply.bus_capacitance_F = 470e-6;
     plant.supply.brake_ohm = 10;
@@ -227,6 +243,7 @@ void read_imperfections(TableReader &reader, plant::ImperfectionConfig &imperfec
     reader.number("detent_1", imperfections.detent_1, -1, 1);
     reader.number("coulomb_friction", imperfections.coulomb_friction, 0, 10);
     reader.number("bridge_resistance_ohm", imperfections.bridge_resistance_ohm, 0, 100);
+    reader.number("phase_voltage_filter_s", imperfections.phase_voltage_filter_s, 0, 1e-3);
 }
 
 void read_supply(TableReader &reader, plant::Config &plant)
@@ -365,16 +382,15 @@ std::string Scenario::locate(const std::string &complaint) const
     return document.location.text() + ": ";
 }
 
-Scenario read_scenario(const Catalogue &catalogue, const std::string &name,
-                       const CommandLine &given, const std::string &asked_by)
+namespace
 {
-    const fs::path file = catalogue.scenario(name, asked_by);
+
+/* What `document` means. */
+Scenario interpreted(const Catalogue &catalogue, const Value &document, const CommandLine &given)
+{
     Scenario scenario;
-    scenario.name = file.stem().string();
-    scenario.asked = name;
     scenario.given = given;
-    scenario.document = read_with_bases(catalogue, file, {});
-    scenario.document.location = {file.string(), 0};
+    scenario.document = document;
     apply_command_line(scenario.document, catalogue, given, scenario.parameters);
 
     TableReader reader(scenario.document, "");
@@ -422,6 +438,30 @@ Scenario read_scenario(const Catalogue &catalogue, const std::string &name,
     if (!drive_settings_check(&scenario.drive, error)) {
         throw InputError(scenario.locate(error) + error);
     }
+    return scenario;
+}
+
+} // namespace
+
+Scenario read_scenario(const Catalogue &catalogue, const std::string &name,
+                       const CommandLine &given, const std::string &asked_by)
+{
+    const fs::path file = catalogue.scenario(name, asked_by);
+    Value document = read_with_bases(catalogue, file, {});
+    document.location = {file.string(), 0};
+    Scenario scenario = interpreted(catalogue, document, given);
+    scenario.name = file.stem().string();
+    scenario.asked = name;
+    return scenario;
+}
+
+Scenario read_scenario_text(const Catalogue &catalogue, const std::string &text,
+                            const std::string &name, const CommandLine &given)
+{
+    Value document = parse_toml(text, name);
+    document.location = {name, 0};
+    Scenario scenario = interpreted(catalogue, document, given);
+    scenario.name = scenario.asked = name;
     return scenario;
 }
 

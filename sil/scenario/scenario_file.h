@@ -69,6 +69,10 @@ ParameterSet read_parameters(const std::filesystem::path &file);
 Scenario read_scenario(const Catalogue &catalogue, const std::string &name,
                        const CommandLine &given, const std::string &asked_by);
 
+/* The same of a text without a base; `name` stands for its file. */
+Scenario read_scenario_text(const Catalogue &catalogue, const std::string &text,
+                            const std::string &name, const CommandLine &given);
+
 } // namespace scenario
 
 #endif

@@ -26,30 +26,28 @@ namespace
 {
 
 constexpr double period_s = 1e-4;
-constexpr double bias_time_s = 0.05;
 
 /* Where the estimation error is linearised. */
 struct OperatingPoint {
     double speed_rad_s, i_d_A;
 };
 
-/* Errors: current (d, q of the estimated frame), w, theta, T_L, voltage bias (d, q). */
+/* Errors: current (d, q of the estimated frame), w, theta, T_L, voltage offset (d, q of it). */
 enum { I_D, I_Q, SPEED, ANGLE, LOAD, BIAS_D, BIAS_Q, STATES };
 
 /* True rotor and winding, or their estimate. */
 struct Rotor {
-    complex<double> current, bias; /* current in phase coordinates, bias in the estimated frame */
+    complex<double> current, bias; /* in phase coordinates */
     double speed, angle, load;
 };
 
-Rotor rate(const motor_params &m, const Rotor &x, complex<double> voltage, complex<double> frame)
+Rotor rate(const motor_params &m, const Rotor &x, complex<double> voltage)
 {
     const complex<double> magnet = std::polar(1.0, m.rotor_teeth * x.angle);
     const complex<double> emf = complex<double>(0, 1) * m.torque_constant_Nm_A * x.speed * magnet;
     const double torque = m.torque_constant_Nm_A * (x.current * std::conj(magnet)).imag();
     Rotor d{};
-    d.current = (voltage - x.bias * frame - m.resistance_ohm * x.current - emf) / m.inductance_H;
-    d.bias = -x.bias / bias_time_s;
+    d.current = (voltage - x.bias - m.resistance_ohm * x.current - emf) / m.inductance_H;
     d.speed = (torque - m.viscous_friction_Nms_rad * x.speed - x.load) / m.inertia_kgm2;
     d.angle = x.speed;
     return d;
@@ -63,16 +61,19 @@ VectorXd error_rate(const motor_params &m, OperatingPoint at, const VectorXd &e)
     const complex<double> voltage = 3.0 * frame; /* any, both see it */
     const Rotor estimate{at.i_d_A * frame, 0.0, at.speed_rad_s, angle, 0.03};
     const Rotor truth{estimate.current + complex<double>(e(I_D), e(I_Q)) * frame,
-                      complex<double>(e(BIAS_D), e(BIAS_Q)), estimate.speed + e(SPEED),
+                      complex<double>(e(BIAS_D), e(BIAS_Q)) * frame, estimate.speed + e(SPEED),
                       estimate.angle + e(ANGLE), estimate.load + e(LOAD)};
-    const Rotor d_truth = rate(m, truth, voltage, frame);
-    const Rotor d_estimate = rate(m, estimate, voltage, frame);
+    const Rotor d_truth = rate(m, truth, voltage);
+    const Rotor d_estimate = rate(m, estimate, voltage);
     const complex<double> epsilon(e(I_D), e(I_Q));
     const complex<double> d_epsilon = (d_truth.current - d_estimate.current) * std::conj(frame) -
                                       complex<double>(0, m.rotor_teeth * at.speed_rad_s) * epsilon;
+    /* constant in phase coordinates, it turns backwards in the frame */
+    const complex<double> d_bias =
+        -complex<double>(0, m.rotor_teeth * at.speed_rad_s) * complex<double>(e(BIAS_D), e(BIAS_Q));
     VectorXd result(STATES);
     result << d_epsilon.real(), d_epsilon.imag(), d_truth.speed - d_estimate.speed,
-        d_truth.angle - d_estimate.angle, 0.0, d_truth.bias.real(), d_truth.bias.imag();
+        d_truth.angle - d_estimate.angle, 0.0, d_bias.real(), d_bias.imag();
     return result;
 }
 
@@ -140,8 +141,9 @@ double spectral_radius(const motor_params &motor, const invariant_ekf_gains &k, 
     correction(ANGLE, I_D) -= k.k_angle_d_rad_A * direction;
     correction(ANGLE, I_Q) -= k.k_angle_q_rad_A;
     correction(LOAD, I_Q) -= k.k_load_q_Nm_A;
-    correction(BIAS_D, I_D) -= k.k_bias_d_V_A;
+    correction(BIAS_Q, I_D) -= k.k_bias_d_V_A * direction;
     correction(BIAS_Q, I_Q) -= k.k_bias_q_V_A;
+    correction.row(LOAD) *= 1.0 - k.load_return;
     const MatrixXd step =
         transition(motor, at, states, period) * correction.topLeftCorner(states, states);
     return step.eigenvalues().cwiseAbs().maxCoeff();
@@ -173,24 +175,20 @@ void hold_gains_are_the_steady_kalman_gain_at_1_rad_s()
 {
     const motor_params motor = reference::bendjedia_2012();
     const double current_noise = std::pow(0.03 * period_s / motor.inductance_H, 2);
-    const double renewal = 1.0 - std::exp(-2.0 * period_s / bias_time_s);
     const struct {
         invariant_ekf_hold tuning;
-        double load_walk, bias_q;
-    } holds[] = {{INVARIANT_EKF_HOLD_ROBUST, 1e-6, 0.02}, {INVARIANT_EKF_HOLD_FAST, 1e-5, 0.005}};
+        double load_walk;
+    } holds[] = {{INVARIANT_EKF_HOLD_QUIET, 1e-6}, {INVARIANT_EKF_HOLD_FOLLOWING, 4e-6}};
     for (const auto &hold : holds) {
-        VectorXd q(7);
-        q << current_noise, current_noise, 1e-6, 1e-12, hold.load_walk, 0.05 * 0.05 * renewal,
-            hold.bias_q * hold.bias_q * renewal;
-        const MatrixXd k = kalman_gain(transition(motor, {1.0, 1.5}, 7), q, 9.7e-6, 32768);
+        VectorXd q(5);
+        q << current_noise, current_noise, 1e-6, 1e-12, hold.load_walk;
+        const MatrixXd k = kalman_gain(transition(motor, {1.0, 1.5}, 5), q, 9.7e-6, 32768);
         const invariant_ekf_gains gains = hold_design(motor, 1.5, hold.tuning);
         assert_relative(1e-5, k(I_D, 0), gains.k_current_d, "i_d");
         assert_relative(1e-5, k(I_Q, 1), gains.k_current_q, "i_q");
         assert_relative(1e-5, k(SPEED, 1), gains.k_speed_q_rad_As, "w");
         assert_relative(1e-5, k(ANGLE, 1), gains.k_angle_q_rad_A, "theta");
         assert_relative(1e-5, k(LOAD, 1), gains.k_load_q_Nm_A, "T_L");
-        assert_relative(1e-5, k(BIAS_D, 0), gains.k_bias_d_V_A, "b_d");
-        assert_relative(1e-5, k(BIAS_Q, 1), gains.k_bias_q_V_A, "b_q");
     }
 }
 
@@ -235,6 +233,28 @@ void estimation_error_of_the_reference_motor_decays_in_six_milliseconds()
     }
 }
 
+/* With the voltage offset among the errors; 2.5 1/s at worst on the reference motor. */
+void a_voltage_offset_is_found_at_every_speed_and_current_of_every_motor()
+{
+    for (const motor_params &motor : reference::motors()) {
+        for (const double period : {50e-6, 100e-6, 200e-6}) {
+            const invariant_ekf_gains gains = motion_design(motor, period);
+            for (double speed = 1.0; speed <= top_speed(motor, period); speed *= 1.25) {
+                for (const double sign : {1.0, -1.0}) {
+                    for (const double load : {0.0, 0.5, 1.0}) {
+                        const OperatingPoint at{sign * speed, load * motor.rated_current_A};
+                        const double radius = spectral_radius(motor, gains, at, STATES, period);
+                        TEST_ASSERT_TRUE_MESSAGE(decay(radius, period) > 0.7,
+                                                 ("stays at " + std::to_string(at.speed_rad_s) +
+                                                  " rad/s, i_d " + std::to_string(at.i_d_A))
+                                                     .c_str());
+                    }
+                }
+            }
+        }
+    }
+}
+
 /* Why the gain from d to theta is odd in the speed. */
 void angle_gain_without_its_sign_loses_one_direction()
 {
@@ -246,19 +266,29 @@ void angle_gain_without_its_sign_loses_one_direction()
     TEST_ASSERT_TRUE(decay(spectral_radius(motor, gains, {1.0, 0.0}, 5), period_s) < 10.0);
 }
 
-/* A constant load and its displacement have no current signature: one error stays, none grows. */
+/*
+ * A constant load and its displacement have no current signature: one error stays, none grows. The
+ * offset of the voltage is constant in a held frame, so it is one of the errors at rest, where the
+ * quiet hold learns it; a rotor that swings about the frame does not turn it. At a lasting speed,
+ * which a held rotor has not, the quiet hold's return to its load may feed the angle error, with
+ * 0.2 1/s.
+ */
 void no_error_grows_in_hold()
 {
     for (const motor_params &motor : reference::motors()) {
         for (const double period : {50e-6, 100e-6, 200e-6}) {
-            for (const auto tuning : {INVARIANT_EKF_HOLD_ROBUST, INVARIANT_EKF_HOLD_FAST}) {
+            for (const auto tuning : {INVARIANT_EKF_HOLD_QUIET, INVARIANT_EKF_HOLD_FOLLOWING}) {
                 const double current = 0.5 * motor.rated_current_A;
                 const invariant_ekf_gains gains = hold_design(motor, current, tuning, period);
                 for (const double speed : {-5.0, -1.0, 0.0, 1.0, 5.0}) {
                     for (const double part : {0.1, 0.5, 1.0}) { /* of the current, ramping in */
                         const OperatingPoint at{speed, part * current};
-                        TEST_ASSERT_TRUE(spectral_radius(motor, gains, at, STATES, period) <
-                                         1.0 + 1e-6);
+                        const bool offset = speed == 0.0 && tuning == INVARIANT_EKF_HOLD_QUIET;
+                        const int states = offset ? STATES : LOAD + 1;
+                        const bool turns = speed != 0.0 && gains.load_return > 0.0;
+                        const double radius = spectral_radius(motor, gains, at, states, period);
+                        TEST_ASSERT_TRUE(turns ? decay(radius, period) > -0.25
+                                               : radius < 1.0 + 1e-6);
                     }
                 }
             }
@@ -292,16 +322,17 @@ void assert_same_gains(const motor_params &motor, const motor_params &other, dou
     assert_relative(1e-9, a.angle_d_full_speed_rad_s, b.angle_d_full_speed_rad_s, "full speed");
 
     const double resistance_ratio = voltage_ratio / current_ratio;
-    for (const auto tuning : {INVARIANT_EKF_HOLD_ROBUST, INVARIANT_EKF_HOLD_FAST}) {
+    assert_relative(1e-9, a.k_bias_d_V_A, b.k_bias_d_V_A / resistance_ratio, "b");
+    for (const auto tuning : {INVARIANT_EKF_HOLD_QUIET, INVARIANT_EKF_HOLD_FOLLOWING}) {
         const invariant_ekf_gains c = hold_design(motor, 1.5, tuning);
         const invariant_ekf_gains d = hold_design(other, 1.5 * current_ratio, tuning);
         assert_relative(1e-5, c.k_current_d, d.k_current_d, "i_d, hold");
         assert_relative(1e-5, c.k_load_q_Nm_A, d.k_load_q_Nm_A * current_ratio / torque_ratio,
                         "T_L, hold");
-        assert_relative(1e-5, c.k_bias_d_V_A, d.k_bias_d_V_A / resistance_ratio, "b_d");
-        assert_relative(1e-5, c.k_bias_q_V_A, d.k_bias_q_V_A / resistance_ratio, "b_q");
-        assert_relative(1e-9, c.k_resistance_ohm_AV * 1.5 * 1.5,
-                        d.k_resistance_ohm_AV * 1.5 * 1.5 * current_ratio * current_ratio, "R");
+        assert_relative(1e-5, c.k_bias_q_V_A, d.k_bias_q_V_A / resistance_ratio, "b");
+        assert_relative(1e-5, c.k_resistance_ohm_A2,
+                        d.k_resistance_ohm_A2 * current_ratio * current_ratio / resistance_ratio,
+                        "R");
     }
 }
 
@@ -346,6 +377,7 @@ int main()
     RUN_TEST(hold_gains_are_the_steady_kalman_gain_at_1_rad_s);
     RUN_TEST(estimation_error_decays_at_every_speed_and_current_of_every_motor);
     RUN_TEST(estimation_error_of_the_reference_motor_decays_in_six_milliseconds);
+    RUN_TEST(a_voltage_offset_is_found_at_every_speed_and_current_of_every_motor);
     RUN_TEST(angle_gain_without_its_sign_loses_one_direction);
     RUN_TEST(no_error_grows_in_hold);
     RUN_TEST(full_angle_correction_begins_at_the_same_back_emf_on_every_motor);

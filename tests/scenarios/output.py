@@ -65,7 +65,7 @@ def trace_is_complete(folder):
     times = [row[0] for row in rows]
     CHECKS.that(times == [n / 10000 for n in range(501)], "times are the nearest to the decimals")
     state = head.index("drive_state")
-    CHECKS.that({row[state] for row in rows} == {3.0}, "the drive is ready from time zero on")
+    CHECKS.that({row[state] for row in rows} == {4.0}, "the drive is ready from time zero on")
 
 
 def metrics_agree_with_the_trace(folder):

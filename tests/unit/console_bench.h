@@ -7,7 +7,7 @@
 #include "firmware/application/application.h"
 #include "tests/unit/bench.h"
 
-enum { BENCH_PAGE = 368, BENCH_PAGES = 4, BENCH_STREAM = 560, BENCH_TYPED = 410, BENCH_LINES = 8 };
+enum { BENCH_PAGE = 384, BENCH_PAGES = 4, BENCH_STREAM = 560, BENCH_TYPED = 410, BENCH_LINES = 8 };
 
 struct console_bench {
     struct application application;
@@ -147,6 +147,7 @@ static inline struct drive_settings bench_quick_settings(void)
     drive_settings_default(&settings, &bench_params);
     settings.calibrate_offsets = false;
     settings.hold_on_enable = false;
+    settings.synchronism_policy = DRIVE_SYNCHRONISM_OFF; /* the rotor here follows nothing */
     return settings;
 }
 

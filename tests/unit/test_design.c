@@ -276,7 +276,7 @@ static void impossible_motors_are_refused_by_name(void)
             TEST_ASSERT_FALSE(steady_state_ekf_design(&motor, period_s, &paper, error));
             TEST_ASSERT_FALSE(invariant_ekf_motion_design(&motor, period_s, &gains, error));
             TEST_ASSERT_FALSE(invariant_ekf_hold_design(&motor, period_s, 1.5,
-                                                        INVARIANT_EKF_HOLD_ROBUST, &gains, error));
+                                                        INVARIANT_EKF_HOLD_QUIET, &gains, error));
             *fields[i] = good;
         }
     }
@@ -309,7 +309,7 @@ static void a_hold_without_current_is_refused(void)
     struct invariant_ekf_gains gains;
 
     TEST_ASSERT_FALSE(
-        invariant_ekf_hold_design(&motor, period_s, 0.0, INVARIANT_EKF_HOLD_ROBUST, &gains, error));
+        invariant_ekf_hold_design(&motor, period_s, 0.0, INVARIANT_EKF_HOLD_QUIET, &gains, error));
     TEST_ASSERT_EQUAL_STRING("hold current 0 A: must be above 0 A, and finite", error);
 }
 
@@ -383,41 +383,41 @@ static void motion_gains_are_the_optimum_found_for_the_reference_motor(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, -0.001789, gains.k_angle_q_rad_A);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.119719, gains.k_load_q_Nm_A);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0, gains.angle_d_full_speed_rad_s);
-    TEST_ASSERT_TRUE(gains.k_bias_d_V_A == 0.0 && gains.k_bias_q_V_A == 0.0);
-    TEST_ASSERT_TRUE(gains.bias_decay == 0.0 && gains.load_decay == 1.0);
-    TEST_ASSERT_TRUE(gains.k_resistance_ohm_AV == 0.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-8, -0.00618984, gains.k_bias_d_V_A);
+    TEST_ASSERT_TRUE(gains.k_bias_q_V_A == 0.0 && gains.k_resistance_ohm_A2 == 0.0);
+    TEST_ASSERT_TRUE(gains.load_return == 0.0 && gains.load_settle == 0.0);
 }
 
-static void robust_hold_gains_are_the_optimum_found_for_the_reference_motor(void)
+static void quiet_hold_gains_of_the_reference_motor(void)
 {
     struct invariant_ekf_gains gains;
 
     TEST_ASSERT_TRUE(
-        invariant_ekf_hold_design(&motor, period_s, 1.5, INVARIANT_EKF_HOLD_ROBUST, &gains, error));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.66778, gains.k_current_d);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.66294, gains.k_current_q);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, -2.01213, gains.k_speed_q_rad_As);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.00774, gains.k_angle_q_rad_A);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.07165, gains.k_load_q_Nm_A);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, -0.46086, gains.k_bias_d_V_A);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, -0.18097, gains.k_bias_q_V_A);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.99800199866733308, gains.bias_decay);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 2e-3, gains.k_resistance_ohm_AV);
-    TEST_ASSERT_TRUE(gains.k_angle_d_rad_A == 0.0);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.99995000124997917, gains.load_decay);
+        invariant_ekf_hold_design(&motor, period_s, 1.5, INVARIANT_EKF_HOLD_QUIET, &gains, error));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.63534, gains.k_current_d);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.65847, gains.k_current_q);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, -2.67109, gains.k_speed_q_rad_As);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, -0.0031749, gains.k_angle_q_rad_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.18360, gains.k_load_q_Nm_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -0.038814, gains.k_bias_q_V_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -0.011943, gains.k_resistance_ohm_A2);
+    TEST_ASSERT_TRUE(gains.k_angle_d_rad_A == 0.0 && gains.k_bias_d_V_A == 0.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.003327784, gains.load_return); /* 1 - exp(-0.1/30) */
+    TEST_ASSERT_TRUE(gains.load_settle == 0.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.015, gains.load_step_Nm);
 }
 
-static void fast_hold_follows_the_load_and_lets_it_leak(void)
+static void a_hold_that_follows_leaves_the_offset_alone_and_lets_no_load_return(void)
 {
     struct invariant_ekf_gains gains;
 
-    TEST_ASSERT_TRUE(
-        invariant_ekf_hold_design(&motor, period_s, 1.5, INVARIANT_EKF_HOLD_FAST, &gains, error));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-4, -5.1445, gains.k_speed_q_rad_As);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, -0.00159, gains.k_angle_q_rad_A);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-4, 0.5471, gains.k_load_q_Nm_A);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, -0.00987, gains.k_bias_q_V_A);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.99900049983337499, gains.load_decay);
+    TEST_ASSERT_TRUE(invariant_ekf_hold_design(&motor, period_s, 1.5, INVARIANT_EKF_HOLD_FOLLOWING,
+                                               &gains, error));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, -4.02955, gains.k_speed_q_rad_As);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, -0.0036143, gains.k_angle_q_rad_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.36652, gains.k_load_q_Nm_A);
+    TEST_ASSERT_TRUE(gains.k_bias_q_V_A == 0.0 && gains.load_return == 0.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.048770575, gains.load_settle); /* 1 - exp(-0.1/2) */
 }
 
 int main(void)
@@ -446,7 +446,7 @@ int main(void)
     RUN_TEST(a_long_refusal_is_cut_to_fit);
     RUN_TEST(paper_gain_at_standstill_is_the_one_extracted);
     RUN_TEST(motion_gains_are_the_optimum_found_for_the_reference_motor);
-    RUN_TEST(robust_hold_gains_are_the_optimum_found_for_the_reference_motor);
-    RUN_TEST(fast_hold_follows_the_load_and_lets_it_leak);
+    RUN_TEST(quiet_hold_gains_of_the_reference_motor);
+    RUN_TEST(a_hold_that_follows_leaves_the_offset_alone_and_lets_no_load_return);
     return UNITY_END();
 }

@@ -175,10 +175,11 @@ static void test_the_rated_current_has_a_range_of_its_own(void)
 static void test_names_are_spelt_as_scenarios_and_the_serial_line_do(void)
 {
     static const char *const states[DRIVE_STATES] = {"switch-on-disabled", "calibrating-offsets",
-                                                     "aligning", "operation-enabled", "fault"};
+                                                     "finding-position",   "aligning",
+                                                     "operation-enabled",  "fault"};
     static const char *const faults[DRIVE_FAULTS] = {
-        "none",        "overcurrent",    "hardware-overcurrent", "deadline-missed",
-        "bus-voltage", "estimate-range", "offset-range"};
+        "none",           "overcurrent",  "hardware-overcurrent", "deadline-missed",  "bus-voltage",
+        "estimate-range", "offset-range", "position-not-found",   "lost-synchronism", "stalled"};
 
     for (int i = 0; i < DRIVE_STATES; i++) {
         TEST_ASSERT_EQUAL_STRING(states[i], drive_state_name((enum drive_state)i));
@@ -188,6 +189,11 @@ static void test_names_are_spelt_as_scenarios_and_the_serial_line_do(void)
     }
     TEST_ASSERT_EQUAL_STRING("state-feedback", drive_law_name(POSITION_LAW_STATE_FEEDBACK));
     TEST_ASSERT_EQUAL_STRING("pid", drive_law_name(POSITION_LAW_PID));
+    TEST_ASSERT_EQUAL_STRING("commanded", drive_voltage_source_name(DRIVE_VOLTAGE_COMMANDED));
+    TEST_ASSERT_EQUAL_STRING("impulses",
+                             drive_initial_position_name(DRIVE_INITIAL_POSITION_IMPULSES));
+    TEST_ASSERT_EQUAL_STRING("warn", drive_synchronism_policy_name(DRIVE_SYNCHRONISM_WARN));
+    TEST_ASSERT_EQUAL_STRING("doubtful", drive_synchronism_name(DRIVE_SYNCHRONISM_DOUBTFUL));
     TEST_ASSERT_EQUAL_STRING("invariant-ekf", drive_estimator_name(DRIVE_ESTIMATOR_INVARIANT_EKF));
     TEST_ASSERT_EQUAL_STRING("steady-state-ekf",
                              drive_estimator_name(DRIVE_ESTIMATOR_STEADY_STATE_EKF));

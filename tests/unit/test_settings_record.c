@@ -49,11 +49,12 @@ static struct stored_settings peculiar(void)
                                &d->hold_delay_s,
                                &d->hold_bandwidth_rad_s,
                                &d->initial_angle_rad,
-                               &d->initial_angle_error_rad};
+                               &d->initial_angle_error_rad,
+                               &d->motion_current_A};
     bool *const flags[] = {
         &d->feed_forward,          &d->detent_learning,    &d->bridge_loss_compensation,
         &d->resistance_adaptation, &d->encoder_zero_known, &d->calibrate_offsets,
-        &d->hold_on_enable,        &d->hold_at_rest};
+        &d->hold_on_enable,        &d->hold_at_rest,       &d->standstill_pulses};
 
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++, next += 0.7) {
         *numbers[i] = next;
@@ -72,6 +73,9 @@ static struct stored_settings peculiar(void)
     d->feedback = DRIVE_FEEDBACK_ENCODER;
     d->estimator = DRIVE_ESTIMATOR_STEADY_STATE_EKF;
     d->observer = DRIVE_OBSERVER_HIGH_GAIN;
+    d->voltage_source = DRIVE_VOLTAGE_COMMANDED;
+    d->initial_position = DRIVE_INITIAL_POSITION_IMPULSES;
+    d->synchronism_policy = DRIVE_SYNCHRONISM_WARN;
     return s;
 }
 
@@ -104,6 +108,9 @@ static void test_every_field_comes_back(void)
     TEST_ASSERT_TRUE(out.drive.detent_torque_Nm[5] == in.drive.detent_torque_Nm[5]);
     TEST_ASSERT_EQUAL_INT(POSITION_LAW_FEEDBACK_LINEARISATION, out.drive.law);
     TEST_ASSERT_EQUAL_INT(DRIVE_OBSERVER_HIGH_GAIN, out.drive.observer);
+    TEST_ASSERT_EQUAL_INT(DRIVE_VOLTAGE_COMMANDED, out.drive.voltage_source);
+    TEST_ASSERT_EQUAL_INT(DRIVE_INITIAL_POSITION_IMPULSES, out.drive.initial_position);
+    TEST_ASSERT_EQUAL_INT(DRIVE_SYNCHRONISM_WARN, out.drive.synchronism_policy);
     TEST_ASSERT_FALSE(out.drive.hold_on_enable);
     TEST_ASSERT_TRUE(out.drive.encoder_zero_known);
     assert_same(&in, &out);
@@ -118,11 +125,11 @@ static void test_every_field_has_its_own_place(void)
 
     settings_record_encode(&in, 7, record);
     for (size_t i = RECORD_HEADER_BYTES; i < RECORD_HEADER_BYTES + SETTINGS_RECORD_PAYLOAD; i++) {
-        if (i >= 72u && i < 76u) {
+        if (i >= 72u && i < 80u) {
             continue; /* choices */
         }
-        if (i > 76u && i < 80u) {
-            continue; /* flags: eight are in use */
+        if (i > 81u && i < 88u) {
+            continue; /* flags: nine are in use */
         }
         uint8_t harmed[SETTINGS_RECORD_BYTES];
 
@@ -147,9 +154,9 @@ static void test_the_layout_stays(void)
 {
     struct stored_settings in = peculiar();
     uint8_t record[SETTINGS_RECORD_BYTES];
-    static const uint8_t head[] = {0x02, 0x53, 0x64, 0x01, 0x04, 0x03, 0x02, 0x01};
+    static const uint8_t head[] = {0x03, 0x53, 0x74, 0x01, 0x04, 0x03, 0x02, 0x01};
     static const uint8_t one[] = {0, 0, 0, 0, 0, 0, 0xf0, 0x3f};
-    static const uint8_t choices[] = {POSITION_LAW_FEEDBACK_LINEARISATION, 1, 1, 1};
+    static const uint8_t choices[] = {POSITION_LAW_FEEDBACK_LINEARISATION, 1, 1, 1, 1, 1, 1, 0};
     const uint8_t *payload = &record[RECORD_HEADER_BYTES];
 
     in.drive.motor.supply_V = 1.0;
@@ -159,9 +166,10 @@ static void test_the_layout_stays(void)
     TEST_ASSERT_EQUAL_UINT8_ARRAY(one, &payload[48], sizeof one);
     TEST_ASSERT_EQUAL_UINT8(0x40, payload[61]);
     TEST_ASSERT_EQUAL_UINT8_ARRAY(choices, &payload[64], sizeof choices);
-    TEST_ASSERT_EQUAL_UINT8(0x12, payload[68]); /* detent learning, zero known */
-    TEST_ASSERT_EQUAL_UINT8_ARRAY(one, &payload[168], sizeof one);
-    TEST_ASSERT_EQUAL_INT(344, SETTINGS_RECORD_PAYLOAD);
+    TEST_ASSERT_EQUAL_UINT8(0x12, payload[72]); /* detent learning, zero known */
+    TEST_ASSERT_EQUAL_UINT8(0x01, payload[73]); /* standstill pulses */
+    TEST_ASSERT_EQUAL_UINT8_ARRAY(one, &payload[176], sizeof one);
+    TEST_ASSERT_EQUAL_INT(360, SETTINGS_RECORD_PAYLOAD);
 }
 
 static void test_an_unknown_law_is_no_record(void)
@@ -172,7 +180,7 @@ static void test_an_unknown_law_is_no_record(void)
     struct stored_settings out;
     uint8_t record[SETTINGS_RECORD_BYTES];
 
-    for (int choice = 0; choice < 4; choice++) {
+    for (int choice = 0; choice < 7; choice++) {
         settings_record_encode(&in, 1, record);
         record[RECORD_HEADER_BYTES + 64 + choice] = 200;
         record_seal(&log, record, 1);

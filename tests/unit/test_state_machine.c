@@ -1,6 +1,7 @@
 /* The states of the drive and what leads from one to the next, on a board where nothing moves. */
 #include <string.h>
 
+#include "firmware/drive/state_machine.h"
 #include "tests/unit/fake_board.h"
 #include "tests/unit/num_assert.h"
 
@@ -20,6 +21,7 @@ static void power_up(void)
 void setUp(void)
 {
     drive_settings_default(&settings, &bench_params);
+    settings.synchronism_policy = DRIVE_SYNCHRONISM_OFF; /* the rotor here follows nothing */
     settings.hold_on_enable_s = HOLD_PERIODS * PERIOD_S;
     fake_board = (struct fake_board){.trip_latched = false};
     samples = samples_at_rest;
@@ -282,7 +284,7 @@ static void test_enabling_begins_with_all_blocks_at_rest(void)
     TEST_ASSERT_FALSE(drive.reference.next.moving);
 }
 
-/* ---- disabling ---- */
+/* ---- finding the position ---- */
 
 static void disabling_works_at_once(void)
 {
@@ -293,6 +295,87 @@ static void disabling_works_at_once(void)
     is_in(DRIVE_SWITCH_ON_DISABLED, false);
     TEST_ASSERT_EQUAL(DRIVE_FAULT_NONE, signals().fault);
 }
+
+/* On this board no current flows: that is not taken for a position. */
+static void begin_finding(void)
+{
+    settings.calibrate_offsets = false;
+    settings.initial_position = DRIVE_INITIAL_POSITION_IMPULSES;
+    power_up();
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(1);
+    is_in(DRIVE_FINDING_POSITION, true);
+}
+
+static void test_a_position_that_cannot_be_found_is_a_fault_with_a_name(void)
+{
+    begin_finding();
+    run(400);
+    has_fault(DRIVE_FAULT_POSITION_NOT_FOUND);
+    disabling_works_at_once();
+}
+
+static void test_finding_the_position_follows_the_offsets(void)
+{
+    settings.initial_position = DRIVE_INITIAL_POSITION_IMPULSES;
+    power_up();
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(OFFSET_SAMPLES - 1u);
+    is_in(DRIVE_CALIBRATING_OFFSETS, false);
+    run(1);
+    is_in(DRIVE_FINDING_POSITION, true);
+}
+
+static void test_a_fault_opens_the_bridge_while_the_position_is_found(void)
+{
+    begin_finding();
+    samples.current_a = 4000;
+    run(1);
+    has_fault(DRIVE_FAULT_OVERCURRENT);
+    samples = samples_at_rest;
+    begin_finding();
+    samples.bus_voltage = 1000;
+    run(1);
+    has_fault(DRIVE_FAULT_BUS_VOLTAGE);
+}
+
+static void test_finding_the_position_can_be_ended_at_once(void)
+{
+    begin_finding();
+    run(100); /* into the impulses */
+    disabling_works_at_once();
+}
+
+static void test_motion_is_refused_until_the_position_is_found(void)
+{
+    begin_finding();
+    TEST_ASSERT_FALSE(post(move_to(0.1)));
+    TEST_ASSERT_NOT_NULL(strstr(error, "where it starts is known only then"));
+}
+
+/* What is found is the angle; the turn is that of the angle told. */
+static void the_start_is(double told_rad, double found_turns, double expected_rad)
+{
+    settings.initial_angle_rad = told_rad;
+    begin_finding();
+    state_machine_position_found(&drive, (angle_t)(int64_t)(found_turns * 4294967296.0));
+    is_in(DRIVE_ALIGNING, true);
+    the_reference_is_at(expected_rad);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-8, expected_rad, signals().theta_est_rad);
+}
+
+static void test_the_rotor_is_in_the_electrical_turn_nearest_to_the_angle_told(void)
+{
+    const double turn_rad = TWO_PI / 50.0;
+
+    the_start_is(0.0, 0.1, 0.1 * turn_rad);
+    the_start_is(0.0, 0.9, -0.1 * turn_rad);
+    the_start_is(7.0 * turn_rad, 0.2, 7.2 * turn_rad);
+    the_start_is(-3.4 * turn_rad, 0.99, -3.01 * turn_rad);
+    the_start_is(-3.4 * turn_rad, 0.2, -3.8 * turn_rad);
+}
+
+/* ---- disabling ---- */
 
 static void test_a_drive_can_be_disabled_from_everywhere(void)
 {
@@ -723,6 +806,12 @@ int main(void)
     RUN_TEST(test_a_drive_starts_at_the_angle_it_is_told);
     RUN_TEST(test_enabling_an_enabled_drive_changes_nothing);
     RUN_TEST(test_enabling_begins_with_all_blocks_at_rest);
+    RUN_TEST(test_a_position_that_cannot_be_found_is_a_fault_with_a_name);
+    RUN_TEST(test_finding_the_position_follows_the_offsets);
+    RUN_TEST(test_a_fault_opens_the_bridge_while_the_position_is_found);
+    RUN_TEST(test_finding_the_position_can_be_ended_at_once);
+    RUN_TEST(test_motion_is_refused_until_the_position_is_found);
+    RUN_TEST(test_the_rotor_is_in_the_electrical_turn_nearest_to_the_angle_told);
     RUN_TEST(test_a_drive_can_be_disabled_from_everywhere);
     RUN_TEST(test_a_disable_flushes_the_moves_before_it);
     RUN_TEST(test_after_disabling_the_drive_can_be_enabled_and_moved_again);

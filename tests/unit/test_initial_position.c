@@ -1,0 +1,394 @@
+/*
+ * The rotor found by impulses and by alignment, on a motor whose phases saturate: flux and rotor
+ * as in sil/plant/magnetics.h without harmonics and detent, a bridge without dead time.
+ */
+#include <string.h>
+
+#include "firmware/estimator/initial_position.h"
+#include "tests/unit/bench.h"
+#include "tests/unit/num_assert.h"
+
+enum { STEPS = 40 }; /* of a period */
+
+#define DEGREE   (TWO_PI / 360.0)
+#define TRIP_A   5.4
+#define CODE_A   (12.0 / 4096.0)
+#define MAGNET_A 3.46
+#define FRICTION 10e-3 /* N m, Coulomb */
+#define OFFSET_A 0.009
+#define OFFSET_V 0.005
+
+/* Flux linkages over L0, A: x of i = x + b x^3 - I_f m. */
+struct saturable {
+    double saturation; /* b, 1/A^2; 0.00095 is a depth of 10 % */
+    double x_a, x_b;
+    double angle; /* electrical */
+    double speed; /* mechanical */
+    double inertia_kgm2;
+    double friction_Nm;
+    double resistance_ohm;
+    bool broken_a;   /* an open winding */
+    double u_a, u_b; /* means over the past period */
+    double furthest; /* largest motion, electrical rad */
+    double began;
+    double peak_A;
+};
+
+static struct per_unit base;
+static struct initial_position_params params;
+static struct initial_position finding;
+static struct saturable motor;
+static char error[DESIGN_ERROR_TEXT];
+static uint32_t periods;
+
+static double flux_of(double x, double saturation) /* x + b x^3 = its argument */
+{
+    double y = x;
+
+    for (int i = 0; i < 40; i++) {
+        y -= (y + saturation * y * y * y - x) / (1.0 + 3.0 * saturation * y * y);
+    }
+    return y;
+}
+
+static double current_a(void)
+{
+    return motor.x_a + motor.saturation * motor.x_a * motor.x_a * motor.x_a -
+           MAGNET_A * cos(motor.angle);
+}
+
+static double current_b(void)
+{
+    return motor.x_b + motor.saturation * motor.x_b * motor.x_b * motor.x_b -
+           MAGNET_A * sin(motor.angle);
+}
+
+static void place(double angle_rad)
+{
+    motor.angle = motor.began = angle_rad;
+    motor.x_a = flux_of(MAGNET_A * cos(angle_rad), motor.saturation);
+    motor.x_b = flux_of(MAGNET_A * sin(angle_rad), motor.saturation);
+}
+
+/* With the bridge off the diodes drive the current to zero, and hold it there. */
+static double diode_voltage(double current)
+{
+    return current > 0.0 ? -26.0 : 26.0;
+}
+
+static void run_motor(bool on, double u_a, double u_b)
+{
+    const struct motor_params *p = &bench_params;
+    const double dt = PERIOD_S / STEPS;
+    const double per_L = dt / p->inductance_H;
+
+    motor.u_a = motor.u_b = 0.0;
+    for (int step = 0; step < STEPS; step++) {
+        const double i_a = current_a();
+        const double i_b = current_b();
+        const double v_a = on ? u_a : diode_voltage(i_a);
+        const double v_b = on ? u_b : diode_voltage(i_b);
+        const double torque = (double)p->rotor_teeth * p->inductance_H * MAGNET_A *
+                              (-motor.x_a * sin(motor.angle) + motor.x_b * cos(motor.angle));
+        double slowed;
+
+        motor.x_a += per_L * (v_a - motor.resistance_ohm * i_a);
+        motor.x_b += per_L * (v_b - motor.resistance_ohm * i_b);
+        if (motor.broken_a || (!on && i_a * current_a() <= 0.0)) {
+            motor.x_a = flux_of(MAGNET_A * cos(motor.angle), motor.saturation);
+        }
+        if (!on && i_b * current_b() <= 0.0) {
+            motor.x_b = flux_of(MAGNET_A * sin(motor.angle), motor.saturation);
+        }
+        motor.speed += dt * torque / motor.inertia_kgm2;
+        slowed = dt * motor.friction_Nm / motor.inertia_kgm2;
+        motor.speed =
+            fabs(motor.speed) < slowed ? 0.0 : motor.speed - copysign(slowed, motor.speed);
+        motor.angle += dt * motor.speed * (double)p->rotor_teeth;
+        motor.u_a += v_a / STEPS;
+        motor.u_b += v_b / STEPS;
+        motor.furthest = fmax(motor.furthest, fabs(motor.angle - motor.began));
+        motor.peak_A = fmax(motor.peak_A, fmax(fabs(current_a()), fabs(current_b())));
+    }
+}
+
+static bool design(const struct motor_params *p, double trip_A, enum impulse_order order)
+{
+    struct motor_model_params model;
+    const struct initial_position_task task = {
+        .period_s = PERIOD_S,
+        .order = order,
+        .current_A_per_code = CODE_A,
+        .current_range_A = 6.0,
+        .overcurrent_trip_A = trip_A,
+        .hold_current_A = 1.5,
+        .hold_ramp_s = 0.01,
+    };
+
+    base = per_unit_base(p, PERIOD_S);
+    model = motor_model_design(p, &base, PERIOD_S, 0.0);
+    return initial_position_design(&params, &model, p, &base, &task, error);
+}
+
+void setUp(void)
+{
+    motor = (struct saturable){.saturation = 0.00095,
+                               .inertia_kgm2 = bench_params.inertia_kgm2,
+                               .friction_Nm = FRICTION,
+                               .resistance_ohm = bench_params.resistance_ohm};
+    TEST_ASSERT_TRUE_MESSAGE(design(&bench_params, TRIP_A, IMPULSE_ORDER_PALINDROMIC), error);
+}
+
+void tearDown(void)
+{
+}
+
+/* Whole codes of the converter. */
+static double sampled(double current_A)
+{
+    return CODE_A * floor(current_A / CODE_A + 0.5);
+}
+
+/* Until it is found, or not. What is returned at S(k) acts from S(k+1) on, but off at once. */
+static void find(double home_rad)
+{
+    struct initial_position_output now = {.bridge_on = false};
+    struct initial_position_output next;
+    bool was_on = false;
+
+    initial_position_start(&finding, &params, (angle_t)(int64_t)(home_rad / TWO_PI * 4294967296.0));
+    for (periods = 0; !initial_position_done(&finding); periods++) {
+        const double offset_A = was_on ? OFFSET_A : 0.0;
+        const double offset_V = was_on ? OFFSET_V : 0.0;
+
+        next = initial_position_step(
+            &finding, &params,
+            bench_phases(sampled(current_a() + offset_A), sampled(current_b() - offset_A),
+                         base.current_A),
+            bench_phases(motor.u_a + offset_V, motor.u_b + offset_V, base.voltage_V));
+        was_on = now.bridge_on && next.bridge_on;
+        run_motor(was_on, num_to_double(now.voltage.a) * base.voltage_V,
+                  num_to_double(now.voltage.b) * base.voltage_V);
+        now = next;
+        TEST_ASSERT_TRUE_MESSAGE(periods < 20000u, "it never ends");
+    }
+}
+
+static double error_degrees(void)
+{
+    return remainder((double)finding.angle / 4294967296.0 * TWO_PI - motor.angle, TWO_PI) / DEGREE;
+}
+
+static void is_found_by_impulses(void)
+{
+    TEST_ASSERT_EQUAL(INITIAL_POSITION_FOUND, finding.stage);
+    TEST_ASSERT_TRUE(finding.by_impulses);
+}
+
+static double confidence(void)
+{
+    return num_to_double(finding.asymmetry) / num_to_double(finding.uncertainty);
+}
+
+/* ---- impulses ---- */
+
+static void test_impulses_find_the_rotor_all_around_and_leave_it_where_it_was(void)
+{
+    for (int step = 0; step < 24; step++) {
+        setUp();
+        place((15.0 * step + 4.0) * DEGREE);
+        find(0.0);
+        is_found_by_impulses();
+        TEST_ASSERT_DOUBLE_WITHIN(3.0, 0.0, error_degrees());
+        TEST_ASSERT_DOUBLE_WITHIN(1.0, 0.0, (motor.angle - motor.began) / DEGREE);
+        TEST_ASSERT_TRUE(motor.furthest < 2.0 * DEGREE);
+        TEST_ASSERT_TRUE(confidence() > 12.0);
+    }
+}
+
+/* 6 beta L0 I_f Delta^2 of the header; with b = beta L0^3 and Delta = L0 i. */
+static void test_the_asymmetry_is_what_saturation_makes(void)
+{
+    double peak;
+
+    place(0.0);
+    motor.inertia_kgm2 = IMPOSED_SPEED;
+    find(0.0);
+    is_found_by_impulses();
+    peak = 0.7 * TRIP_A;
+    TEST_ASSERT_DOUBLE_WITHIN(0.15, 1.0,
+                              num_to_double(finding.asymmetry) * base.current_A / 8.0 /
+                                  (3.0 * motor.saturation * MAGNET_A * peak * peak));
+}
+
+static void test_no_impulse_reaches_the_overcurrent_trip(void)
+{
+    for (int step = 0; step < 8; step++) {
+        setUp();
+        motor.saturation = 0.00095 * 3.0;
+        place(45.0 * step * DEGREE);
+        find(0.0);
+        is_found_by_impulses();
+        TEST_ASSERT_TRUE(motor.peak_A > 0.6 * TRIP_A);
+        TEST_ASSERT_TRUE(motor.peak_A < 0.9 * TRIP_A);
+    }
+}
+
+static void test_a_lower_trip_makes_smaller_impulses(void)
+{
+    TEST_ASSERT_TRUE_MESSAGE(design(&bench_params, 2.4, IMPULSE_ORDER_PALINDROMIC), error);
+    place(1.0);
+    find(0.0);
+    is_found_by_impulses();
+    TEST_ASSERT_TRUE(motor.peak_A < 0.9 * 2.4);
+    TEST_ASSERT_DOUBLE_WITHIN(6.0, 0.0, error_degrees());
+}
+
+static void test_wrong_motor_parameters_leave_no_error(void)
+{
+    struct motor_params wrong = bench_params;
+
+    wrong.inductance_H *= 1.1;
+    wrong.resistance_ohm *= 0.5;
+    TEST_ASSERT_TRUE_MESSAGE(design(&wrong, TRIP_A, IMPULSE_ORDER_PALINDROMIC), error);
+    place(1.0);
+    find(0.0);
+    is_found_by_impulses();
+    TEST_ASSERT_DOUBLE_WITHIN(2.0, 0.0, error_degrees());
+}
+
+/* The first impulse of a pair pushes the rotor, most at 45 degrees. */
+static void test_the_published_order_errs_where_the_rotor_turns(void)
+{
+    double palindromic;
+
+    place(2.4);
+    find(0.0);
+    palindromic = fabs(error_degrees());
+    setUp();
+    TEST_ASSERT_TRUE_MESSAGE(design(&bench_params, TRIP_A, IMPULSE_ORDER_PUBLISHED), error);
+    place(2.4);
+    find(0.0);
+    is_found_by_impulses();
+    TEST_ASSERT_TRUE(fabs(error_degrees()) > palindromic + 1.0);
+    TEST_ASSERT_DOUBLE_WITHIN(15.0, 0.0, error_degrees());
+    setUp();
+    motor.inertia_kgm2 = IMPOSED_SPEED;
+    TEST_ASSERT_TRUE_MESSAGE(design(&bench_params, TRIP_A, IMPULSE_ORDER_PUBLISHED), error);
+    place(2.4);
+    find(0.0);
+    TEST_ASSERT_DOUBLE_WITHIN(2.5, 0.0, error_degrees());
+}
+
+static void test_a_rotor_that_turns_is_waited_for(void)
+{
+    place(0.5);
+    motor.speed = 6.0;
+    motor.friction_Nm = 80e-3;
+    find(0.0);
+    is_found_by_impulses();
+    TEST_ASSERT_TRUE(finding.repetitions > 0u);
+    TEST_ASSERT_DOUBLE_WITHIN(3.5, 0.0, error_degrees());
+}
+
+static void test_an_open_winding_is_not_taken_for_a_position(void)
+{
+    motor.broken_a = true;
+    place(0.5);
+    find(0.0);
+    TEST_ASSERT_EQUAL(INITIAL_POSITION_NOT_FOUND, finding.stage);
+    TEST_ASSERT_TRUE(periods < 300u);
+}
+
+static void test_a_motor_that_no_impulse_can_fill_is_refused(void)
+{
+    struct motor_params large = bench_params;
+
+    large.inductance_H = 1.0;
+    TEST_ASSERT_FALSE(design(&large, TRIP_A, IMPULSE_ORDER_PALINDROMIC));
+    TEST_ASSERT_NOT_NULL(strstr(error, "initial position impulse"));
+}
+
+/* ---- alignment ---- */
+
+static void is_found_by_alignment(void)
+{
+    TEST_ASSERT_EQUAL(INITIAL_POSITION_FOUND, finding.stage);
+    TEST_ASSERT_FALSE(finding.by_impulses);
+}
+
+static void test_without_saturation_the_rotor_is_drawn_home(void)
+{
+    for (int step = 0; step < 12; step++) {
+        setUp();
+        motor.saturation = 0.0;
+        place((30.0 * step + 7.0) * DEGREE);
+        find(1.0);
+        is_found_by_alignment();
+        TEST_ASSERT_TRUE(confidence() < 5.0);
+        TEST_ASSERT_DOUBLE_WITHIN(3.0, 0.0, error_degrees());
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.0 / TWO_PI, (double)finding.angle / 4294967296.0);
+    }
+}
+
+/* Exactly opposite, the vector does not pull before it has turned. */
+static void test_the_alignment_leaves_the_angle_without_torque(void)
+{
+    motor.saturation = 0.0;
+    place(1.0 + 0.5 * TWO_PI);
+    find(1.0);
+    is_found_by_alignment();
+    TEST_ASSERT_DOUBLE_WITHIN(3.0, 0.0, error_degrees());
+}
+
+static void test_the_alignment_bears_a_wrong_resistance(void)
+{
+    for (int i = 0; i < 2; i++) {
+        setUp();
+        motor.saturation = 0.0;
+        motor.resistance_ohm = bench_params.resistance_ohm * (i == 0 ? 0.5 : 1.5);
+        place(2.0);
+        find(1.0);
+        is_found_by_alignment();
+        TEST_ASSERT_DOUBLE_WITHIN(5.5, 0.0, error_degrees());
+    }
+}
+
+static void test_the_alignment_is_gentle(void)
+{
+    motor.saturation = 0.0;
+    place(2.0);
+    find(1.0);
+    is_found_by_alignment();
+    TEST_ASSERT_DOUBLE_WITHIN(0.02, 1.5 / base.current_A, num_to_double(finding.current_reference));
+    TEST_ASSERT_TRUE(fabs(motor.speed) < 0.05);
+}
+
+static void test_a_rotor_that_does_not_follow_is_not_found(void)
+{
+    motor.saturation = 0.0;
+    motor.friction_Nm = 1.0;
+    place(1.1);
+    find(1.0);
+    TEST_ASSERT_EQUAL(INITIAL_POSITION_NOT_FOUND, finding.stage);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_impulses_find_the_rotor_all_around_and_leave_it_where_it_was);
+    RUN_TEST(test_the_asymmetry_is_what_saturation_makes);
+    RUN_TEST(test_no_impulse_reaches_the_overcurrent_trip);
+    RUN_TEST(test_a_lower_trip_makes_smaller_impulses);
+    RUN_TEST(test_wrong_motor_parameters_leave_no_error);
+    RUN_TEST(test_the_published_order_errs_where_the_rotor_turns);
+    RUN_TEST(test_a_rotor_that_turns_is_waited_for);
+    RUN_TEST(test_an_open_winding_is_not_taken_for_a_position);
+    RUN_TEST(test_a_motor_that_no_impulse_can_fill_is_refused);
+    RUN_TEST(test_without_saturation_the_rotor_is_drawn_home);
+    RUN_TEST(test_the_alignment_leaves_the_angle_without_torque);
+    RUN_TEST(test_the_alignment_bears_a_wrong_resistance);
+    RUN_TEST(test_the_alignment_is_gentle);
+    RUN_TEST(test_a_rotor_that_does_not_follow_is_not_found);
+    return UNITY_END();
+}

@@ -1,0 +1,190 @@
+/*
+ * Pulses on the hold show the angle of a rotor that a load has displaced: the flux of each phase as
+ * in sil/plant/magnetics.h, a bridge without dead time, a hold that keeps its voltage.
+ */
+#include "firmware/estimator/standstill_pulses.h"
+#include "tests/unit/bench.h"
+#include "tests/unit/num_assert.h"
+
+#define DEGREE     (TWO_PI / 360.0)
+#define MAGNET_A   3.488 /* Km / (N L) */
+#define SATURATION 0.00095
+#define HOLD_A     1.5
+#define IMPULSE_A  3.78
+
+static struct per_unit base;
+static struct motor_model_params model;
+static struct standstill_pulses_params params;
+static struct standstill_pulses pulses;
+
+/* Of one phase: flux linkage over L, A; the rotor stands. */
+struct winding_bench {
+    double x;
+    double magnet_A; /* share of I_f along the phase */
+};
+
+static double current_of(const struct winding_bench *w)
+{
+    return w->x + SATURATION * w->x * w->x * w->x - w->magnet_A;
+}
+
+static void settle(struct winding_bench *w, double magnet_A, double current_A)
+{
+    w->magnet_A = magnet_A;
+    w->x = magnet_A + current_A;
+    for (int i = 0; i < 50; i++) {
+        w->x -= (current_of(w) - current_A) / (1.0 + 3.0 * SATURATION * w->x * w->x);
+    }
+}
+
+static void drive(struct winding_bench *w, double voltage_V)
+{
+    for (int step = 0; step < 100; step++) {
+        w->x += PERIOD_S / 100.0 / bench_params.inductance_H *
+                (voltage_V - bench_params.resistance_ohm * current_of(w));
+    }
+}
+
+void setUp(void)
+{
+    const struct standstill_pulses_task task = {
+        .period_s = PERIOD_S,
+        .peak_A = 4.3,
+        .current_max_A = 4.75,
+        .hold_current_A = HOLD_A,
+        .hold_ramp_s = 0.01,
+        .impulse_peak_A = IMPULSE_A,
+    };
+    /* What impulses of 3.78 A show of this motor: 3 b I_f i^2, eight times. */
+    const double asymmetry_A = 8.0 * 3.0 * SATURATION * 3.45 * IMPULSE_A * IMPULSE_A;
+
+    base = per_unit_base(&bench_params, PERIOD_S);
+    model = motor_model_design(&bench_params, &base, PERIOD_S, 0.0);
+    standstill_pulses_design(&params, &model, &bench_params, &base, &task);
+    standstill_pulses_reset(&pulses, &params, num_from_double(asymmetry_A / base.current_A));
+}
+
+void tearDown(void)
+{
+}
+
+/* A hold at angle 0 with the rotor displaced; the estimator's current is the true one outside the
+   pulses, the model's within. */
+static struct standstill_angle look(double rotor_rad, uint32_t *periods)
+{
+    const double hold_V = bench_params.resistance_ohm * HOLD_A;
+    struct winding winding;
+    struct winding_bench a, b;
+    struct phases estimated = {NUM(0.0), NUM(0.0)};
+    struct phases command = {num_from_double(hold_V / base.voltage_V), NUM(0.0)};
+    struct phases in_force = command;
+
+    winding_set_resistance(&winding, &model, model.nominal_resistance);
+    settle(&a, MAGNET_A * cos(rotor_rad), HOLD_A);
+    settle(&b, MAGNET_A * sin(rotor_rad), 0.0);
+    for (*periods = 0; *periods < 2000u; (*periods)++) {
+        const struct phases measured = bench_phases(current_of(&a), current_of(&b), base.current_A);
+        struct phases wanted = {num_from_double(hold_V / base.voltage_V), NUM(0.0)};
+        struct standstill_angle found;
+
+        if (standstill_pulses_hides_sample(&pulses, &params)) {
+            static const struct sincos no_turn = {UNIT(1.0), UNIT(0.0)};
+
+            estimated = forced_current(
+                &winding, free_current(&model, &winding, estimated, NUM(0.0), no_turn), in_force);
+            standstill_pulses_sample(&pulses, &params, measured, estimated);
+        } else {
+            estimated = measured;
+        }
+        (void)standstill_pulses_add(&pulses, &params, estimated, &wanted);
+        found = standstill_pulses_result(&pulses, &params);
+        if (found.found || (pulses.at_rest && *periods > 400u)) {
+            return found;
+        }
+        in_force = command;
+        drive(&a, num_to_double(command.a) * base.voltage_V);
+        drive(&b, num_to_double(command.b) * base.voltage_V);
+        command = wanted;
+    }
+    return (struct standstill_angle){.found = false};
+}
+
+static double degrees_of(angle_t angle)
+{
+    return (double)(int32_t)angle / 4294967296.0 * 360.0;
+}
+
+static void test_the_angle_of_a_displaced_rotor_is_found(void)
+{
+    for (int degrees = -60; degrees <= 60; degrees += 15) {
+        struct standstill_angle shown;
+        uint32_t periods;
+
+        setUp();
+        shown = look(degrees * DEGREE, &periods);
+        TEST_ASSERT_TRUE(shown.found);
+        TEST_ASSERT_DOUBLE_WITHIN(2.0, (double)degrees, degrees_of(shown.angle));
+        TEST_ASSERT_DOUBLE_WITHIN(0.02, HOLD_A, num_to_double(shown.current.a) * base.current_A);
+    }
+}
+
+static void test_the_first_pulse_waits_for_the_hold_to_settle(void)
+{
+    uint32_t periods;
+
+    (void)look(0.0, &periods);
+    TEST_ASSERT_TRUE(periods > 300u + 16u * 8u);
+    TEST_ASSERT_TRUE(periods < 300u + 16u * 14u);
+}
+
+static void test_only_a_pulse_hides_samples(void)
+{
+    uint32_t hidden = 0;
+
+    for (uint32_t k = 0; k < 300u; k++) {
+        struct phases voltage = {NUM(0.0), NUM(0.0)};
+
+        TEST_ASSERT_FALSE(standstill_pulses_hides_sample(&pulses, &params));
+        (void)standstill_pulses_add(&pulses, &params, voltage, &voltage);
+        TEST_ASSERT_NUM_WITHIN(0.0, 0.0, voltage.a);
+    }
+    for (uint32_t k = 0; k < 12u; k++) {
+        struct phases voltage = {NUM(0.0), NUM(0.0)};
+
+        hidden += standstill_pulses_hides_sample(&pulses, &params) ? 1u : 0u;
+        (void)standstill_pulses_add(&pulses, &params, voltage, &voltage);
+    }
+    TEST_ASSERT_EQUAL_UINT32(6u, hidden);
+}
+
+static void test_a_disturbance_of_another_size_shows_no_angle(void)
+{
+    uint32_t periods;
+
+    pulses.signal = pulses.signal + pulses.signal;
+    TEST_ASSERT_FALSE(look(0.3, &periods).found);
+}
+
+static void test_a_hold_that_ends_begins_anew(void)
+{
+    struct phases voltage = {NUM(0.0), NUM(0.0)};
+
+    for (uint32_t k = 0; k < 305u; k++) {
+        (void)standstill_pulses_add(&pulses, &params, voltage, &voltage);
+    }
+    TEST_ASSERT_FALSE(pulses.at_rest);
+    standstill_pulses_stop(&pulses);
+    TEST_ASSERT_TRUE(pulses.at_rest);
+    TEST_ASSERT_EQUAL_UINT32(0u, pulses.period);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_the_angle_of_a_displaced_rotor_is_found);
+    RUN_TEST(test_the_first_pulse_waits_for_the_hold_to_settle);
+    RUN_TEST(test_only_a_pulse_hides_samples);
+    RUN_TEST(test_a_disturbance_of_another_size_shows_no_angle);
+    RUN_TEST(test_a_hold_that_ends_begins_anew);
+    return UNITY_END();
+}

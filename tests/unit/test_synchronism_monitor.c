@@ -1,0 +1,296 @@
+/* Each signature of the synchronism monitor: what it is told by, and what is not one. */
+#include "firmware/estimator/synchronism_monitor.h"
+#include "tests/unit/bench.h"
+#include "tests/unit/num_assert.h"
+
+#define BLOCK_S      (PERIOD_S * SYNCHRONISM_BLOCK_PERIODS)
+#define CURRENT_GAIN 0.45
+#define LIMIT_A      3.0
+#define FLOOR_V      0.25
+
+static struct per_unit base;
+static struct motor_model_params model;
+static struct synchronism_monitor_task task;
+static struct synchronism_monitor_params params;
+static struct synchronism_monitor monitor;
+
+void setUp(void)
+{
+    base = per_unit_base(&bench_params, PERIOD_S);
+    model = motor_model_design(&bench_params, &base, PERIOD_S, 0.0);
+    task = (struct synchronism_monitor_task){.motor = &bench_params,
+                                             .base = &base,
+                                             .model = &model,
+                                             .period_s = PERIOD_S,
+                                             .current_gain_moving = CURRENT_GAIN,
+                                             .current_gain_holding = CURRENT_GAIN,
+                                             .current_limit_A = LIMIT_A,
+                                             .resistance_known = true};
+    params = synchronism_monitor_design(&task);
+    synchronism_monitor_reset(&monitor);
+}
+
+void tearDown(void)
+{
+}
+
+/* A drive as the monitor sees it. */
+struct course {
+    double disturbance_V; /* unexplained in d */
+    double speed_rad_s, load_Nm;
+    double wanted_A, i_d_A;
+    double error_turns, deficit_rad_s;
+    bool holding;
+};
+
+static const struct course at_rest = {.disturbance_V = 0.0};
+
+/* Sum over a block of the stationary innovations that a voltage leaves. */
+static num_t innovation_sum(double voltage_V)
+{
+    const double a = exp(-PERIOD_S * bench_params.resistance_ohm / bench_params.inductance_H);
+    const double b = (1.0 - a) / bench_params.resistance_ohm;
+    const double innovation_A = voltage_V * b / (1.0 - (1.0 - CURRENT_GAIN) * a);
+
+    return num_from_double(SYNCHRONISM_BLOCK_PERIODS * innovation_A / base.current_A);
+}
+
+static enum synchronism block(const struct course *c)
+{
+    const struct rotor rotor = {.speed = num_from_double(c->speed_rad_s / base.speed_rad_s),
+                                .load_torque = num_from_double(c->load_Nm / base.torque_Nm)};
+    enum synchronism verdict;
+
+    synchronism_monitor_take(&monitor, &params, innovation_sum(c->disturbance_V), c->holding);
+    verdict = synchronism_monitor_judge_voltage(&monitor, &params, rotor.speed,
+                                                num_from_double(c->i_d_A / base.current_A));
+    if (verdict != SYNCHRONISM_SURE) {
+        return verdict;
+    }
+    verdict = synchronism_monitor_judge_hold(&monitor, &params, rotor.speed, c->holding);
+    if (verdict != SYNCHRONISM_SURE) {
+        return verdict;
+    }
+    verdict = synchronism_monitor_judge_torque(
+        &monitor, &params, num_from_double(c->wanted_A / base.current_A), &rotor);
+    if (verdict != SYNCHRONISM_SURE) {
+        return verdict;
+    }
+    return synchronism_monitor_judge_following(&monitor, &params, num_from_double(c->error_turns),
+                                               num_from_double(c->deficit_rad_s / base.speed_rad_s),
+                                               c->holding);
+}
+
+/* The verdict after a time of the same. */
+static enum synchronism after(const struct course *c, double time_s)
+{
+    enum synchronism verdict = SYNCHRONISM_SURE;
+
+    for (int n = (int)(time_s / BLOCK_S + 0.5); n > 0; n--) {
+        verdict = block(c);
+        if (verdict == SYNCHRONISM_LOST || verdict == SYNCHRONISM_STALLED) {
+            return verdict;
+        }
+    }
+    return verdict;
+}
+
+static void expect(enum synchronism verdict, struct course c, double time_s)
+{
+    synchronism_monitor_reset(&monitor);
+    TEST_ASSERT_EQUAL_INT(verdict, after(&c, time_s));
+}
+
+static void test_a_drive_at_rest_and_in_steady_motion_is_sure(void)
+{
+    expect(SYNCHRONISM_SURE, at_rest, 1.0);
+    expect(
+        SYNCHRONISM_SURE,
+        (struct course){.speed_rad_s = 45.0, .load_Nm = 0.3, .wanted_A = 2.2, .error_turns = 2.0},
+        1.0);
+    expect(SYNCHRONISM_SURE, (struct course){.i_d_A = 1.5, .holding = true, .load_Nm = 0.2}, 1.0);
+}
+
+/* A rotor 90 degrees beside its estimate at 20 rad/s shows all of its back-EMF, 3.1 V, in d. */
+static void test_a_rotor_a_quarter_turn_off_is_lost_within_two_blocks(void)
+{
+    expect(SYNCHRONISM_LOST, (struct course){.speed_rad_s = 20.0, .disturbance_V = 3.14},
+           2.0 * BLOCK_S);
+    expect(SYNCHRONISM_LOST, (struct course){.speed_rad_s = -20.0, .disturbance_V = -3.14},
+           2.0 * BLOCK_S);
+}
+
+/* V_0 + Km |w| / 4, on either side of it. */
+static void test_the_voltage_allowed_grows_with_a_quarter_of_the_back_emf(void)
+{
+    static const double speeds_rad_s[] = {0.0, 5.0, -50.0, 120.0};
+
+    for (unsigned i = 0; i < sizeof speeds_rad_s / sizeof speeds_rad_s[0]; i++) {
+        const double speed = speeds_rad_s[i];
+        const double allowed = FLOOR_V + 0.25 * bench_params.torque_constant_Nm_A * fabs(speed);
+
+        expect(SYNCHRONISM_LOST,
+               (struct course){.speed_rad_s = speed, .disturbance_V = 1.02 * allowed}, 10e-3);
+        expect(SYNCHRONISM_DOUBTFUL,
+               (struct course){.speed_rad_s = speed, .disturbance_V = -0.98 * allowed}, 10e-3);
+        expect(SYNCHRONISM_DOUBTFUL,
+               (struct course){.speed_rad_s = speed, .disturbance_V = 0.52 * allowed}, 10e-3);
+        expect(SYNCHRONISM_SURE,
+               (struct course){.speed_rad_s = speed, .disturbance_V = 0.48 * allowed}, 1.0);
+    }
+}
+
+/* A kick of a load step is over after a block; a voltage that changes its sign is an oscillation.
+ */
+static void test_what_lasts_a_block_or_changes_its_sign_is_no_loss(void)
+{
+    struct course kick = {.disturbance_V = 1.9 * FLOOR_V};
+
+    TEST_ASSERT_NOT_EQUAL(SYNCHRONISM_LOST, block(&kick));
+    TEST_ASSERT_NOT_EQUAL(SYNCHRONISM_LOST, block(&at_rest));
+    for (int n = 0; n < 50; n++) {
+        kick.disturbance_V = -kick.disturbance_V;
+        TEST_ASSERT_NOT_EQUAL(SYNCHRONISM_LOST, block(&kick));
+    }
+}
+
+static void test_an_unknown_resistance_is_allowed_its_voltage(void)
+{
+    const struct course off = {.i_d_A = 1.5, .holding = true, .disturbance_V = 0.7 * 0.37 * 1.5};
+
+    expect(SYNCHRONISM_LOST, off, 10e-3);
+    task.resistance_known = false;
+    params = synchronism_monitor_design(&task);
+    TEST_ASSERT_NOT_EQUAL(SYNCHRONISM_LOST, after(&off, 1.0));
+}
+
+/* A tenth of a volt: a rotor that creeps at 0.7 rad/s. In motion that is nothing. */
+static void test_a_settled_hold_sees_a_rotor_creep_away_in_20_ms(void)
+{
+    struct course creeps = {.i_d_A = 1.5, .holding = true, .disturbance_V = 0.1};
+    struct course still = creeps;
+
+    still.disturbance_V = 0.025;
+    expect(SYNCHRONISM_SURE, still, 1.0);
+    still.disturbance_V = 0.05;
+    expect(SYNCHRONISM_DOUBTFUL, still, 1.0);
+    expect(SYNCHRONISM_SURE, creeps, 0.1);
+    creeps.disturbance_V = -0.1;
+    TEST_ASSERT_EQUAL_INT(SYNCHRONISM_LOST, after(&creeps, 20e-3));
+    creeps.holding = false;
+    expect(SYNCHRONISM_SURE, creeps, 1.0);
+}
+
+static void test_a_rotor_that_stands_under_full_current_is_stalled_in_15_ms(void)
+{
+    const struct course stands = {.wanted_A = -LIMIT_A, .speed_rad_s = 0.5, .error_turns = -0.1};
+
+    expect(SYNCHRONISM_DOUBTFUL, stands, 12e-3);
+    expect(SYNCHRONISM_STALLED, stands, 14.4e-3);
+}
+
+/* With a twentieth of the rated torque left. */
+static void test_a_rotor_that_starts_under_a_heavy_load_is_not(void)
+{
+    struct course c = {.wanted_A = LIMIT_A, .error_turns = 3.0, .deficit_rad_s = -1.0};
+
+    for (double t = 0.0; t < 50e-3; t += BLOCK_S) {
+        c.speed_rad_s = 0.06 * 0.471 / bench_params.inertia_kgm2 * t;
+        c.deficit_rad_s = -c.speed_rad_s;
+        TEST_ASSERT_NOT_EQUAL(SYNCHRONISM_STALLED, block(&c));
+    }
+}
+
+static void test_a_rotor_that_falls_behind_for_a_tenth_of_a_second_is_stalled(void)
+{
+    const struct course lags = {
+        .wanted_A = LIMIT_A, .speed_rad_s = 20.0, .error_turns = 1.0, .deficit_rad_s = 5.0};
+    struct course catches_up = lags;
+
+    expect(SYNCHRONISM_DOUBTFUL, lags, 95e-3);
+    expect(SYNCHRONISM_STALLED, lags, 105e-3);
+    catches_up.deficit_rad_s = -5.0;
+    expect(SYNCHRONISM_SURE, catches_up, 1.0);
+}
+
+static void test_a_lag_with_current_to_spare_is_the_laws_own(void)
+{
+    expect(SYNCHRONISM_SURE,
+           (struct course){.wanted_A = 0.9 * LIMIT_A, .speed_rad_s = 45.0, .error_turns = 3.6},
+           1.0);
+}
+
+static void test_a_load_far_beyond_the_rated_torque_is_a_stall(void)
+{
+    expect(SYNCHRONISM_STALLED, (struct course){.load_Nm = -0.77, .speed_rad_s = 30.0}, 3.2e-3);
+    expect(SYNCHRONISM_SURE, (struct course){.load_Nm = 0.74, .speed_rad_s = 30.0}, 1.0);
+}
+
+static void test_a_held_rotor_a_quarter_turn_away_has_been_torn_off(void)
+{
+    struct course c = {.i_d_A = 1.5, .holding = true, .error_turns = -0.26};
+
+    expect(SYNCHRONISM_STALLED, c, BLOCK_S);
+    c.error_turns = 0.24;
+    expect(SYNCHRONISM_DOUBTFUL, c, 1.0);
+    c.error_turns = 0.12;
+    expect(SYNCHRONISM_SURE, c, 1.0);
+    c = (struct course){.error_turns = -5.0, .speed_rad_s = 20.0, .deficit_rad_s = -20.0};
+    expect(SYNCHRONISM_SURE, c, 1.0);
+}
+
+static void test_a_doubt_lasts_for_20_ms(void)
+{
+    const struct course doubtful = {.holding = true, .error_turns = 0.2};
+    int blocks = 0;
+
+    TEST_ASSERT_EQUAL_INT(SYNCHRONISM_DOUBTFUL, block(&doubtful));
+    while (block(&at_rest) == SYNCHRONISM_DOUBTFUL) {
+        blocks++;
+    }
+    TEST_ASSERT_INT_WITHIN(1, (int)(20e-3 / BLOCK_S), blocks);
+}
+
+#if STEADYSTEP_NUM != NUM_FIXED
+static void test_a_disturbance_that_is_no_number_is_a_loss(void)
+{
+    const num_t nothing = (num_t)__builtin_nan("");
+
+    synchronism_monitor_take(&monitor, &params, nothing, false);
+    TEST_ASSERT_EQUAL_INT(SYNCHRONISM_LOST,
+                          synchronism_monitor_judge_voltage(&monitor, &params, NUM(0.0), NUM(0.0)));
+}
+#endif
+
+/* Times and not numbers of blocks: at half the period twice as many. */
+static void test_the_times_follow_the_control_period(void)
+{
+    task.period_s = 0.5 * PERIOD_S;
+    const struct synchronism_monitor_params half = synchronism_monitor_design(&task);
+
+    TEST_ASSERT_EQUAL_UINT32(2u * params.standing_blocks, half.standing_blocks);
+    TEST_ASSERT_EQUAL_UINT32(2u * params.torn_blocks, half.torn_blocks);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_drive_at_rest_and_in_steady_motion_is_sure);
+    RUN_TEST(test_a_rotor_a_quarter_turn_off_is_lost_within_two_blocks);
+    RUN_TEST(test_the_voltage_allowed_grows_with_a_quarter_of_the_back_emf);
+    RUN_TEST(test_what_lasts_a_block_or_changes_its_sign_is_no_loss);
+    RUN_TEST(test_an_unknown_resistance_is_allowed_its_voltage);
+    RUN_TEST(test_a_settled_hold_sees_a_rotor_creep_away_in_20_ms);
+    RUN_TEST(test_a_rotor_that_stands_under_full_current_is_stalled_in_15_ms);
+    RUN_TEST(test_a_rotor_that_starts_under_a_heavy_load_is_not);
+    RUN_TEST(test_a_rotor_that_falls_behind_for_a_tenth_of_a_second_is_stalled);
+    RUN_TEST(test_a_lag_with_current_to_spare_is_the_laws_own);
+    RUN_TEST(test_a_load_far_beyond_the_rated_torque_is_a_stall);
+    RUN_TEST(test_a_held_rotor_a_quarter_turn_away_has_been_torn_off);
+    RUN_TEST(test_a_doubt_lasts_for_20_ms);
+#if STEADYSTEP_NUM != NUM_FIXED
+    RUN_TEST(test_a_disturbance_that_is_no_number_is_a_loss);
+#endif
+    RUN_TEST(test_the_times_follow_the_control_period);
+    return UNITY_END();
+}
