@@ -82,6 +82,7 @@ class Motor(NamedTuple):
     rated_acceleration_rad_s2: float  # of the unloaded rotor by the rated torque
     rated_current_A: float
     electrical_corner_rad_s: float   # R / (N L): speed at which the inductance takes as much voltage
+    limit_speed_rad_s: float         # at which the back-EMF alone takes the supply
 
     @property
     def full_step_rad(self):
@@ -107,7 +108,8 @@ def read_motor(name_or_path):
             raise Refused(f"{path}: the supply of {supply:g} V does not drive the rated current")
         speed = (-b + math.sqrt(b * b - a * c)) / a
         return Motor(values["id"], path.resolve(), teeth, torque, speed,
-                     torque / values["inertia_kgm2"], current, resistance / (teeth * inductance))
+                     torque / values["inertia_kgm2"], current, resistance / (teeth * inductance),
+                     supply / constant)
     except OSError as error:
         raise Refused(f"{path}: {error.strerror}") from error
     except (tomllib.TOMLDecodeError, KeyError, TypeError) as error:

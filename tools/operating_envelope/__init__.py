@@ -1,0 +1,1 @@
+"""Where the sensorless drive keeps its lock: points, outcomes, journal, picture."""
