@@ -4,7 +4,8 @@ void synchronism_design(struct drive *drive, const struct drive_settings *settin
 {
     struct drive_params *params = &drive->params;
 
-    params->monitors_synchronism = params->estimator.kind == ESTIMATOR_INVARIANT_EKF;
+    params->monitors_synchronism = params->estimator.kind == ESTIMATOR_INVARIANT_EKF &&
+                                   settings->synchronism_policy != DRIVE_SYNCHRONISM_OFF;
     if (!params->monitors_synchronism) {
         return;
     }
@@ -45,7 +46,9 @@ void synchronism_start(struct drive *drive)
 static enum synchronism finish(struct drive *drive, enum synchronism verdict)
 {
     drive->synchronism_step = 0;
-    drive->synchronism_due = drive->synchronism_block + SYNCHRONISM_BLOCK_PERIODS;
+    if (drive->period - drive->synchronism_block < SYNCHRONISM_BLOCK_PERIODS) {
+        drive->synchronism_due = drive->synchronism_block + SYNCHRONISM_BLOCK_PERIODS;
+    }
     if (verdict == SYNCHRONISM_SURE && drive->synchronism == DRIVE_SYNCHRONISM_DOUBTFUL) {
         drive->synchronism = DRIVE_SYNCHRONISM_SURE;
     }
@@ -60,6 +63,7 @@ static enum synchronism step(struct drive *drive, const struct rotor *rotor)
     const struct reference_sample *reference = &drive->reference.next; /* for this S(k) */
     struct invariant_ekf *ekf = &drive->estimator.invariant;
 
+    drive->synchronism_due = drive->period + 1u;
     switch (drive->synchronism_step++) {
     case 0:
         drive->synchronism_block = drive->period;
@@ -84,9 +88,6 @@ static enum synchronism step(struct drive *drive, const struct rotor *rotor)
 /* With the policy `warn` a loss stays on show until the bridge is switched on anew. */
 static enum drive_fault act(struct drive *drive, enum synchronism verdict)
 {
-    if (drive->params.synchronism_policy == DRIVE_SYNCHRONISM_OFF) {
-        return DRIVE_FAULT_NONE;
-    }
     if (verdict == SYNCHRONISM_LOST) {
         drive->synchronism = DRIVE_SYNCHRONISM_LOST;
     } else if (drive->synchronism != DRIVE_SYNCHRONISM_LOST) {

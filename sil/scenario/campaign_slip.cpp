@@ -256,7 +256,6 @@ void write_drive(ScenarioText &text, Draw &draw, Scales &scales, Provocation pro
     if (provocation == Provocation::motor) {
         alter(scales, draw);
     } else if (provocation == Provocation::angle) {
-        text.table("drive");
         text.number("initial_angle_error_rad",
                     draw.either_sign(rounded(draw.between(0.1, 0.25, 100) * full_turn_rad, 1e4)));
     }
@@ -312,6 +311,8 @@ std::string draw_slip(std::uint64_t seed, double duration_s)
     text.text("motor", "bendjedia-2012");
     text.number("duration_s", duration_s);
     text.integer("seed", seed);
+    text.table("drive");
+    text.text("synchronism_policy", "fault");
     if (provokes(seed)) {
         write_drive(text, provocation, scales, kind);
     }
