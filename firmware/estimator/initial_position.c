@@ -138,9 +138,30 @@ static void enter(struct initial_position *finding, enum initial_position_stage 
 void initial_position_start(struct initial_position *finding,
                             const struct initial_position_params *params, angle_t home)
 {
-    const struct initial_position begin = {.home = home};
+    const struct phases none = {NUM(0.0), NUM(0.0)};
 
-    *finding = begin;
+    /* Field by field: the interrupt has no memory functions of this size (tests/target). */
+    finding->current_offset = none;
+    finding->voltage_offset = none;
+    finding->impulse = 0;
+    finding->expected = none;
+    for (int round = 0; round < IMPULSE_ROUNDS; round++) {
+        finding->round[round] = none;
+    }
+    finding->response = none;
+    finding->repetitions = 0;
+    finding->home = home;
+    finding->direction = 0;
+    finding->current_reference = NUM(0.0);
+    finding->voltage = NUM(0.0);
+    finding->resistance = NUM(0.0);
+    finding->flux = none;
+    finding->current_before = none;
+    finding->attempts = 0;
+    finding->by_impulses = false;
+    finding->angle = 0;
+    finding->asymmetry = NUM(0.0);
+    finding->uncertainty = NUM(0.0);
     winding_set_resistance(&finding->winding, &params->model, params->model.nominal_resistance);
     enter(finding, INITIAL_POSITION_QUIET);
 }
