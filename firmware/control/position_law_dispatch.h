@@ -70,14 +70,18 @@ static inline void position_law_reset(union position_law_state *state)
     *state = at_rest;
 }
 
-/* One period of a current law: the q current, within +-current_limit. */
+/*
+ * One period of a current law: the q current, within +-current_limit. Each law gets a copy of its
+ * own, so that the one compiled into its place keeps its input in registers.
+ */
 static inline num_t position_law_current(enum position_law law, union position_law_state *state,
                                          const union position_law_params *params,
                                          const struct position_law_input *input)
 {
 #define POSITION_LAW_CURRENT(constant, function, text)                                             \
     if (law == POSITION_LAW_##constant) {                                                          \
-        return function##_law_step(&state->function, &params->function, input);                    \
+        const struct position_law_input own = *input;                                              \
+        return function##_law_step(&state->function, &params->function, &own);                     \
     }
     CURRENT_LAWS(POSITION_LAW_CURRENT)
 #undef POSITION_LAW_CURRENT

@@ -24,7 +24,7 @@ bool command_queue_put(struct command_queue *queue, const struct queued_command 
     }
     atomic_signal_fence(memory_order_release);
     queue->written = queue->written + 1u;
-    queue->attention = true;
+    queue->attention = COMMAND_QUEUE_CALLS;
     return true;
 }
 
@@ -51,7 +51,7 @@ void command_queue_put_urgent(struct command_queue *queue, struct urgent_command
     urgent->flush_to = queue->written;
     atomic_signal_fence(memory_order_release);
     urgent->posted = true;
-    queue->attention = true;
+    queue->attention = COMMAND_QUEUE_CALLS;
 }
 
 bool command_queue_take_urgent(struct command_queue *queue, struct urgent_command *urgent,
@@ -91,7 +91,7 @@ struct queued_command *command_queue_due(struct command_queue *queue, uint32_t p
 {
     struct queued_command *oldest = &queue->entry[queue->read % COMMAND_QUEUE_LENGTH];
 
-    return queue->written != queue->read && has_come(oldest->at_period, period) ? oldest : NULL;
+    return command_queue_holds_any(queue) && has_come(oldest->at_period, period) ? oldest : NULL;
 }
 
 void command_queue_drop(struct command_queue *queue)
@@ -110,7 +110,7 @@ void command_queue_put_take_over(struct command_queue *queue, const struct take_
     own->command = take_over->command;
     atomic_signal_fence(memory_order_release);
     own->posted = true;
-    queue->attention = true;
+    queue->attention = COMMAND_QUEUE_CALLS;
 }
 
 void command_queue_withdraw_take_over(struct command_queue *queue)
@@ -136,7 +136,36 @@ void command_queue_accept_take_over(struct command_queue *queue)
     }
 }
 
-void command_queue_rest(struct command_queue *queue)
+/* The shorter wait. */
+static uint32_t sooner(uint32_t wait, bool posted, uint32_t other)
 {
-    queue->attention = queue->stop.posted || queue->disable.posted || queue->written != queue->read;
+    return posted && other < wait ? other : wait;
+}
+
+/* Periods until the oldest command is to be looked at: a period ahead, and in its period. */
+static uint32_t wait_of_oldest(const struct command_queue *queue, uint32_t period)
+{
+    const uint32_t wait = queue->entry[queue->read % COMMAND_QUEUE_LENGTH].at_period - period;
+
+    return wait > 1u ? wait - 1u : wait;
+}
+
+void command_queue_rest(struct command_queue *queue, uint32_t period)
+{
+    uint32_t wait = UINT32_MAX;
+
+    queue->attention = COMMAND_QUEUE_QUIET;
+    if (command_queue_holds_any(queue)) {
+        if (command_queue_due(queue, period) != NULL) {
+            queue->attention = COMMAND_QUEUE_OVERDUE;
+        } else {
+            wait = wait_of_oldest(queue, period);
+        }
+    } else if (!queue->disable.posted && !queue->stop.posted && !queue->take_over.posted) {
+        return;
+    }
+    wait = sooner(wait, queue->disable.posted, queue->disable.at_period - period);
+    wait = sooner(wait, queue->stop.posted, queue->stop.at_period - period);
+    wait = sooner(wait, queue->take_over.posted, queue->take_over.at_period - period);
+    queue->wake = period + wait;
 }

@@ -65,11 +65,18 @@ struct take_over {
     uint32_t command; /* queue entry that it obeys; leaves the queue with it */
 };
 
+enum command_queue_attention {
+    COMMAND_QUEUE_QUIET,
+    COMMAND_QUEUE_OVERDUE, /* the oldest command waits for the reference to rest, or for its plan */
+    COMMAND_QUEUE_CALLS    /* something has been posted, or may be due next */
+};
+
 struct command_queue {
     struct queued_command entry[COMMAND_QUEUE_LENGTH];
     volatile uint32_t written;
     volatile uint32_t read;
-    volatile bool attention; /* something may wait: spares the interrupt to look at all of it */
+    volatile uint8_t attention; /* enum command_queue_attention */
+    uint32_t wake;              /* period in which something else may be due */
     struct urgent_command disable;
     struct urgent_command stop;
     uint32_t stop_acted_in; /* period of the last stop; the interrupt's */
@@ -114,8 +121,24 @@ const struct motion_plan *command_queue_take_over(struct command_queue *queue, u
 /* Interrupt: the reference has accepted it; its command leaves the queue. */
 void command_queue_accept_take_over(struct command_queue *queue);
 
-/* Interrupt, when no take-over waits: lowers `attention` if nothing else does. The background
-   cannot run in between. */
-void command_queue_rest(struct command_queue *queue);
+/* Background: whether commands wait in the queue; those that are urgent do not count. */
+static inline bool command_queue_holds_any(const struct command_queue *queue)
+{
+    return queue->written != queue->read;
+}
+
+/* Interrupt: whether there may be something to do in this period. `idle`: the reference rests. */
+static inline bool command_queue_calls(const struct command_queue *queue, uint32_t period,
+                                       bool idle)
+{
+    const uint8_t attention = queue->attention;
+
+    return period == queue->wake ||
+           (attention != COMMAND_QUEUE_QUIET && (idle || attention == COMMAND_QUEUE_CALLS));
+}
+
+/* Interrupt, when nothing has acted: lowers `attention` until something is posted or due. The
+   background cannot run in between. */
+void command_queue_rest(struct command_queue *queue, uint32_t period);
 
 #endif

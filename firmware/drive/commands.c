@@ -233,7 +233,7 @@ void drive_signals_read(const struct drive *drive, struct drive_signals *signals
 {
     const struct per_unit *base = &drive->base;
     const int32_t teeth = drive->settings.motor.rotor_teeth;
-    const struct estimate *x = estimator_estimate(&drive->estimator, &drive->params.estimator);
+    const struct estimate *x = &drive->estimator.estimate;
     const struct reference_sample *reference = &drive->reference.now;
 
     signals->state = drive->state;

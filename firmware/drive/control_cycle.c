@@ -9,6 +9,7 @@
  */
 #include "firmware/drive/drive.h"
 #include "firmware/drive/finding_position.h"
+#include "firmware/drive/inferred_voltage.h"
 #include "firmware/drive/standstill_angle.h"
 #include "firmware/drive/state_machine.h"
 #include "firmware/drive/synchronism.h"
@@ -274,17 +275,6 @@ IN_PLACE struct hal_outputs control(struct drive *drive, const struct estimate *
                                  : control_current(drive, estimate);
 }
 
-/* Of a board that does not measure it: what was commanded, less what the bridge took of it. */
-__attribute__((noinline)) static struct phases inferred_voltage(struct drive *drive,
-                                                                struct phases current)
-{
-    const struct phases before = drive->past_current;
-
-    drive->past_current = current;
-    return bridge_loss_voltage(&drive->params.bridge_loss, drive->actuation.past, before, current,
-                               drive->modulator.bus, drive->modulator.bus_reciprocal);
-}
-
 /*
  * What the estimator gets in place of a measurement, into drive->prepared. A current that a pulse
  * has made is not for the estimator, which goes by its model meanwhile. Apart, and by value, so
@@ -308,19 +298,16 @@ __attribute__((noinline)) static void prepare_input(struct drive *drive, struct 
 
 IN_PLACE const struct estimate *observe(struct drive *drive, const struct sample_set *now)
 {
-    struct estimator_input input = {.current = now->current,
-                                    .voltage = now->voltage,
-                                    .encoder_count = now->encoder_count,
-                                    .holding = drive->hold.active};
+    struct channels winding = now->winding;
 
     modulator_track_bus(&drive->modulator, now->bus);
     if (drive->params.in_full && drive->params.prepares_input) {
-        prepare_input(drive, now->current, now->voltage);
-        input.current = drive->prepared.current;
-        input.voltage = drive->prepared.voltage;
+        prepare_input(drive, winding.current, winding.voltage);
+        winding = drive->prepared;
     }
-    actuation_observe(&drive->actuation, input.voltage);
-    return estimator_step(&drive->estimator, &drive->params.estimator, &input);
+    actuation_observe(&drive->actuation, winding.voltage);
+    return estimator_step(&drive->estimator, &drive->params.estimator, &winding,
+                          drive->encoder_count, drive->hold.active);
 }
 
 /* The bridge is on and stays on for this period: what it needs of estimate and duties. */
@@ -329,7 +316,7 @@ IN_PLACE struct hal_outputs powered_cycle(struct drive *drive, const struct samp
     const struct estimate *estimate = observe(drive, now);
     enum drive_fault fault = protection_check_estimate(&drive->params.protection, estimate);
 
-    if (synchronism_is_due(drive) && fault == DRIVE_FAULT_NONE) {
+    if (fault == DRIVE_FAULT_NONE && synchronism_is_due(drive)) {
         fault = synchronism_watch(drive, &estimate->rotor);
     }
     if (fault != DRIVE_FAULT_NONE) {
@@ -339,17 +326,25 @@ IN_PLACE struct hal_outputs powered_cycle(struct drive *drive, const struct samp
     return control(drive, estimate);
 }
 
-struct hal_outputs drive_control_cycle(struct drive *drive, const struct hal_samples *samples)
+IN_PLACE struct sample_set measure(struct drive *drive, const struct hal_samples *samples)
 {
     const struct sample_set now =
         measurement_step(&drive->measurement, &drive->params.measurement, samples);
 
     drive->bus = now.bus;
-    drive->encoder_count = now.encoder_count;
+    return now;
+}
+
+struct hal_outputs drive_control_cycle(struct drive *drive, const struct hal_samples *samples)
+{
+    drive->encoder_count = samples->encoder_count;
     drive->period++;
     if (state_machine_step(drive, samples)) {
+        const struct sample_set now = measure(drive, samples);
+
         return powered_cycle(drive, &now);
     }
+    (void)measure(drive, samples);
     return drive->state == DRIVE_FINDING_POSITION ? finding_position_cycle(drive, samples)
                                                   : bridge_off;
 }

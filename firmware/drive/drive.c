@@ -1,8 +1,18 @@
 #include "firmware/drive/drive.h"
 
+#include <stddef.h>
+
 #include "firmware/design/state_feedback_design.h"
 #include "firmware/drive/parameter_store.h"
 #include "firmware/drive/synchronism.h"
+
+#define BEGINS_WITH_ITS_ESTIMATE(estimator)                                                        \
+    _Static_assert(offsetof(struct estimator, estimate) == 0, "union estimator")
+
+BEGINS_WITH_ITS_ESTIMATE(invariant_ekf);
+BEGINS_WITH_ITS_ESTIMATE(steady_state_ekf);
+BEGINS_WITH_ITS_ESTIMATE(encoder_observer);
+BEGINS_WITH_ITS_ESTIMATE(high_gain_observer);
 
 static bool design_high_gain_observer(struct drive *drive, const struct drive_settings *settings,
                                       double period_s, char error[DRIVE_ERROR_TEXT])
@@ -20,65 +30,89 @@ static bool design_high_gain_observer(struct drive *drive, const struct drive_se
     return high_gain_observer_design(&params->high_gain, &drive->params.model, &task, error);
 }
 
+/* Each estimator's design apart: its locals are not on the stack below the others' deepest call. */
+__attribute__((noinline)) static bool
+design_encoder_observers(struct drive *drive, const struct drive_settings *settings,
+                         double period_s, char error[DRIVE_ERROR_TEXT])
+{
+    struct estimator_params *params = &drive->params.estimator;
+    const struct encoder_observer_task task = {
+        .base = &drive->base,
+        .rotor_teeth = settings->motor.rotor_teeth,
+        .counts_per_turn = drive->board->facts->encoder_counts_per_turn,
+        .period_s = period_s,
+        .bandwidth_rad_s = settings->observer_bandwidth_rad_s,
+        .resistance_adaptation_s =
+            settings->resistance_adaptation ? settings->hold_on_enable_s / 8.0 : 0.0,
+        .hold_current_A = settings->hold_current_A,
+    };
+
+    params->kind = ESTIMATOR_ENCODER_OBSERVER;
+    return encoder_observer_design(&params->encoder, &drive->params.model, &task, error) &&
+           (settings->observer != DRIVE_OBSERVER_HIGH_GAIN ||
+            design_high_gain_observer(drive, settings, period_s, error));
+}
+
+__attribute__((noinline)) static bool design_steady_state_ekf(struct drive *drive,
+                                                              const struct drive_settings *settings,
+                                                              double period_s,
+                                                              char error[DRIVE_ERROR_TEXT])
+{
+    struct estimator_params *params = &drive->params.estimator;
+    struct steady_state_ekf_gains gains;
+
+    if (!steady_state_ekf_design(&settings->motor, period_s, &gains, error)) {
+        return false;
+    }
+    params->kind = ESTIMATOR_STEADY_STATE_EKF;
+    params->steady_state = steady_state_ekf_scale(&drive->params.model, &drive->base, &gains);
+    return true;
+}
+
+__attribute__((noinline)) static bool design_invariant_ekf(struct drive *drive,
+                                                           const struct drive_settings *settings,
+                                                           double period_s,
+                                                           char error[DRIVE_ERROR_TEXT])
+{
+    const struct motor_params *motor = &settings->motor;
+    struct estimator_params *params = &drive->params.estimator;
+    struct invariant_ekf_gains moving;
+    struct invariant_ekf_gains holding;
+    struct invariant_ekf_gains following;
+
+    if (!invariant_ekf_motion_design(motor, period_s, &moving, error) ||
+        !invariant_ekf_hold_design(motor, period_s, settings->hold_current_A,
+                                   INVARIANT_EKF_HOLD_QUIET, &holding, error) ||
+        !invariant_ekf_hold_design(motor, period_s, settings->hold_current_A,
+                                   INVARIANT_EKF_HOLD_FOLLOWING, &following, error)) {
+        return false;
+    }
+    if (!settings->resistance_adaptation) {
+        holding.k_resistance_ohm_A2 = 0.0;
+        following.k_resistance_ohm_A2 = 0.0;
+    }
+    params->kind = ESTIMATOR_INVARIANT_EKF;
+    params->invariant =
+        invariant_ekf_scale(&drive->params.model, &drive->base, &moving, &holding, &following);
+    return true;
+}
+
 static bool design_estimator(struct drive *drive, const struct drive_settings *settings,
                              double period_s, char error[DRIVE_ERROR_TEXT])
 {
-    struct estimator_params *params = &drive->params.estimator;
-    const struct motor_params *motor = &settings->motor;
-
-    if (settings->feedback == DRIVE_FEEDBACK_ENCODER) {
-        const struct encoder_observer_task task = {
-            .base = &drive->base,
-            .rotor_teeth = motor->rotor_teeth,
-            .counts_per_turn = drive->board->facts->encoder_counts_per_turn,
-            .period_s = period_s,
-            .bandwidth_rad_s = settings->observer_bandwidth_rad_s,
-            .resistance_adaptation_s =
-                settings->resistance_adaptation ? settings->hold_on_enable_s / 8.0 : 0.0,
-            .hold_current_A = settings->hold_current_A,
-        };
-
-        params->kind = ESTIMATOR_ENCODER_OBSERVER;
-        if (!encoder_observer_design(&params->encoder, &drive->params.model, &task, error)) {
-            return false;
-        }
-        if (settings->observer == DRIVE_OBSERVER_HIGH_GAIN &&
-            !design_high_gain_observer(drive, settings, period_s, error)) {
-            return false;
-        }
-    } else if (settings->estimator == DRIVE_ESTIMATOR_STEADY_STATE_EKF) {
-        struct steady_state_ekf_gains gains;
-
-        if (!steady_state_ekf_design(motor, period_s, &gains, error)) {
-            return false;
-        }
-        params->kind = ESTIMATOR_STEADY_STATE_EKF;
-        params->steady_state = steady_state_ekf_scale(&drive->params.model, &drive->base, &gains);
-    } else {
-        struct invariant_ekf_gains moving;
-        struct invariant_ekf_gains holding;
-        struct invariant_ekf_gains following;
-
-        if (!invariant_ekf_motion_design(motor, period_s, &moving, error) ||
-            !invariant_ekf_hold_design(motor, period_s, settings->hold_current_A,
-                                       INVARIANT_EKF_HOLD_QUIET, &holding, error) ||
-            !invariant_ekf_hold_design(motor, period_s, settings->hold_current_A,
-                                       INVARIANT_EKF_HOLD_FOLLOWING, &following, error)) {
-            return false;
-        }
-        if (!settings->resistance_adaptation) {
-            holding.k_resistance_ohm_A2 = 0.0;
-            following.k_resistance_ohm_A2 = 0.0;
-        }
-        params->kind = ESTIMATOR_INVARIANT_EKF;
-        params->invariant =
-            invariant_ekf_scale(&drive->params.model, &drive->base, &moving, &holding, &following);
-    }
     const struct estimator_start start = {.position = drive->params.initial_position,
                                           .encoder_position = drive->params.initial_position,
                                           .resistance = drive->params.model.nominal_resistance};
+    const bool designed = settings->feedback == DRIVE_FEEDBACK_ENCODER
+                              ? design_encoder_observers(drive, settings, period_s, error)
+                          : settings->estimator == DRIVE_ESTIMATOR_STEADY_STATE_EKF
+                              ? design_steady_state_ekf(drive, settings, period_s, error)
+                              : design_invariant_ekf(drive, settings, period_s, error);
 
-    estimator_reset(&drive->estimator, params, &start);
+    if (!designed) {
+        return false;
+    }
+    estimator_reset(&drive->estimator, &drive->params.estimator, &start);
     return true;
 }
 

@@ -63,7 +63,7 @@ struct drive_params {
 struct drive {
     struct drive_params params;
 
-    /* blocks, in the order of the block diagram, the large ones last */
+    /* blocks, in the order of the block diagram */
     struct measurement measurement;
     struct estimator estimator;
     struct reference reference;
@@ -71,6 +71,14 @@ struct drive {
     struct current_control current_control;
     struct modulator modulator;
     struct actuation actuation;
+
+    /* this period's inner signals, shown by drive_signals_read; near, for the core's sake */
+    struct dq current;
+    struct dq current_reference;
+    struct dq voltage_command;
+    num_t bus;
+
+    /* the blocks that the default does without */
     union position_law_state law;
     struct detent_compensation detent;
 
@@ -87,12 +95,6 @@ struct drive {
     struct phases demanded_voltage;  /* of the last S(k) */
     struct phases predicted_current; /* for this S(k), had what was demanded acted */
     struct sincos predicted_frame;   /* of the middle of the period before this S(k) */
-
-    /* this period's inner signals, shown by drive_signals_read */
-    struct dq current;
-    struct dq current_reference;
-    struct dq voltage_command;
-    num_t bus;
 
     /* of the synchronism monitor, and what only a few settings use */
     enum drive_synchronism synchronism;

@@ -68,8 +68,7 @@ uint64_t drive_hash_gains(const struct drive_params *p)
 struct drive_hash_row drive_hash_row(const struct drive *drive, const struct hal_outputs *outputs)
 {
     const uint16_t *high = outputs->high_counts;
-    const struct rotor *rotor =
-        &estimator_estimate(&drive->estimator, &drive->params.estimator)->rotor;
+    const struct rotor *rotor = &drive->estimator.estimate.rotor;
 
     return (struct drive_hash_row){{
         ((uint32_t)high[0] << 16) | high[1],

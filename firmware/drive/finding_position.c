@@ -1,19 +1,7 @@
 #include "firmware/drive/finding_position.h"
 
+#include "firmware/drive/inferred_voltage.h"
 #include "firmware/drive/state_machine.h"
-
-/* Mean over the past period: measured, or what was commanded less what the bridge took of it. */
-static struct phases past_voltage(struct drive *drive, const struct sample_set *now)
-{
-    const struct phases before = drive->past_current;
-
-    drive->past_current = now->current;
-    return drive->params.infers_voltage
-               ? bridge_loss_voltage(&drive->params.bridge_loss, drive->actuation.past, before,
-                                     now->current, drive->modulator.bus,
-                                     drive->modulator.bus_reciprocal)
-               : now->voltage;
-}
 
 static struct hal_outputs modulate(struct drive *drive, struct initial_position_output output)
 {
@@ -39,24 +27,28 @@ static struct hal_outputs modulate(struct drive *drive, struct initial_position_
     return duties;
 }
 
-/* After an alignment its current flows on, now in the d axis of the hold. */
-static void go_on(struct drive *drive, const struct sample_set *now)
+static void go_on_without_current(struct drive *drive)
+{
+    const struct initial_position *finding = &drive->finding;
+
+    state_machine_position_found(drive, finding->angle);
+    standstill_pulses_reset(&drive->pulses, &drive->pulses_params,
+                            initial_position_full_asymmetry(finding, &drive->finding_params));
+}
+
+/* The current of the alignment flows on, now in the d axis of the hold. */
+static void go_on_aligned(struct drive *drive, const struct sample_set *now)
 {
     const struct initial_position *finding = &drive->finding;
     const struct actuation actuation = drive->actuation;
 
     state_machine_position_found(drive, finding->angle);
-    standstill_pulses_reset(&drive->pulses, &drive->pulses_params,
-                            finding->by_impulses
-                                ? initial_position_full_asymmetry(finding, &drive->finding_params)
-                                : NUM(0.0));
-    if (!finding->by_impulses) {
-        drive->actuation = actuation;
-        drive->past_current = now->current;
-        drive->hold.i_d = finding->current_reference;
-        drive->current_control.integral.d = finding->voltage;
-        estimator_take_current(&drive->estimator, &drive->params.estimator, now->current);
-    }
+    standstill_pulses_reset(&drive->pulses, &drive->pulses_params, NUM(0.0));
+    drive->actuation = actuation;
+    drive->past_current = now->winding.current;
+    drive->hold.i_d = finding->current_reference;
+    drive->current_control.integral.d = finding->voltage;
+    estimator_take_current(&drive->estimator, &drive->params.estimator, now->winding.current);
 }
 
 struct hal_outputs finding_position_cycle(struct drive *drive, const struct hal_samples *samples)
@@ -67,16 +59,22 @@ struct hal_outputs finding_position_cycle(struct drive *drive, const struct hal_
 
     modulator_track_bus(&drive->modulator, now->bus);
 
-    const struct phases voltage = past_voltage(drive, now);
+    const struct phases voltage = drive->params.infers_voltage
+                                      ? inferred_voltage(drive, now->winding.current)
+                                      : now->winding.voltage;
 
     actuation_observe(&drive->actuation, voltage);
 
-    const struct initial_position_output output =
-        initial_position_step(&drive->finding, &drive->finding_params, now->current, voltage);
+    const struct initial_position_output output = initial_position_step(
+        &drive->finding, &drive->finding_params, now->winding.current, voltage);
     const struct hal_outputs duties = modulate(drive, output);
 
     if (drive->finding.stage == INITIAL_POSITION_FOUND) {
-        go_on(drive, now);
+        if (drive->finding.by_impulses) {
+            go_on_without_current(drive);
+        } else {
+            go_on_aligned(drive, now);
+        }
     } else if (drive->finding.stage == INITIAL_POSITION_NOT_FOUND) {
         state_machine_fault(drive, DRIVE_FAULT_POSITION_NOT_FOUND);
         return (struct hal_outputs){.bridge_on = false};

@@ -20,26 +20,6 @@ void measurement_reset(struct measurement *measurement)
     *measurement = zero;
 }
 
-struct sample_set measurement_step(const struct measurement *measurement,
-                                   const struct measurement_params *params,
-                                   const struct hal_samples *samples)
-{
-    const struct channels *offset = &measurement->offset;
-    const int32_t code_a = samples->current_a - params->current_zero_code;
-    const int32_t code_b = samples->current_b - params->current_zero_code;
-    struct sample_set now;
-
-    now.current.a = num_from_code(code_a, params->current) - offset->current.a;
-    now.current.b = num_from_code(code_b, params->current) - offset->current.b;
-    now.voltage.a =
-        num_from_code(samples->phase_voltage_a, params->phase_voltage) - offset->voltage.a;
-    now.voltage.b =
-        num_from_code(samples->phase_voltage_b, params->phase_voltage) - offset->voltage.b;
-    now.bus = num_from_code(samples->bus_voltage, params->bus_voltage);
-    now.encoder_count = samples->encoder_count;
-    return now;
-}
-
 static num_t mean(int32_t sum, coef_t per_code)
 {
     return num_mul(num_from_code(sum, per_code), NUM(1.0 / OFFSET_SAMPLES));

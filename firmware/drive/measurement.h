@@ -19,23 +19,15 @@ struct measurement_params {
     int32_t current_zero_code;
 };
 
-/* The four zeroed channels. */
-struct channels {
-    struct phases current;
-    struct phases voltage;
-};
-
 struct measurement {
-    struct channels offset;
-    int32_t sum[4]; /* of codes, while calibrating: currents, voltages */
+    struct channels offset; /* of the four channels that are zeroed */
+    int32_t sum[4];         /* of codes, while calibrating: currents, voltages */
     uint32_t samples;
 };
 
 struct sample_set {
-    struct phases current;
-    struct phases voltage; /* mean over the past period */
+    struct channels winding;
     num_t bus;
-    int32_t encoder_count;
 };
 
 struct measurement_params measurement_design(const struct hal_facts *facts,
@@ -43,9 +35,24 @@ struct measurement_params measurement_design(const struct hal_facts *facts,
 
 void measurement_reset(struct measurement *measurement);
 
-struct sample_set measurement_step(const struct measurement *measurement,
-                                   const struct measurement_params *params,
-                                   const struct hal_samples *samples);
+static inline __attribute__((always_inline)) struct sample_set
+measurement_step(const struct measurement *measurement, const struct measurement_params *params,
+                 const struct hal_samples *samples)
+{
+    const struct channels *offset = &measurement->offset;
+    const int32_t code_a = samples->current_a - params->current_zero_code;
+    const int32_t code_b = samples->current_b - params->current_zero_code;
+    struct sample_set now;
+
+    now.winding.current.a = num_from_code(code_a, params->current) - offset->current.a;
+    now.winding.current.b = num_from_code(code_b, params->current) - offset->current.b;
+    now.winding.voltage.a =
+        num_from_code(samples->phase_voltage_a, params->phase_voltage) - offset->voltage.a;
+    now.winding.voltage.b =
+        num_from_code(samples->phase_voltage_b, params->phase_voltage) - offset->voltage.b;
+    now.bus = num_from_code(samples->bus_voltage, params->bus_voltage);
+    return now;
+}
 
 enum offset_calibration { OFFSETS_PENDING, OFFSETS_FOUND, OFFSETS_OUT_OF_RANGE };
 

@@ -348,7 +348,7 @@ void drive_background(struct drive *drive)
     } else if (p->motion != PLANNER_IDLE) {
         continue_motion(drive);
     }
-    if (p->offered == NULL && !p->stop_due && drive->commands.attention) {
+    if (p->offered == NULL && !p->stop_due && command_queue_holds_any(&drive->commands)) {
         take_command(drive);
     }
 }

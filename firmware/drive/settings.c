@@ -14,7 +14,7 @@ void drive_settings_default(struct drive_settings *settings, const struct motor_
         .current_bandwidth_rad_s = 1500.0,
         .observer_bandwidth_rad_s = 1000.0,
         .high_gain_epsilon_s = 1e-3,
-        .synchronism_policy = DRIVE_SYNCHRONISM_OFF,
+        .synchronism_policy = DRIVE_SYNCHRONISM_FAULT,
         .bridge_loss_compensation = true,
         .current_limit_A = motor->rated_current_A,
         .overcurrent_trip_A = 1.8 * motor->rated_current_A,

@@ -7,7 +7,7 @@
  */
 static void tell(struct drive *drive, const struct standstill_angle *shown)
 {
-    const struct estimate *x = estimator_estimate(&drive->estimator, &drive->params.estimator);
+    const struct estimate *x = &drive->estimator.estimate;
     const int32_t difference = (int32_t)(shown->angle - x->rotor.position.fraction);
     struct rotor rotor = x->rotor;
 

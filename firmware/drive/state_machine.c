@@ -26,7 +26,7 @@ static void reset_blocks(struct drive *drive)
         .position = initial_position(drive, params->encoder_zero_told),
         .encoder_position = initial_position(drive, params->encoder_zero),
         .load_torque = params->initial_load_torque,
-        .resistance = estimator_estimate(&drive->estimator, &params->estimator)->winding.resistance,
+        .resistance = drive->estimator.estimate.winding.resistance,
         .unloaded_periods = params->hold_on_enable_periods,
         .encoder_count = drive->encoder_count,
     };
@@ -171,12 +171,14 @@ static void take_over(struct drive *drive)
     }
 }
 
-/* One command a period, and the check for more only in a period without: short worst case. */
+/* One command a period: short worst case. */
 static void take_commands(struct drive *drive)
 {
     struct command_queue *queue = &drive->commands;
     struct queued_command *command;
 
+    queue->attention = COMMAND_QUEUE_CALLS;
+    synchronism_wait(drive);
     if (command_queue_take_urgent(queue, &queue->disable, drive->period)) {
         disable(drive);
         return;
@@ -184,8 +186,6 @@ static void take_commands(struct drive *drive)
     if (command_queue_take_urgent(queue, &queue->stop, drive->period)) {
         reference_stop(&drive->reference);
         queue->stop_acted_in = drive->period;
-        /* here, because the next interrupt cuts the ramp */
-        queue->attention = queue->disable.posted || queue->written != queue->read;
         return;
     }
     /* A move is loaded a period ahead: it begins with the period it is addressed to. */
@@ -194,10 +194,8 @@ static void take_commands(struct drive *drive)
         command_queue_drop(queue);
     } else if (queue->take_over.posted) {
         take_over(drive);
-    } else if (command == NULL && (!drive->hold.active || !reference_busy(&drive->reference)) &&
-               reference_goes_on(&drive->reference)) {
-        command_queue_rest(queue); /* it can wait where the interrupt begins a phase or leaves the
-                                      hold */
+    } else if (reference_goes_on(&drive->reference)) { /* no interrupt pays for both */
+        command_queue_rest(queue, drive->period);
     }
 }
 
@@ -241,7 +239,7 @@ bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
 {
     const bool was_powered = state_machine_powered(drive);
 
-    if (drive->commands.attention) {
+    if (command_queue_calls(&drive->commands, drive->period, !reference_busy(&drive->reference))) {
         take_commands(drive);
     }
     if (drive->state != DRIVE_OPERATION_ENABLED && !step_outside_operation(drive, samples)) {

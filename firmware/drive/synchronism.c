@@ -26,26 +26,42 @@ void synchronism_design(struct drive *drive, const struct drive_settings *settin
 
 #define NOT_YET (1u << 30) /* periods; longer than any enabling */
 
+/* The steps of a block. */
+enum step {
+    TAKE,
+    JUDGE_VOLTAGE,
+    JUDGE_HOLD,
+    JUDGE_TORQUE,
+    JUDGE_LOAD,
+    JUDGE_FOLLOWING,
+    JUDGE_GRIP,
+    DOUBT,
+    UNMONITORED /* no block, ever */
+};
+
 void synchronism_reset(struct drive *drive)
 {
     synchronism_monitor_reset(&drive->synchronism_monitor);
     drive->synchronism = DRIVE_SYNCHRONISM_SURE;
-    drive->synchronism_step = 0;
+    drive->synchronism_step = UNMONITORED;
     drive->synchronism_due = drive->period + NOT_YET;
 }
 
 void synchronism_start(struct drive *drive)
 {
-    drive->synchronism_due = drive->period;
     if (drive->params.monitors_synchronism) {
+        drive->synchronism_step = TAKE;
+        drive->synchronism_due = drive->period;
         drive->estimator.invariant.innovation_sum = NUM(0.0);
     }
 }
 
-/* In the last step of a block: the doubts of all of them are known. */
-static enum synchronism finish(struct drive *drive, enum synchronism verdict)
+static enum synchronism doubt(struct drive *drive)
 {
-    drive->synchronism_step = 0;
+    const enum synchronism verdict =
+        synchronism_monitor_doubt(&drive->synchronism_monitor, &drive->params.synchronism_monitor);
+
+    drive->synchronism_step = TAKE;
     if (drive->period - drive->synchronism_block < SYNCHRONISM_BLOCK_PERIODS) {
         drive->synchronism_due = drive->synchronism_block + SYNCHRONISM_BLOCK_PERIODS;
     }
@@ -55,33 +71,49 @@ static enum synchronism finish(struct drive *drive, enum synchronism verdict)
     return verdict;
 }
 
-/* One of the five steps of a block. */
+/* Of the rotor, beside the reference for this S(k). */
+static num_t error_of(const struct drive *drive, const struct rotor *rotor)
+{
+    return position_difference(drive->reference.next.position, rotor->position);
+}
+
+/* One of the steps of a block. */
 static enum synchronism step(struct drive *drive, const struct rotor *rotor)
 {
     struct synchronism_monitor *monitor = &drive->synchronism_monitor;
     const struct synchronism_monitor_params *params = &drive->params.synchronism_monitor;
-    const struct reference_sample *reference = &drive->reference.next; /* for this S(k) */
     struct invariant_ekf *ekf = &drive->estimator.invariant;
 
     drive->synchronism_due = drive->period + 1u;
     switch (drive->synchronism_step++) {
-    case 0:
+    case TAKE:
         drive->synchronism_block = drive->period;
         synchronism_monitor_take(monitor, params, ekf->innovation_sum, drive->hold.active);
         ekf->innovation_sum = NUM(0.0);
         return SYNCHRONISM_SURE;
-    case 1:
+    case JUDGE_VOLTAGE:
         return synchronism_monitor_judge_voltage(monitor, params, rotor->speed,
                                                  drive->current_reference.d);
-    case 2:
+    case JUDGE_HOLD:
         return synchronism_monitor_judge_hold(monitor, params, rotor->speed, drive->hold.active);
-    case 3:
-        return synchronism_monitor_judge_torque(monitor, params, drive->current_reference.q, rotor);
+    case JUDGE_TORQUE:
+        return synchronism_monitor_judge_torque(monitor, params, drive->current_reference.q,
+                                                rotor->speed);
+    case JUDGE_LOAD:
+        return synchronism_monitor_judge_load(monitor, params, rotor->load_torque);
+    case JUDGE_FOLLOWING:
+        return synchronism_monitor_judge_following(monitor, params, error_of(drive, rotor),
+                                                   drive->reference.next.speed - rotor->speed);
+    case JUDGE_GRIP:
+        return drive->hold.active
+                   ? synchronism_monitor_judge_grip(monitor, params, error_of(drive, rotor))
+                   : SYNCHRONISM_SURE;
+    case DOUBT:
+        return doubt(drive);
     default:
-        return finish(drive, synchronism_monitor_judge_following(
-                                 monitor, params,
-                                 position_difference(reference->position, rotor->position),
-                                 reference->speed - rotor->speed, drive->hold.active));
+        drive->synchronism_step = UNMONITORED;
+        drive->synchronism_due = drive->period + NOT_YET;
+        return SYNCHRONISM_SURE;
     }
 }
 
@@ -102,10 +134,6 @@ static enum drive_fault act(struct drive *drive, enum synchronism verdict)
 
 enum drive_fault synchronism_watch(struct drive *drive, const struct rotor *rotor)
 {
-    if (!drive->params.monitors_synchronism) {
-        drive->synchronism_due = drive->period + NOT_YET;
-        return DRIVE_FAULT_NONE;
-    }
     const enum synchronism verdict = step(drive, rotor);
 
     return verdict == SYNCHRONISM_SURE ? DRIVE_FAULT_NONE : act(drive, verdict);

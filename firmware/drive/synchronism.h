@@ -15,10 +15,16 @@ void synchronism_reset(struct drive *drive);
 void synchronism_start(struct drive *drive);
 
 /*
- * The monitor's steps follow one another in periods in which the reference just goes on: where a
- * command has loaded or stops it, or it begins a phase, they wait, so that no interrupt pays for
- * both.
+ * The monitor's steps follow one another in periods in which the reference just goes on and no
+ * command is looked at: elsewhere they wait, so that no interrupt pays for both.
  */
+static inline void synchronism_wait(struct drive *drive)
+{
+    if (drive->period == drive->synchronism_due) {
+        drive->synchronism_due++;
+    }
+}
+
 static inline bool synchronism_is_due(struct drive *drive)
 {
     if (drive->period != drive->synchronism_due) {

@@ -29,33 +29,13 @@ struct estimator_params {
 
 struct estimator {
     union {
+        struct estimate estimate; /* with which each of them begins */
         struct invariant_ekf invariant;
         struct steady_state_ekf steady_state;
         struct encoder_observer encoder;
         struct high_gain_observer high_gain;
     };
 };
-
-/* One period's measurements. */
-struct estimator_input {
-    struct phases current;
-    struct phases voltage; /* mean over the past period */
-    int32_t encoder_count;
-    bool holding;
-};
-
-static inline const struct estimate *estimator_estimate(const struct estimator *estimator,
-                                                        const struct estimator_params *params)
-{
-    if (params->kind == ESTIMATOR_INVARIANT_EKF) {
-        return &estimator->invariant.estimate;
-    }
-    if (params->kind == ESTIMATOR_STEADY_STATE_EKF) {
-        return &estimator->steady_state.estimate;
-    }
-    return params->kind == ESTIMATOR_ENCODER_OBSERVER ? &estimator->encoder.estimate
-                                                      : &estimator->high_gain.estimate;
-}
 
 /* What is known when the bridge is switched on: at rest, without current. */
 struct estimator_start {
@@ -107,7 +87,7 @@ static inline struct phases estimator_expected_current(const struct estimator *e
                                                        const struct estimator_params *params,
                                                        struct phases voltage)
 {
-    const struct estimate *x = estimator_estimate(estimator, params);
+    const struct estimate *x = &estimator->estimate;
     struct phases driving = voltage;
 
     if (params->kind == ESTIMATOR_INVARIANT_EKF) {
@@ -161,22 +141,23 @@ static inline void estimator_place(struct estimator *estimator,
 /* From S(k-1) to S(k); the steady-state EKF has no tuning of its own for the hold. */
 static inline const struct estimate *estimator_step(struct estimator *estimator,
                                                     const struct estimator_params *params,
-                                                    const struct estimator_input *input)
+                                                    const struct channels *winding,
+                                                    int32_t encoder_count, bool holding)
 {
     if (params->kind == ESTIMATOR_INVARIANT_EKF) {
-        invariant_ekf_step(&estimator->invariant, &params->invariant, input->current,
-                           input->voltage, input->holding);
+        invariant_ekf_step(&estimator->invariant, &params->invariant, winding->current,
+                           winding->voltage, holding);
     } else if (params->kind == ESTIMATOR_STEADY_STATE_EKF) {
-        steady_state_ekf_step(&estimator->steady_state, &params->steady_state, input->current,
-                              input->voltage);
+        steady_state_ekf_step(&estimator->steady_state, &params->steady_state, winding->current,
+                              winding->voltage);
     } else if (params->kind == ESTIMATOR_ENCODER_OBSERVER) {
-        encoder_observer_step(&estimator->encoder, &params->encoder, input->current, input->voltage,
-                              input->encoder_count, input->holding);
+        encoder_observer_step(&estimator->encoder, &params->encoder, winding->current,
+                              winding->voltage, encoder_count, holding);
     } else {
-        high_gain_observer_step(&estimator->high_gain, &params->high_gain, input->current,
-                                input->encoder_count);
+        high_gain_observer_step(&estimator->high_gain, &params->high_gain, winding->current,
+                                encoder_count);
     }
-    return estimator_estimate(estimator, params);
+    return &estimator->estimate;
 }
 
 #endif

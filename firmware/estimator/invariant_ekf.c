@@ -70,38 +70,68 @@ void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_p
     settle(ekf);
 }
 
-static void predict(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                    struct phases voltage)
-{
-    struct estimate *x = &ekf->estimate;
-    const struct phases next = forced_current(&x->winding, x->free_current, voltage);
-    const struct phases sum = {x->current.a + next.a, x->current.b + next.b};
+/* Current and rotor as the model has them at S(k). */
+struct predicted {
+    struct phases current;
+    struct rotor rotor;
+};
 
-    predict_rotor(&params->model, &x->rotor, num_half(park(sum, x->mid_period).q));
-    x->current = next;
+static struct predicted predict(const struct invariant_ekf *ekf,
+                                const struct invariant_ekf_params *params, struct phases voltage)
+{
+    const struct estimate *x = &ekf->estimate;
+    struct predicted next = {forced_current(&x->winding, x->free_current, voltage), x->rotor};
+    const struct phases sum = {x->current.a + next.current.a, x->current.b + next.current.b};
+
+    predict_rotor(&params->model, &next.rotor, num_half(park(sum, x->mid_period).q));
+    return next;
+}
+
+/* Corrections that differ between motion and hold. */
+struct correction {
+    num_t turns;  /* of the angle */
+    num_t bias_q; /* of the voltage offset, in the direction of the frame's q axis */
+};
+
+static struct correction correct_in_motion(const struct invariant_ekf_params *params, num_t speed,
+                                           struct dq innovation)
+{
+    const struct invariant_ekf_gain_set *gain = &params->moving;
+    const num_t direction = num_limit(speed, params->odd_gain_speed);
+    const num_t odd = num_mul(innovation.d, num_mul_coef(direction, gain->angle_d));
+
+    return (struct correction){odd + num_mul_coef(innovation.q, gain->angle_q),
+                               num_mul_coef_nearest(odd, gain->bias_per_turn)};
+}
+
+static struct correction correct_in_hold(const struct invariant_ekf_gain_set *gain,
+                                         struct dq innovation)
+{
+    return (struct correction){num_mul_coef(innovation.q, gain->angle_q),
+                               num_mul_coef_nearest(innovation.q, gain->bias_q)};
 }
 
 /* Returns the innovation in the estimated rotor frame. */
 static struct dq correct(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                         const struct invariant_ekf_gain_set *gain, struct phases current)
+                         const struct invariant_ekf_gain_set *gain,
+                         const struct predicted *predicted, struct phases current, bool holding)
 {
     struct estimate *x = &ekf->estimate;
-    const struct phases error = {current.a - x->current.a, current.b - x->current.b};
+    const struct rotor *rotor = &predicted->rotor;
+    const struct phases error = {current.a - predicted->current.a,
+                                 current.b - predicted->current.b};
     const struct sincos frame = estimate_end_of_period(x);
     const struct dq innovation = park(error, frame);
-    const num_t direction = num_limit(x->rotor.speed, params->odd_gain_speed);
-    const num_t odd = num_mul(innovation.d, num_mul_coef(direction, gain->angle_d));
-    const num_t turns = odd + num_mul_coef(innovation.q, gain->angle_q);
-    const num_t bias = num_mul_coef_nearest(odd, gain->bias_per_turn) +
-                       num_mul_coef_nearest(innovation.q, gain->bias_q);
+    const struct correction by = holding ? correct_in_hold(gain, innovation)
+                                         : correct_in_motion(params, rotor->speed, innovation);
 
-    x->current.a += num_mul_coef(error.a, gain->current);
-    x->current.b += num_mul_coef(error.b, gain->current);
-    x->rotor.speed += num_mul_coef(innovation.q, gain->speed_q);
-    x->rotor.position = position_add(x->rotor.position, angle_from_any_turns(turns));
-    x->rotor.load_torque += num_mul_coef(innovation.q, gain->load_q);
-    ekf->bias.a -= num_mul_unit_nearest(bias, frame.sin);
-    ekf->bias.b += num_mul_unit_nearest(bias, frame.cos);
+    x->current.a = predicted->current.a + num_mul_coef(error.a, gain->current);
+    x->current.b = predicted->current.b + num_mul_coef(error.b, gain->current);
+    x->rotor.speed = rotor->speed + num_mul_coef(innovation.q, gain->speed_q);
+    x->rotor.position = position_add(rotor->position, angle_from_any_turns(by.turns));
+    x->rotor.load_torque = rotor->load_torque + num_mul_coef(innovation.q, gain->load_q);
+    ekf->bias.a -= num_mul_unit_nearest(by.bias_q, frame.sin);
+    ekf->bias.b += num_mul_unit_nearest(by.bias_q, frame.cos);
     return innovation;
 }
 
@@ -154,10 +184,9 @@ void invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_pa
 {
     const struct invariant_ekf_gain_set *gain = holding ? hold_gains(ekf, params) : &params->moving;
     const struct phases driving = {voltage.a - ekf->bias.a, voltage.b - ekf->bias.b};
-    struct dq innovation;
+    const struct predicted predicted = predict(ekf, params, driving);
+    const struct dq innovation = correct(ekf, params, gain, &predicted, current, holding);
 
-    predict(ekf, params, driving);
-    innovation = correct(ekf, params, gain, current);
     ekf->innovation_sum += innovation.d;
     if (holding) {
         correct_hold(ekf, params, gain, innovation);

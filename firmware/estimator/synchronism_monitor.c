@@ -5,6 +5,18 @@ static num_t quarter(num_t x)
     return num_half(num_half(x));
 }
 
+/* So many blocks of an unbroken row. */
+static enum synchronism stalled_after(struct synchronism_monitor *monitor,
+                                      const struct synchronism_monitor_params *params,
+                                      uint32_t blocks_in_row, uint32_t limit)
+{
+    if (blocks_in_row < limit) {
+        return SYNCHRONISM_SURE;
+    }
+    monitor->doubtful = params->doubtful_blocks;
+    return SYNCHRONISM_STALLED;
+}
+
 /* Of an unbroken row. */
 static uint32_t count(uint32_t blocks_in_row, bool goes_on)
 {
@@ -141,18 +153,21 @@ enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *moni
 
 enum synchronism synchronism_monitor_judge_torque(struct synchronism_monitor *monitor,
                                                   const struct synchronism_monitor_params *params,
-                                                  num_t wanted, const struct rotor *rotor)
+                                                  num_t wanted, num_t speed)
 {
-    const bool slow = num_abs(rotor->speed) < params->standing_speed;
+    const bool slow = num_abs(speed) < params->standing_speed;
 
     monitor->full = num_abs(wanted) > params->full_current;
     monitor->standing = count(monitor->standing, monitor->full && slow);
-    monitor->torn = count(monitor->torn, num_abs(rotor->load_torque) > params->load_limit);
-    if (monitor->standing >= params->standing_blocks || monitor->torn >= params->torn_blocks) {
-        monitor->doubtful = params->doubtful_blocks;
-        return SYNCHRONISM_STALLED;
-    }
-    return SYNCHRONISM_SURE;
+    return stalled_after(monitor, params, monitor->standing, params->standing_blocks);
+}
+
+enum synchronism synchronism_monitor_judge_load(struct synchronism_monitor *monitor,
+                                                const struct synchronism_monitor_params *params,
+                                                num_t load_torque)
+{
+    monitor->torn = count(monitor->torn, num_abs(load_torque) > params->load_limit);
+    return stalled_after(monitor, params, monitor->torn, params->torn_blocks);
 }
 
 /* Electrical turns beside its reference at which what holds a rotor loses its grip. */
@@ -161,19 +176,31 @@ enum synchronism synchronism_monitor_judge_torque(struct synchronism_monitor *mo
 enum synchronism
 synchronism_monitor_judge_following(struct synchronism_monitor *monitor,
                                     const struct synchronism_monitor_params *params, num_t error,
-                                    num_t deficit, bool holding)
+                                    num_t deficit)
 {
     const num_t opening = error < NUM(0.0) ? -deficit : deficit;
+
+    monitor->lagging = count(monitor->lagging, monitor->full && num_abs(error) > GRIP &&
+                                                   opening > -params->standing_speed);
+    return stalled_after(monitor, params, monitor->lagging, params->lagging_blocks);
+}
+
+enum synchronism synchronism_monitor_judge_grip(struct synchronism_monitor *monitor,
+                                                const struct synchronism_monitor_params *params,
+                                                num_t error)
+{
     const num_t distance = num_abs(error);
 
-    monitor->lagging = count(monitor->lagging,
-                             monitor->full && distance > GRIP && opening > -params->standing_speed);
-    if ((holding && distance > GRIP) || monitor->lagging >= params->lagging_blocks) {
+    if (distance > num_half(GRIP)) {
         monitor->doubtful = params->doubtful_blocks;
-        return SYNCHRONISM_STALLED;
     }
-    if ((holding && distance > num_half(GRIP)) || monitor->lagging >= params->doubt_blocks ||
-        monitor->standing >= params->doubt_blocks) {
+    return distance > GRIP ? SYNCHRONISM_STALLED : SYNCHRONISM_SURE;
+}
+
+enum synchronism synchronism_monitor_doubt(struct synchronism_monitor *monitor,
+                                           const struct synchronism_monitor_params *params)
+{
+    if (monitor->lagging >= params->doubt_blocks || monitor->standing >= params->doubt_blocks) {
         monitor->doubtful = params->doubtful_blocks;
     }
     if (monitor->doubtful == 0u) {

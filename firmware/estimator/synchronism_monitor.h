@@ -84,7 +84,7 @@ synchronism_monitor_design(const struct synchronism_monitor_task *task);
 
 void synchronism_monitor_reset(struct synchronism_monitor *monitor);
 
-/* ---- The five steps of a block, each for a period of its own. ---- */
+/* ---- The eight steps of a block, each for a period of its own. ---- */
 
 /* Takes the block's sum of innovations in d. */
 void synchronism_monitor_take(struct synchronism_monitor *monitor,
@@ -104,15 +104,27 @@ enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *moni
 /* Whether the torque is used up in vain: stalled, or sure. `wanted`: the q current asked for. */
 enum synchronism synchronism_monitor_judge_torque(struct synchronism_monitor *monitor,
                                                   const struct synchronism_monitor_params *params,
-                                                  num_t wanted, const struct rotor *rotor);
+                                                  num_t wanted, num_t speed);
 
-/*
- * Whether the rotor follows: stalled, or what is left of the doubts of all steps. `error`:
- * reference less estimate, electrical turns; `deficit`: the same of the speeds.
- */
+/* Whether the load is more than the motor can hold: stalled, or sure. */
+enum synchronism synchronism_monitor_judge_load(struct synchronism_monitor *monitor,
+                                                const struct synchronism_monitor_params *params,
+                                                num_t load_torque);
+
+/* Whether the rotor follows: stalled, or sure. `error`: reference less estimate, electrical turns;
+   `deficit`: the same of the speeds. */
 enum synchronism
 synchronism_monitor_judge_following(struct synchronism_monitor *monitor,
                                     const struct synchronism_monitor_params *params, num_t error,
-                                    num_t deficit, bool holding);
+                                    num_t deficit);
+
+/* In a hold: whether the current still holds the rotor: stalled, or sure. */
+enum synchronism synchronism_monitor_judge_grip(struct synchronism_monitor *monitor,
+                                                const struct synchronism_monitor_params *params,
+                                                num_t error);
+
+/* What the block's other steps leave: doubtful, or sure. */
+enum synchronism synchronism_monitor_doubt(struct synchronism_monitor *monitor,
+                                           const struct synchronism_monitor_params *params);
 
 #endif

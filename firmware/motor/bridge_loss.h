@@ -45,12 +45,10 @@ struct bridge_loss_params bridge_loss_design(const struct motor_params *motor,
 /*
  * The voltage that acted on the phases over S(k-1)...S(k): what was commanded less the loss.
  * `before` and `now`: currents sampled at the two ends. `bus_reciprocal`: 1 / bus. Right to 50 mV
- * rms at 24 V and 1 us, against 0.4 V that are lost (tests/unit/test_bridge_loss.c). Once in the
- * image, whoever asks.
+ * rms at 24 V and 1 us, against 0.4 V that are lost (tests/unit/test_bridge_loss.c).
  */
-__attribute__((noinline)) struct phases bridge_loss_voltage(const struct bridge_loss_params *params,
-                                                            struct phases commanded,
-                                                            struct phases before, struct phases now,
-                                                            num_t bus, num_t bus_reciprocal);
+struct phases bridge_loss_voltage(const struct bridge_loss_params *params, struct phases commanded,
+                                  struct phases before, struct phases now, num_t bus,
+                                  num_t bus_reciprocal);
 
 #endif

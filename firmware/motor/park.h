@@ -14,6 +14,12 @@ struct dq {
     num_t q; /* a quarter electrical turn ahead: torque is Km i_q */
 };
 
+/* What is measured of the winding at S(k). */
+struct channels {
+    struct phases current;
+    struct phases voltage; /* mean over the past period */
+};
+
 static inline struct dq park(struct phases x, struct sincos angle)
 {
     struct dq y = {num_mul_unit(x.a, angle.cos) + num_mul_unit(x.b, angle.sin),

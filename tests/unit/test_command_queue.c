@@ -210,25 +210,55 @@ static void test_a_flush_never_brings_commands_back(void)
     TEST_ASSERT_TRUE(is_due(3, 50));
 }
 
-/* What lets the interrupt pass the queue by. */
-static void test_attention_is_asked_for_as_long_as_anything_waits(void)
+/* Periods from `from` on in which the queue calls while nothing acts, up to `to`; -1: none. */
+static int calls_from(uint32_t from, uint32_t to, bool idle)
 {
-    command_queue_rest(&queue);
-    TEST_ASSERT_FALSE(queue.attention);
+    for (uint32_t period = from; period <= to; period++) {
+        if (command_queue_calls(&queue, period, idle)) {
+            return (int)period;
+        }
+    }
+    return -1;
+}
+
+/* What lets the interrupt pass the queue by. */
+static void test_the_queue_calls_when_something_was_posted_and_when_it_is_due(void)
+{
+    const struct take_over take_over = {.at_period = 130};
+
+    command_queue_rest(&queue, 10);
+    TEST_ASSERT_EQUAL_INT(-1, calls_from(11, 200, true));
     put(1, 100);
-    command_queue_rest(&queue);
-    TEST_ASSERT_TRUE(queue.attention);
+    TEST_ASSERT_EQUAL_INT(11, calls_from(11, 200, false));
+    command_queue_rest(&queue, 11);
+    TEST_ASSERT_EQUAL_INT(99, calls_from(12, 200, false)); /* a move is loaded a period ahead */
+    command_queue_rest(&queue, 99);
+    TEST_ASSERT_EQUAL_INT(100, calls_from(100, 200, false)); /* all else acts in its period */
     command_queue_drop(&queue);
-    command_queue_put_urgent(&queue, &queue.disable, 100);
-    command_queue_rest(&queue);
-    TEST_ASSERT_TRUE(queue.attention);
-    (void)command_queue_take_urgent(&queue, &queue.disable, 100);
-    command_queue_put_urgent(&queue, &queue.stop, 100);
-    command_queue_rest(&queue);
-    TEST_ASSERT_TRUE(queue.attention);
-    (void)command_queue_take_urgent(&queue, &queue.stop, 100);
-    command_queue_rest(&queue);
-    TEST_ASSERT_FALSE(queue.attention);
+
+    command_queue_put_urgent(&queue, &queue.disable, 120);
+    command_queue_put_urgent(&queue, &queue.stop, 110);
+    command_queue_put_take_over(&queue, &take_over);
+    command_queue_rest(&queue, 100);
+    TEST_ASSERT_EQUAL_INT(110, calls_from(101, 200, true));
+    (void)command_queue_take_urgent(&queue, &queue.stop, 110);
+    command_queue_rest(&queue, 110);
+    TEST_ASSERT_EQUAL_INT(120, calls_from(111, 200, true));
+    (void)command_queue_take_urgent(&queue, &queue.disable, 120);
+    command_queue_rest(&queue, 120);
+    TEST_ASSERT_EQUAL_INT(130, calls_from(121, 200, true));
+    command_queue_withdraw_take_over(&queue);
+    command_queue_rest(&queue, 130);
+    TEST_ASSERT_EQUAL_INT(-1, calls_from(131, 200, true));
+}
+
+/* A move whose period has passed waits for the one before it; the queue calls when that is done. */
+static void test_the_queue_calls_at_rest_for_a_command_that_is_overdue(void)
+{
+    put(1, 50);
+    command_queue_rest(&queue, 60);
+    TEST_ASSERT_EQUAL_INT(-1, calls_from(61, 200, false));
+    TEST_ASSERT_EQUAL_INT(61, calls_from(61, 200, true));
 }
 
 int main(void)
@@ -248,6 +278,7 @@ int main(void)
     RUN_TEST(test_of_two_disables_all_that_was_posted_before_is_flushed);
     RUN_TEST(test_stop_and_disable_do_not_stand_in_each_others_way);
     RUN_TEST(test_a_flush_never_brings_commands_back);
-    RUN_TEST(test_attention_is_asked_for_as_long_as_anything_waits);
+    RUN_TEST(test_the_queue_calls_when_something_was_posted_and_when_it_is_due);
+    RUN_TEST(test_the_queue_calls_at_rest_for_a_command_that_is_overdue);
     return UNITY_END();
 }

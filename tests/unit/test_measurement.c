@@ -40,11 +40,11 @@ static void test_codes_become_currents_and_voltages(void)
     const struct sample_set now = measured(&samples);
     const double rounding = 2.0 * (NUM_ROUNDING + COEF_ROUNDING);
 
-    TEST_ASSERT_NUM_WITHIN(rounding, 1000.0 * 12.0 / 4096.0 / 6.0, now.current.a);
-    TEST_ASSERT_NUM_WITHIN(rounding, -1000.0 * 12.0 / 4096.0 / 6.0, now.current.b);
+    TEST_ASSERT_NUM_WITHIN(rounding, 1000.0 * 12.0 / 4096.0 / 6.0, now.winding.current.a);
+    TEST_ASSERT_NUM_WITHIN(rounding, -1000.0 * 12.0 / 4096.0 / 6.0, now.winding.current.b);
     TEST_ASSERT_NUM_WITHIN(rounding, 3000.0 * 31.2 / 4096.0 / 24.0, now.bus);
-    TEST_ASSERT_NUM_WITHIN(rounding, 1000.0 * 62.4 / 4096.0 / 24.0, now.voltage.a);
-    TEST_ASSERT_NUM_WITHIN(rounding * 2.0, -1.3, now.voltage.b);
+    TEST_ASSERT_NUM_WITHIN(rounding, 1000.0 * 62.4 / 4096.0 / 24.0, now.winding.voltage.a);
+    TEST_ASSERT_NUM_WITHIN(rounding * 2.0, -1.3, now.winding.voltage.b);
 }
 
 static void test_the_ends_of_the_converters_are_measured_too(void)
@@ -52,8 +52,8 @@ static void test_the_ends_of_the_converters_are_measured_too(void)
     const struct hal_samples lowest = {.current_a = 0, .current_b = 4095, .bus_voltage = 4095};
     const struct sample_set now = measured(&lowest);
 
-    TEST_ASSERT_NUM_WITHIN(1e-4, -1.0, now.current.a);
-    TEST_ASSERT_NUM_WITHIN(1e-4, 2047.0 / 2048.0, now.current.b);
+    TEST_ASSERT_NUM_WITHIN(1e-4, -1.0, now.winding.current.a);
+    TEST_ASSERT_NUM_WITHIN(1e-4, 2047.0 / 2048.0, now.winding.current.b);
     TEST_ASSERT_NUM_WITHIN(1e-4, 4095.0 / 4096.0 * 1.3, now.bus);
 }
 
@@ -138,18 +138,18 @@ static void test_what_has_been_found_is_taken_off_every_sample(void)
     TEST_ASSERT_EQUAL(OFFSETS_FOUND, measurement_calibrate(&measurement, &params, &shifted));
 
     const struct sample_set now = measured(&shifted);
-    TEST_ASSERT_NUM_WITHIN(0.01 * current_per_code, 0.0, now.current.a);
-    TEST_ASSERT_NUM_WITHIN(0.01 * current_per_code, 0.0, now.current.b);
-    TEST_ASSERT_NUM_WITHIN(0.01 * voltage_per_code, 0.0, now.voltage.a);
-    TEST_ASSERT_NUM_WITHIN(0.01 * voltage_per_code, 0.0, now.voltage.b);
+    TEST_ASSERT_NUM_WITHIN(0.01 * current_per_code, 0.0, now.winding.current.a);
+    TEST_ASSERT_NUM_WITHIN(0.01 * current_per_code, 0.0, now.winding.current.b);
+    TEST_ASSERT_NUM_WITHIN(0.01 * voltage_per_code, 0.0, now.winding.voltage.a);
+    TEST_ASSERT_NUM_WITHIN(0.01 * voltage_per_code, 0.0, now.winding.voltage.b);
 }
 
 static void test_without_calibration_nothing_is_taken_off(void)
 {
     const struct sample_set now = measured(&nothing_flows);
 
-    TEST_ASSERT_TRUE(now.current.a == NUM(0.0));
-    TEST_ASSERT_TRUE(now.voltage.b == NUM(0.0));
+    TEST_ASSERT_TRUE(now.winding.current.a == NUM(0.0));
+    TEST_ASSERT_TRUE(now.winding.voltage.b == NUM(0.0));
 }
 
 /* `codes` off on one of the four channels. */

@@ -57,28 +57,28 @@ static num_t innovation_sum(double voltage_V)
 
 static enum synchronism block(const struct course *c)
 {
-    const struct rotor rotor = {.speed = num_from_double(c->speed_rad_s / base.speed_rad_s),
-                                .load_torque = num_from_double(c->load_Nm / base.torque_Nm)};
-    enum synchronism verdict;
+    const num_t speed = num_from_double(c->speed_rad_s / base.speed_rad_s);
+    const num_t error = num_from_double(c->error_turns);
+    const num_t deficit = num_from_double(c->deficit_rad_s / base.speed_rad_s);
+    enum synchronism verdict[] = {
+        (synchronism_monitor_take(&monitor, &params, innovation_sum(c->disturbance_V), c->holding),
+         synchronism_monitor_judge_voltage(&monitor, &params, speed,
+                                           num_from_double(c->i_d_A / base.current_A))),
+        synchronism_monitor_judge_hold(&monitor, &params, speed, c->holding),
+        synchronism_monitor_judge_torque(&monitor, &params,
+                                         num_from_double(c->wanted_A / base.current_A), speed),
+        synchronism_monitor_judge_load(&monitor, &params,
+                                       num_from_double(c->load_Nm / base.torque_Nm)),
+        synchronism_monitor_judge_following(&monitor, &params, error, deficit),
+        c->holding ? synchronism_monitor_judge_grip(&monitor, &params, error) : SYNCHRONISM_SURE,
+    };
 
-    synchronism_monitor_take(&monitor, &params, innovation_sum(c->disturbance_V), c->holding);
-    verdict = synchronism_monitor_judge_voltage(&monitor, &params, rotor.speed,
-                                                num_from_double(c->i_d_A / base.current_A));
-    if (verdict != SYNCHRONISM_SURE) {
-        return verdict;
+    for (size_t i = 0; i < sizeof verdict / sizeof *verdict; ++i) {
+        if (verdict[i] != SYNCHRONISM_SURE) {
+            return verdict[i];
+        }
     }
-    verdict = synchronism_monitor_judge_hold(&monitor, &params, rotor.speed, c->holding);
-    if (verdict != SYNCHRONISM_SURE) {
-        return verdict;
-    }
-    verdict = synchronism_monitor_judge_torque(
-        &monitor, &params, num_from_double(c->wanted_A / base.current_A), &rotor);
-    if (verdict != SYNCHRONISM_SURE) {
-        return verdict;
-    }
-    return synchronism_monitor_judge_following(&monitor, &params, num_from_double(c->error_turns),
-                                               num_from_double(c->deficit_rad_s / base.speed_rad_s),
-                                               c->holding);
+    return synchronism_monitor_doubt(&monitor, &params);
 }
 
 /* The verdict after a time of the same. */

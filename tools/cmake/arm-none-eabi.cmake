@@ -13,7 +13,9 @@ if(STEADYSTEP_CORE STREQUAL "m4f")
   set(machine mps2-an386)
 elseif(STEADYSTEP_CORE STREQUAL "m0plus")
   # QEMU has no Cortex-M0+; its Cortex-M0 machine executes the same instruction set, ARMv6-M.
-  set(core_flags "-mcpu=cortex-m0plus -mthumb -mfloat-abi=soft")
+  # Eight registers do not hold what partial redundancy elimination keeps alive: without it the
+  # control interrupt is 4 % shorter (tools/cycles).
+  set(core_flags "-mcpu=cortex-m0plus -mthumb -mfloat-abi=soft -fno-tree-pre")
   set(machine microbit)
 else()
   message(FATAL_ERROR "STEADYSTEP_CORE is '${STEADYSTEP_CORE}'; expected m4f or m0plus")
