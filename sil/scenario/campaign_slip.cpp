@@ -348,7 +348,8 @@ Course course_of(const Record &record, double teeth)
         if (course.slip == Course::none && off(row) > 90) {
             course.slip = row;
         }
-        if (course.doubt == Course::none && record.at(row, SYNCHRONISM) > DRIVE_SYNCHRONISM_SURE) {
+        if (course.doubt == Course::none &&
+            record.at(row, SYNCHRONISM) > double(DRIVE_SYNCHRONISM_SURE)) {
             course.doubt = row;
         }
     }

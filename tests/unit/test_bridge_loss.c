@@ -39,7 +39,7 @@ static double leg_V(int step, double share, double current)
         return high(step, share) ? bus_V : 0.0;
     }
     if (current == 0.0) {
-        return NAN;
+        return (double)NAN;
     }
     return current > 0.0 ? -BRIDGE_DIODE_DROP_V : bus_V + BRIDGE_DIODE_DROP_V;
 }
