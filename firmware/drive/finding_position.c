@@ -27,28 +27,21 @@ static struct hal_outputs modulate(struct drive *drive, struct initial_position_
     return duties;
 }
 
-static void go_on_without_current(struct drive *drive)
+/* After an alignment its current flows on, now in the d axis of the hold. */
+static void go_on(struct drive *drive, const struct sample_set *now)
 {
     const struct initial_position *finding = &drive->finding;
 
     state_machine_position_found(drive, finding->angle);
     standstill_pulses_reset(&drive->pulses, &drive->pulses_params,
-                            initial_position_full_asymmetry(finding, &drive->finding_params));
-}
-
-/* The current of the alignment flows on, now in the d axis of the hold. */
-static void go_on_aligned(struct drive *drive, const struct sample_set *now)
-{
-    const struct initial_position *finding = &drive->finding;
-    const struct actuation actuation = drive->actuation;
-
-    state_machine_position_found(drive, finding->angle);
-    standstill_pulses_reset(&drive->pulses, &drive->pulses_params, NUM(0.0));
-    drive->actuation = actuation;
-    drive->past_current = now->winding.current;
-    drive->hold.i_d = finding->current_reference;
-    drive->current_control.integral.d = finding->voltage;
-    estimator_take_current(&drive->estimator, &drive->params.estimator, now->winding.current);
+                            finding->by_impulses
+                                ? initial_position_full_asymmetry(finding, &drive->finding_params)
+                                : NUM(0.0));
+    if (!finding->by_impulses) {
+        drive->hold.i_d = finding->current_reference;
+        drive->current_control.integral.d = finding->voltage;
+        estimator_take_current(&drive->estimator, &drive->params.estimator, now->winding.current);
+    }
 }
 
 struct hal_outputs finding_position_cycle(struct drive *drive, const struct hal_samples *samples)
@@ -70,11 +63,7 @@ struct hal_outputs finding_position_cycle(struct drive *drive, const struct hal_
     const struct hal_outputs duties = modulate(drive, output);
 
     if (drive->finding.stage == INITIAL_POSITION_FOUND) {
-        if (drive->finding.by_impulses) {
-            go_on_without_current(drive);
-        } else {
-            go_on_aligned(drive, now);
-        }
+        go_on(drive, now);
     } else if (drive->finding.stage == INITIAL_POSITION_NOT_FOUND) {
         state_machine_fault(drive, DRIVE_FAULT_POSITION_NOT_FOUND);
         return (struct hal_outputs){.bridge_on = false};

@@ -37,11 +37,9 @@ static void reset_blocks(struct drive *drive)
     position_law_reset(&drive->law);
     detent_compensation_reset(&drive->detent);
     current_control_reset(&drive->current_control);
-    actuation_reset(&drive->actuation);
     synchronism_reset(drive);
     drive->predicted_current = (struct phases){NUM(0.0), NUM(0.0)};
     drive->demanded_voltage = drive->predicted_current;
-    drive->past_current = drive->predicted_current;
     drive->predicted_frame = (struct sincos){UNIT(1.0), UNIT(0.0)};
 }
 
@@ -103,6 +101,9 @@ void state_machine_position_found(struct drive *drive, angle_t angle)
 static void find_position_or_power_up(struct drive *drive)
 {
     drive->start = drive->params.initial_position;
+    /* the bridge is off; a position that is found by alignment leaves it on, with current */
+    actuation_reset(&drive->actuation);
+    drive->past_current = (struct phases){NUM(0.0), NUM(0.0)};
     if (drive->params.finds_position) {
         reset_blocks(drive);
         initial_position_start(&drive->finding, &drive->finding_params, drive->start.fraction);

@@ -82,7 +82,8 @@ struct synchronism_monitor {
 struct synchronism_monitor_params
 synchronism_monitor_design(const struct synchronism_monitor_task *task);
 
-void synchronism_monitor_reset(struct synchronism_monitor *monitor);
+/* Apart, so that the size of what it sets can be read off the image. */
+__attribute__((noinline)) void synchronism_monitor_reset(struct synchronism_monitor *monitor);
 
 /* ---- The eight steps of a block, each for a period of its own. ---- */
 
