@@ -106,16 +106,14 @@ struct drive_settings {
 
     /* law and feedback */
     enum position_law law;
-    enum drive_feedback feedback;                 /* sensorless */
-    enum drive_estimator estimator;               /* of sensorless feedback; invariant EKF */
-    enum drive_observer observer;                 /* on the encoder; model */
-    enum drive_voltage_source voltage_source;     /* measured */
-    enum drive_initial_position initial_position; /* told */
-    enum drive_synchronism_policy
-        synchronism_policy; /* off; of sensorless feedback: up to 100 cycles in some interrupts,
-                               beyond what the default path may take */
-    bool feed_forward;      /* reference speed and acceleration into the law; true */
-    bool detent_learning;   /* with an encoder only; true for its default law */
+    enum drive_feedback feedback;                     /* sensorless */
+    enum drive_estimator estimator;                   /* of sensorless feedback; invariant EKF */
+    enum drive_observer observer;                     /* on the encoder; model */
+    enum drive_voltage_source voltage_source;         /* measured */
+    enum drive_initial_position initial_position;     /* told */
+    enum drive_synchronism_policy synchronism_policy; /* fault; of sensorless feedback */
+    bool feed_forward;                 /* reference speed and acceleration into the law; true */
+    bool detent_learning;              /* with an encoder only; true for its default law */
     bool bridge_loss_compensation;     /* dead time and diodes; true */
     bool resistance_adaptation;        /* track the series resistance while holding; true */
     double law_bandwidth_rad_s;        /* w0 of the position law, pole pair; 200, of the default law

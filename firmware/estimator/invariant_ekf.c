@@ -3,6 +3,10 @@
 /* The quick gains settle in 2 ms; what they take in later than that is noise. */
 #define FOLLOWING_PERIODS 20u
 
+/* Behind them the hold returns to the load found, for a while, unless the load changes by twice a
+   step: a hold that followed each drift at once would follow its own compensation around. */
+#define REST_PERIODS 100u
+
 /* A rotor that is drawn into place from where it was told not to be comes to rest within 50 ms. */
 #define SWING_PERIODS 500u
 
@@ -158,14 +162,17 @@ static const struct invariant_ekf_gain_set *hold_gains(struct invariant_ekf *ekf
         }
         return &params->unloaded;
     }
-    if (num_abs(change) > params->load_step) {
-        ekf->following_periods = FOLLOWING_PERIODS;
+    const num_t size = num_abs(change);
+
+    if (size > params->load_step &&
+        (ekf->following_periods == 0u || num_half(size) > params->load_step)) {
+        ekf->following_periods = FOLLOWING_PERIODS + REST_PERIODS;
     }
     if (ekf->following_periods == 0u) {
         return &params->holding;
     }
     ekf->following_periods--;
-    return &params->following;
+    return ekf->following_periods < REST_PERIODS ? &params->holding : &params->following;
 }
 
 static void correct_hold(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,

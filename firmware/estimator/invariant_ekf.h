@@ -21,7 +21,8 @@
  * At rest no innovation tells load from displacement; only the back-EMF of the rotor's own motion
  * does, and what is integrated of it walks away with noise and offset. So the hold follows the load
  * at once, but returns within 30 ms to the load it had settled at, unless the difference shows a
- * load step: then what is estimated is the load from there on.
+ * load step: then what is estimated is the load from there on. Of small steps one in 12 ms is
+ * believed, so that the estimate cannot run away with the current that compensates it.
  *
  * Gains: design/invariant_ekf_design.h.
  */
@@ -60,7 +61,7 @@ struct invariant_ekf {
     struct phases bias;         /* offset of the measured voltage */
     num_t innovation_sum;       /* of nu_d since the synchronism monitor has taken it */
     num_t settled_load;         /* torque that a hold returns to */
-    uint32_t following_periods; /* left of the gains that follow a load step */
+    uint32_t following_periods; /* left of the gains that follow a load step, and of their rest */
     uint32_t swing_end;         /* of unloaded_periods, when the rotor has swung into place */
     uint32_t unloaded_periods;  /* left of the hold in which no load step is expected */
 };
