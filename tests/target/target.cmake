@@ -24,8 +24,13 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
   list(FILTER unit_tests EXCLUDE REGEX "test_(detent_compensation|motion_plan)\\.c$")
   # An application, its test's board and the stack of the design take more than 16 KB.
   set(large_tests application console)
-  if(STEADYSTEP_CORE STREQUAL m0plus) # half a minute each; the M4F core runs them in fixed point, too
-    list(FILTER unit_tests EXCLUDE REGEX "test_(motion|sliding_mode|application|console)\\.c$")
+  # In fixed point each test runs on one core: the M4F has those of half a minute and more, the M0+
+  # all others. Arithmetic, which knows the core, runs on both.
+  set(long_tests "application|console|initial_position|invariant_ekf|motion|sliding_mode")
+  if(STEADYSTEP_CORE STREQUAL m0plus)
+    list(FILTER unit_tests EXCLUDE REGEX "test_(${long_tests})\\.c$")
+  elseif(numeric STREQUAL fixed)
+    list(FILTER unit_tests INCLUDE REGEX "test_(${long_tests}|num|num_armv6m|trig|park)\\.c$")
   endif()
   foreach(source IN LISTS unit_tests)
     cmake_path(GET source STEM stem)
