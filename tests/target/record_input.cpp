@@ -56,13 +56,14 @@ plant::Config bench_plant(const drive_settings &settings)
     return config;
 }
 
-replay_samples packed(const hal_samples &samples)
+replay_samples packed(const hal_samples &samples, std::int32_t encoder_count_before)
 {
-    if (samples.temperature || samples.flags)
-        throw std::runtime_error("a sample that replay_samples does not hold is not zero");
+    const std::int32_t step = samples.encoder_count - encoder_count_before;
+
+    if (samples.temperature || samples.flags || step != std::int16_t(step))
+        throw std::runtime_error("a sample that replay_samples does not hold");
     return {samples.current_a,       samples.current_b,       samples.bus_voltage,
-            samples.phase_voltage_a, samples.phase_voltage_b, 0,
-            samples.encoder_count};
+            samples.phase_voltage_a, samples.phase_voltage_b, std::int16_t(step)};
 }
 
 Recording record(const replay_case &which)
@@ -74,13 +75,15 @@ Recording record(const replay_case &which)
     Recording recording{board.facts(), {}, 0, 0};
     TraceHash trace;
     int next_command = 0;
+    std::int32_t encoder_count = 0;
     for (std::uint32_t k = 0; k < REPLAY_PERIODS; ++k) {
         while (next_command < which.command_count &&
                which.commands[next_command].at_period <= k + 1)
             board.command(which.commands[next_command++]);
         if (k == REPLAY_LOAD_FROM || k == REPLAY_LOAD_TO)
             board.plant().set_load_torque(k == REPLAY_LOAD_FROM ? 0.1 : 0.0);
-        recording.input.push_back(packed(board.samples()));
+        recording.input.push_back(packed(board.samples(), encoder_count));
+        encoder_count = board.samples().encoder_count;
         board.control();
         if (k == REPLAY_READY && board.signals().state != DRIVE_OPERATION_ENABLED)
             throw std::runtime_error("the drive is not ready when the moves begin");
@@ -120,8 +123,8 @@ void write_header(const replay_case &which, const Recording &recording)
                 facts.cycle_counter_Hz, facts.parameter_page_bytes, facts.parameter_word_bytes);
     std::printf("static const struct replay_samples replay_input[REPLAY_PERIODS] = {\n");
     for (const replay_samples &s : recording.input)
-        std::printf("{%d,%d,%d,%d,%d,0,%" PRId32 "},\n", s.current_a, s.current_b, s.bus_voltage,
-                    s.phase_voltage_a, s.phase_voltage_b, s.encoder_count);
+        std::printf("{%d,%d,%d,%d,%d,%d},\n", s.current_a, s.current_b, s.bus_voltage,
+                    s.phase_voltage_a, s.phase_voltage_b, s.encoder_step);
     std::printf("};\n");
 }
 

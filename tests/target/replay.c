@@ -93,6 +93,7 @@ int main(void)
         return fail(error);
 
     int next_command = 0;
+    int32_t encoder_count = 0;
     for (uint32_t k = 0; k < REPLAY_PERIODS; ++k) {
         while (next_command < which->command_count &&
                which->commands[next_command].at_period <= k + 1) {
@@ -100,12 +101,14 @@ int main(void)
                 return fail(error);
         }
         const struct replay_samples *input = &replay_input[k];
+
+        encoder_count += input->encoder_step;
         struct hal_samples samples = {.current_a = input->current_a,
                                       .current_b = input->current_b,
                                       .bus_voltage = input->bus_voltage,
                                       .phase_voltage_a = input->phase_voltage_a,
                                       .phase_voltage_b = input->phase_voltage_b,
-                                      .encoder_count = input->encoder_count};
+                                      .encoder_count = encoder_count};
         (void)image->control_cycle(drive, &samples);
         image->background(drive);
     }

@@ -15,12 +15,11 @@
 #define REPLAY_IMAGE_OF(numeric)     REPLAY_JOIN(firmware_image_, numeric)
 #define REPLAY_IMAGE                 REPLAY_IMAGE_OF(REPLAY_NUMERIC)
 
-/* The varying fields of hal_samples; the others are zero in this run. 16 bytes a period. */
+/* The varying fields of hal_samples; the others are zero in this run. 12 bytes a period. */
 struct replay_samples {
     uint16_t current_a, current_b, bus_voltage;
     int16_t phase_voltage_a, phase_voltage_b;
-    uint16_t zero; /* no gap: the bytes are hashed */
-    int32_t encoder_count;
+    int16_t encoder_step; /* counts since the period before */
 };
 
 enum { REPLAY_ENCODER_COUNTS = 16384 };
