@@ -121,7 +121,7 @@ const struct motion_plan *command_queue_take_over(struct command_queue *queue, u
 /* Interrupt: the reference has accepted it; its command leaves the queue. */
 void command_queue_accept_take_over(struct command_queue *queue);
 
-/* Background: whether commands wait in the queue; those that are urgent do not count. */
+/* Whether commands wait in the queue; those that are urgent do not count. */
 static inline bool command_queue_holds_any(const struct command_queue *queue)
 {
     return queue->written != queue->read;

@@ -7,6 +7,7 @@
  * What is computed from S(k) acts from S(k+1) on. So currents and rotor are predicted to S(k+1)
  * with the voltage already committed, and compared with the reference of S(k+1).
  */
+#include "firmware/drive/command_bridge.h"
 #include "firmware/drive/drive.h"
 #include "firmware/drive/finding_position.h"
 #include "firmware/drive/inferred_voltage.h"
@@ -168,19 +169,6 @@ static void remember_demand(struct drive *drive, const struct estimate *estimate
     drive->demanded_voltage = voltage;
 }
 
-IN_PLACE struct hal_outputs modulate(struct drive *drive, struct phases command)
-{
-    const struct modulation out =
-        modulator_step(&drive->modulator, &drive->params.modulator, command);
-    const struct hal_outputs duties = {
-        .high_counts = {out.a.plus, out.a.minus, out.b.plus, out.b.minus},
-        .bridge_on = true,
-    };
-
-    actuation_commit(&drive->actuation, out.voltage);
-    return duties;
-}
-
 /* The detent torque at the instant of action, learned from what the observer has left of it. */
 __attribute__((noinline)) static void
 compensate_detent(struct drive *drive, const struct estimate *estimate, struct prediction *next)
@@ -244,9 +232,9 @@ __attribute__((noinline)) static struct hal_outputs control_in_full(struct drive
         standstill_angle_step(drive, estimate, &before, &voltage);
     }
     remember_demand(drive, estimate, &next, voltage);
-    duties = modulate(drive, params->bridge_loss_compensation
-                                 ? actuation_compensate(&drive->actuation, voltage)
-                                 : voltage);
+    duties = command_bridge(drive, params->bridge_loss_compensation
+                                       ? actuation_compensate(&drive->actuation, voltage)
+                                       : voltage);
     if (params->immediate) {
         actuation_commit_past(&drive->actuation); /* measured at the next S(k) already */
     }
@@ -263,7 +251,7 @@ IN_PLACE struct hal_outputs control_current(struct drive *drive, const struct es
 
     predict(&next, drive, estimate);
     voltage = regulate_current(drive, estimate, &next);
-    duties = modulate(drive, actuation_compensate(&drive->actuation, voltage));
+    duties = command_bridge(drive, actuation_compensate(&drive->actuation, voltage));
     standstill_hold_leave(&drive->hold, drive->reference.rest_periods);
     return duties;
 }
@@ -344,7 +332,7 @@ struct hal_outputs drive_control_cycle(struct drive *drive, const struct hal_sam
 
         return powered_cycle(drive, &now);
     }
-    (void)measure(drive, samples);
+    (void)measure(drive, samples); /* the bus is shown in every state */
     return drive->state == DRIVE_FINDING_POSITION ? finding_position_cycle(drive, samples)
                                                   : bridge_off;
 }

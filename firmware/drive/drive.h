@@ -85,7 +85,7 @@ struct drive {
     /* supervision */
     enum drive_state state;
     enum drive_fault fault;
-    uint32_t synchronism_due; /* the period for it */
+    uint32_t synchronism_due; /* first period for the monitor's next step */
     uint32_t period;          /* index of the present or last control interrupt; 0 is the first */
     uint32_t state_since;     /* period in which the state was entered */
     int32_t encoder_count;    /* of this S(k) */

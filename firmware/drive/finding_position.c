@@ -1,29 +1,22 @@
 #include "firmware/drive/finding_position.h"
 
+#include "firmware/drive/command_bridge.h"
 #include "firmware/drive/inferred_voltage.h"
 #include "firmware/drive/state_machine.h"
 
-static struct hal_outputs modulate(struct drive *drive, struct initial_position_output output)
+static struct hal_outputs act(struct drive *drive, struct initial_position_output output)
 {
-    struct hal_outputs duties = {.bridge_on = output.bridge_on};
-
     if (!output.bridge_on) {
         actuation_reset(&drive->actuation);
-        return duties;
+        return (struct hal_outputs){.bridge_on = false};
     }
-    const struct phases command =
-        output.in_full ? actuation_compensate(&drive->actuation, output.voltage) : output.voltage;
-    const struct modulation out =
-        modulator_step(&drive->modulator, &drive->params.modulator, command);
+    const struct hal_outputs duties = command_bridge(
+        drive,
+        output.in_full ? actuation_compensate(&drive->actuation, output.voltage) : output.voltage);
 
-    actuation_commit(&drive->actuation, out.voltage);
     if (drive->params.immediate) {
         actuation_commit_past(&drive->actuation);
     }
-    duties.high_counts[HAL_LEG_A_PLUS] = out.a.plus;
-    duties.high_counts[HAL_LEG_A_MINUS] = out.a.minus;
-    duties.high_counts[HAL_LEG_B_PLUS] = out.b.plus;
-    duties.high_counts[HAL_LEG_B_MINUS] = out.b.minus;
     return duties;
 }
 
@@ -44,6 +37,7 @@ static void go_on(struct drive *drive, const struct sample_set *now)
     }
 }
 
+/* Measures on its own: a sample set that is handed over would cost the default path registers. */
 struct hal_outputs finding_position_cycle(struct drive *drive, const struct hal_samples *samples)
 {
     const struct sample_set set =
@@ -60,7 +54,7 @@ struct hal_outputs finding_position_cycle(struct drive *drive, const struct hal_
 
     const struct initial_position_output output = initial_position_step(
         &drive->finding, &drive->finding_params, now->winding.current, voltage);
-    const struct hal_outputs duties = modulate(drive, output);
+    const struct hal_outputs duties = act(drive, output);
 
     if (drive->finding.stage == INITIAL_POSITION_FOUND) {
         go_on(drive, now);

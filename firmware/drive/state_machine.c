@@ -161,14 +161,10 @@ static bool obey(struct drive *drive, struct queued_command *command)
     return true;
 }
 
-static void take_over(struct drive *drive)
+static void take_over(struct drive *drive, const struct motion_plan *plan)
 {
-    struct command_queue *queue = &drive->commands;
-    const struct motion_plan *plan = command_queue_take_over(queue, drive->period);
-
-    if (plan != NULL && drive->state == DRIVE_OPERATION_ENABLED &&
-        reference_take_over(&drive->reference, plan)) {
-        command_queue_accept_take_over(queue);
+    if (drive->state == DRIVE_OPERATION_ENABLED && reference_take_over(&drive->reference, plan)) {
+        command_queue_accept_take_over(&drive->commands);
     }
 }
 
@@ -176,6 +172,7 @@ static void take_over(struct drive *drive)
 static void take_commands(struct drive *drive)
 {
     struct command_queue *queue = &drive->commands;
+    const struct motion_plan *plan;
     struct queued_command *command;
 
     queue->attention = COMMAND_QUEUE_CALLS;
@@ -193,8 +190,11 @@ static void take_commands(struct drive *drive)
     command = command_queue_due(queue, drive->period + 1u);
     if (command != NULL && obey(drive, command)) {
         command_queue_drop(queue);
-    } else if (queue->take_over.posted) {
-        take_over(drive);
+        return;
+    }
+    plan = command_queue_take_over(queue, drive->period);
+    if (plan != NULL) {
+        take_over(drive, plan);
     } else if (reference_goes_on(&drive->reference)) { /* no interrupt pays for both */
         command_queue_rest(queue, drive->period);
     }

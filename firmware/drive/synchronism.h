@@ -18,23 +18,18 @@ void synchronism_start(struct drive *drive);
  * The monitor's steps follow one another in periods in which the reference just goes on and no
  * command is looked at: elsewhere they wait, so that no interrupt pays for both.
  */
-static inline void synchronism_wait(struct drive *drive)
+static inline bool synchronism_is_due(const struct drive *drive)
 {
-    if (drive->period == drive->synchronism_due) {
-        drive->synchronism_due++;
-    }
+    return (int32_t)(drive->period - drive->synchronism_due) >= 0 &&
+           reference_goes_on(&drive->reference);
 }
 
-static inline bool synchronism_is_due(struct drive *drive)
+/* In a period in which commands are looked at. */
+static inline void synchronism_wait(struct drive *drive)
 {
-    if (drive->period != drive->synchronism_due) {
-        return false;
+    if ((int32_t)(drive->period - drive->synchronism_due) >= 0) {
+        drive->synchronism_due = drive->period + 1u;
     }
-    if (!reference_goes_on(&drive->reference)) {
-        drive->synchronism_due++;
-        return false;
-    }
-    return true;
 }
 
 /*

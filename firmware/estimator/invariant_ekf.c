@@ -153,7 +153,7 @@ static void adapt_resistance(struct invariant_ekf *ekf, const struct invariant_e
 static const struct invariant_ekf_gain_set *hold_gains(struct invariant_ekf *ekf,
                                                        const struct invariant_ekf_params *params)
 {
-    const num_t change = ekf->estimate.rotor.load_torque - ekf->settled_load;
+    const num_t change = num_abs(ekf->estimate.rotor.load_torque - ekf->settled_load);
 
     if (ekf->unloaded_periods > 0u) {
         ekf->unloaded_periods--;
@@ -162,10 +162,8 @@ static const struct invariant_ekf_gain_set *hold_gains(struct invariant_ekf *ekf
         }
         return &params->unloaded;
     }
-    const num_t size = num_abs(change);
-
-    if (size > params->load_step &&
-        (ekf->following_periods == 0u || num_half(size) > params->load_step)) {
+    if (change > params->load_step &&
+        (ekf->following_periods == 0u || num_half(change) > params->load_step)) {
         ekf->following_periods = FOLLOWING_PERIODS + REST_PERIODS;
     }
     if (ekf->following_periods == 0u) {

@@ -64,6 +64,7 @@ void setUp(void)
     drive_settings_default(&settings, &bench_params);
     settings.calibrate_offsets = false;
     settings.hold_on_enable = false;
+    settings.synchronism_policy = DRIVE_SYNCHRONISM_OFF; /* the rotor here follows nothing */
     fake_board = (struct fake_board){.trip_latched = false};
     samples = samples_at_rest;
     background_every = 1;
