@@ -1,4 +1,5 @@
 #include "firmware/application/application.h"
+#include "firmware/linkage.h"
 
 #include "firmware/application/settings_record.h"
 #include "firmware/design/refusal.h"
@@ -61,8 +62,9 @@ __attribute__((noinline)) static bool start_with_default(struct application *app
     return start(application, &settings, error);
 }
 
-bool application_init(struct application *application, const struct hal *board,
-                      const struct motor_params *motor_default, char error[DRIVE_ERROR_TEXT])
+CALLED_FROM_OUTSIDE bool application_init(struct application *application, const struct hal *board,
+                                          const struct motor_params *motor_default,
+                                          char error[DRIVE_ERROR_TEXT])
 {
     prepare(application, board);
     if (start_with_stored(application)) {
@@ -80,8 +82,8 @@ bool application_init_with(struct application *application, const struct hal *bo
     return start(application, settings, error);
 }
 
-struct hal_outputs application_control_interrupt(struct application *application,
-                                                 const struct hal_samples *samples)
+CALLED_FROM_OUTSIDE struct hal_outputs
+application_control_interrupt(struct application *application, const struct hal_samples *samples)
 {
     application->outputs = drive_control_cycle(&application->drive, samples);
     return application->outputs;
@@ -94,8 +96,8 @@ static void count(struct control_stage_cycles *stage, uint32_t cycles)
     stage->sum += cycles;
 }
 
-void application_count_cycles(struct application *application,
-                              const struct control_cycles_of_period *cycles)
+CALLED_FROM_OUTSIDE void application_count_cycles(struct application *application,
+                                                  const struct control_cycles_of_period *cycles)
 {
     struct control_cycles *counted = &application->cycles;
     uint32_t total = 0;
@@ -122,7 +124,7 @@ static void feed_watchdog(struct application *application)
     }
 }
 
-void application_background(struct application *application)
+CALLED_FROM_OUTSIDE void application_background(struct application *application)
 {
     feed_watchdog(application);
     drive_background(&application->drive);

@@ -1,4 +1,5 @@
 #include "firmware/design/text.h"
+#include "firmware/linkage.h"
 
 #include "firmware/design/elementary.h"
 
@@ -11,7 +12,7 @@ struct decimal {
     int exponent;
 };
 
-struct text text_in(char *buffer, size_t room)
+CALLED_FROM_OUTSIDE struct text text_in(char *buffer, size_t room)
 {
     buffer[0] = '\0';
     return (struct text){buffer, room, 0};
@@ -25,7 +26,7 @@ static void put_character(struct text *text, char character)
     }
 }
 
-void text_put(struct text *text, const char *words)
+CALLED_FROM_OUTSIDE void text_put(struct text *text, const char *words)
 {
     for (; *words != '\0'; words++) {
         put_character(text, *words);
@@ -37,7 +38,7 @@ static void put_digit(struct text *text, uint32_t digit)
     put_character(text, "0123456789abcdef"[digit]);
 }
 
-void text_unsigned(struct text *text, uint32_t value)
+CALLED_FROM_OUTSIDE void text_unsigned(struct text *text, uint32_t value)
 {
     uint32_t unit = 1;
 
@@ -49,7 +50,7 @@ void text_unsigned(struct text *text, uint32_t value)
     }
 }
 
-void text_hexadecimal(struct text *text, uint32_t value, int digits)
+CALLED_FROM_OUTSIDE void text_hexadecimal(struct text *text, uint32_t value, int digits)
 {
     for (int digit = digits - 1; digit >= 0; digit--) {
         put_digit(text, (value >> (4 * digit)) & 15u);

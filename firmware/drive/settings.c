@@ -1,9 +1,11 @@
 #include "firmware/design/refusal.h"
 #include "firmware/drive/drive_interface.h"
+#include "firmware/linkage.h"
 
 static const double not_given = __builtin_nan("");
 
-void drive_settings_default(struct drive_settings *settings, const struct motor_params *motor)
+CALLED_FROM_OUTSIDE void drive_settings_default(struct drive_settings *settings,
+                                                const struct motor_params *motor)
 {
     const struct drive_settings defaults = {
         .motor = *motor,
@@ -35,7 +37,8 @@ void drive_settings_default(struct drive_settings *settings, const struct motor_
     }
 }
 
-void drive_settings_select_feedback(struct drive_settings *settings, enum drive_feedback feedback)
+CALLED_FROM_OUTSIDE void drive_settings_select_feedback(struct drive_settings *settings,
+                                                        enum drive_feedback feedback)
 {
     settings->feedback = feedback;
     settings->hold_at_rest = feedback == DRIVE_FEEDBACK_SENSORLESS;
@@ -44,7 +47,8 @@ void drive_settings_select_feedback(struct drive_settings *settings, enum drive_
                                             : POSITION_LAW_STATE_FEEDBACK);
 }
 
-void drive_settings_select_law(struct drive_settings *settings, enum position_law law)
+CALLED_FROM_OUTSIDE void drive_settings_select_law(struct drive_settings *settings,
+                                                   enum position_law law)
 {
     const bool linearised = law == POSITION_LAW_FEEDBACK_LINEARISATION;
     const bool fast = linearised && settings->feedback == DRIVE_FEEDBACK_ENCODER;

@@ -2,6 +2,7 @@
 
 #include "firmware/application/application.h"
 #include "firmware/drive/drive_hash.h"
+#include "firmware/linkage.h"
 
 /* An application and the hash over what its drive has shown so far. */
 struct instance {
@@ -67,7 +68,7 @@ static uint64_t image_hash(const void *drive)
 }
 
 /* firmware_image_<format>, visible outside the linked image. */
-#define EXPORTED            __attribute__((visibility("default")))
+#define EXPORTED            CALLED_FROM_OUTSIDE __attribute__((visibility("default")))
 #define PASTE(a, b)         a##b
 #define IMAGE_OF(format)    PASTE(firmware_image_, format)
 #define STRING(token)       #token

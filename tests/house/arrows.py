@@ -10,13 +10,14 @@ import shutil
 import sys
 import tempfile
 
-NUMERIC = ["firmware/numeric/"]
+NUMERIC = ["firmware/numeric/", "firmware/linkage.h"]
 MOTOR = ["firmware/motor/", *NUMERIC]
 DESIGN = ["firmware/design/", *MOTOR]  # blocks are scaled from its gains at start-up
 
 # What each room may include, by prefix; the longest matching room decides. A file is a room of its
 # own where the contract names it. "board.h's" stands for all that board.h itself exposes.
 ROOMS = {
+    "firmware/linkage.h": [],
     "firmware/numeric/": NUMERIC,
     "firmware/motor/": MOTOR,
     "firmware/design/": DESIGN,
@@ -30,7 +31,7 @@ ROOMS = {
     "hal/hal.h": [],
     "hal/sil/": ["hal/sil/", "hal/hal.h"],
     "hal/sil/firmware_image.": ["hal/hal.h", "hal/sil/firmware_image.h", "firmware/drive/",
-                                "firmware/application/"],
+                                "firmware/application/", "firmware/linkage.h"],
     "hal/cortex_m/": ["hal/cortex_m/", "hal/hal.h", "firmware/motor/motor_params.h",
                       "firmware/design/text.h"],
     "hal/stm32g474/": ["hal/stm32g474/", "hal/cortex_m/", "hal/hal.h",

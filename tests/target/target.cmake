@@ -1,4 +1,5 @@
 # Programs for the ARM core, run by ctest under CMAKE_CROSSCOMPILING_EMULATOR.
+include(FirmwareObject)
 include(HostBuild)
 include(Unity)
 set(CMAKE_EXECUTABLE_SUFFIX .elf)
@@ -17,6 +18,9 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
   add_library(firmware_image_${numeric} OBJECT ${PROJECT_SOURCE_DIR}/hal/sil/firmware_image.c)
   target_link_libraries(firmware_image_${numeric} PUBLIC firmware_${numeric})
   target_compile_definitions(firmware_image_${numeric} PRIVATE FIRMWARE_IMAGE_NUMERIC=${numeric})
+  set(firmware ${CMAKE_CURRENT_BINARY_DIR}/firmware_${numeric}.o)
+  firmware_object(${firmware} $<TARGET_OBJECTS:firmware_image_${numeric}>
+                              $<TARGET_OBJECTS:firmware_${numeric}>)
 
   file(GLOB unit_tests CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/../unit/test_*.c)
   # Their reference is minutes of double in software; on the core the replays `feedback-linearisation`
@@ -41,7 +45,7 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
     if(name IN_LIST large_tests)
       target_link_options(${target} PRIVATE -Wl,--defsym=ram_bytes=65536)
     endif()
-    # Linked in no time; the replays below are the firmware optimised as a whole.
+    # Of objects as compiled; the replays below link the firmware optimised as a whole.
     target_compile_options(${target} PRIVATE -fno-lto)
     target_link_options(${target} PRIVATE -fno-lto)
     add_test(NAME target.unit.${name}.${numeric} COMMAND ${target})
@@ -53,8 +57,10 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
     set(target replay_${case}_${numeric})
     add_dependencies(${target} host_recorder)
     add_dependencies(replays ${target})
-    target_link_libraries(${target} PRIVATE target_startup firmware_image_${numeric})
-    target_link_options(${target} PRIVATE -Wl,-Map=$<TARGET_FILE:${target}>.map)
+    target_sources(${target} PRIVATE ${firmware})
+    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
+    target_link_libraries(${target} PRIVATE target_startup)
+    target_link_options(${target} PRIVATE -fno-lto -Wl,-Map=$<TARGET_FILE:${target}>.map)
     add_test(NAME target.replay.${case}.${numeric} COMMAND ${target})
     set_tests_properties(target.replay.${case}.${numeric} PROPERTIES LABELS target TIMEOUT 120)
   endforeach()

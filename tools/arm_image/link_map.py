@@ -31,9 +31,9 @@ def read(path):
 
 
 def of_firmware(pieces):
-    """What the project's own compilation made. Link-time optimisation hands firmware and test harness
-    over together, as one object; libraries of the toolchain are never part of it."""
-    own = re.compile(r"\bfirmware_\w+\.dir/|libfirmware_\w+\.a\(|\.ltrans\d*\.ltrans\.o$")
+    """What the project's own compilation made: the firmware as one object, or the objects of its
+    library; those of the toolchain's libraries are never part of it."""
+    own = re.compile(r"\bfirmware_\w+\.(dir/|o$)|libfirmware_\w+\.a\(")
     return [p for p in pieces if own.search(p.origin)]
 
 
