@@ -1,5 +1,8 @@
 #include "sil/virtual_board/block_costs.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace virtual_board
 {
 
@@ -13,21 +16,34 @@ BlockCycles cycles_of(unsigned nominal, unsigned worst, unsigned waits, const Co
 
 } // namespace
 
-std::uint32_t BlockCosts::set(std::uint32_t number, const BlockCost &block)
+const BlockCost &BlockCosts::set(const BlockCost &block)
 {
-    if (number == 0) {
-        number = static_cast<std::uint32_t>(blocks_.size());
-        blocks_.emplace_back();
+    BlockCost *known = &table_[place(block.address)];
+    if (known->address == BlockCost::no_code) {
+        if (++blocks_ > table_.size() / 2) {
+            grow();
+            known = &table_[place(block.address)];
+        }
     }
-    blocks_[number] = block;
-    return number;
+    *known = block;
+    return *known;
+}
+
+void BlockCosts::grow()
+{
+    const std::vector<BlockCost> known = std::move(table_);
+    table_ = std::vector<BlockCost>(2 * known.size());
+    for (const BlockCost &block : known) {
+        if (block.address != BlockCost::no_code) {
+            table_[place(block.address)] = block;
+        }
+    }
 }
 
 void BlockCosts::forget()
 {
-    for (BlockCost &block : blocks_) {
-        block = BlockCost();
-    }
+    std::fill(table_.begin(), table_.end(), BlockCost());
+    blocks_ = 0;
     parts_.clear();
 }
 
@@ -35,6 +51,7 @@ BlockCost BlockCosts::sum(std::uint32_t address, const std::vector<InstructionCo
                           const CostRules &rules)
 {
     BlockCost block;
+    block.address = address;
     block.instructions = static_cast<std::uint32_t>(instructions.size());
     block.first_part = static_cast<std::uint32_t>(parts_.size());
     std::uint32_t line_before = (address - 1) >> rules.flash_line_shift;

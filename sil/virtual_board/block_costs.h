@@ -5,6 +5,7 @@
 #ifndef STEADYSTEP_VIRTUAL_BOARD_BLOCK_COSTS_H
 #define STEADYSTEP_VIRTUAL_BOARD_BLOCK_COSTS_H
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -37,7 +38,8 @@ struct BlockPart {
 };
 
 /* One line of the host's cache: this is looked up at every block. */
-struct BlockCost {
+struct alignas(64) BlockCost {
+    std::uint32_t address = no_code;
     std::uint32_t bytes = 0; /* 0: nothing is known of it any more */
     /* Of its first part: its first instruction comes from the one before, or not. */
     BlockCycles head_after, head;
@@ -49,30 +51,48 @@ struct BlockCost {
     bool by_instruction = false;       /* it is charged by the instruction: nothing of the above */
     std::uint32_t last_line = 0;       /* of flash */
     AddressRange conditional = {0, 0}; /* instructions of its last IT block */
-};
 
-/* Blocks have numbers, from 1. */
+    static constexpr std::uint32_t no_code = 1; /* instructions have even addresses */
+};
+static_assert(sizeof(BlockCost) == 64);
+
+/* Blocks by address: a table with open addressing, at least half empty. */
 class BlockCosts
 {
   public:
-    const BlockCost &operator[](std::uint32_t number) const
+    /* The block at an address with this many bytes, or nullptr. Until the next `set`. */
+    const BlockCost *find(std::uint32_t address, std::uint32_t bytes) const
     {
-        return blocks_[number];
+        const BlockCost &block = table_[place(address)];
+        return block.bytes == bytes ? &block : nullptr;
     }
     const BlockPart *parts(const BlockCost &block) const
     {
         return parts_.data() + block.first_part;
     }
-    /* What is known of the block `number`, or of a new one if that is 0; returns its number. */
-    std::uint32_t set(std::uint32_t number, const BlockCost &block);
+    /* In the place of what was known of that address. */
+    const BlockCost &set(const BlockCost &block);
     /* The sums over some instructions from this address on; their parts are kept here. */
     BlockCost sum(std::uint32_t address, const std::vector<InstructionCost> &instructions,
                   const CostRules &rules);
-    /* Nothing is known any more; numbers stay. */
+    /* Nothing is known any more. */
     void forget();
 
   private:
-    std::vector<BlockCost> blocks_ = std::vector<BlockCost>(1);
+    /* Where the block at an address lies, or is to lie. */
+    std::size_t place(std::uint32_t address) const
+    {
+        const std::size_t mask = table_.size() - 1;
+        std::size_t at = (address >> 1 ^ address >> 16) & mask;
+        while (table_[at].address != address && table_[at].address != BlockCost::no_code) {
+            at = (at + 1) & mask;
+        }
+        return at;
+    }
+    void grow();
+
+    std::vector<BlockCost> table_ = std::vector<BlockCost>(4096); /* a power of two */
+    std::size_t blocks_ = 0;
     std::vector<BlockPart> parts_;
 };
 

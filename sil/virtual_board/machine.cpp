@@ -33,13 +33,9 @@ Machine::Machine(const ChipDescription &description)
         const bool holds_code =
             description.fast_code.bytes == 0 || description.fast_code.contains(ram.range.base);
         for (const std::uint32_t base : {ram.range.base, ram.range.alias}) {
-            if (base == 0) {
-                continue;
-            }
-            if (holds_code) {
-                core_.map_memory({base, ram.range.bytes}, ram.bytes.data(), true);
-            } else {
-                core_.map_data({base, ram.range.bytes}, ram.bytes.data());
+            if (base != 0) {
+                core_.map_memory({base, ram.range.bytes}, ram.bytes.data(),
+                                 holds_code ? MemoryUse::both : MemoryUse::data);
             }
         }
     }
@@ -59,7 +55,8 @@ void Machine::attach(Device &device)
     if (flash_->memory().size() != all.bytes) {
         throw std::logic_error("the device's flash is not the chip's");
     }
-    core_.map_memory({all.base, all.bytes - data.bytes}, flash_->memory().data(), false);
+    core_.map_memory({all.base, all.bytes - data.bytes}, flash_->memory().data(),
+                     MemoryUse::program);
 }
 
 void Machine::load(const ElfImage &image)

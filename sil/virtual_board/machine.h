@@ -31,7 +31,7 @@ class Failure : public std::runtime_error
     using std::runtime_error::runtime_error;
 };
 
-class Machine final : public Chip, private CoreObserver
+class Machine final : private CoreObserver, public Chip
 {
   public:
     explicit Machine(const ChipDescription &description);

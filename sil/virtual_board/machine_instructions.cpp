@@ -194,9 +194,8 @@ inline void Machine::charge_block(const BlockCost &block, bool straight)
 bool Machine::before_block(std::uint32_t address, unsigned bytes)
 {
     in_block_ = false;
-    const InstructionCost *const cost = costs_.find(address);
-    const BlockCost *block = &blocks_[cost == nullptr ? 0 : cost->block];
-    if (block->bytes != bytes) {
+    const BlockCost *block = blocks_.find(address, bytes);
+    if (block == nullptr) {
         block = &visit_block(address, bytes);
     }
     if (block->by_instruction) {
@@ -247,9 +246,7 @@ const BlockCost &Machine::visit_block(std::uint32_t address, unsigned bytes)
             to_be_watched_ = {address, bytes}; /* one of both, all of it */
         }
     }
-    InstructionCost &first = *costs_.find(address);
-    first.block = blocks_.set(first.block, block);
-    return blocks_[first.block];
+    return blocks_.set(block);
 }
 
 /*

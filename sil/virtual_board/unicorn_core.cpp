@@ -1,7 +1,5 @@
 #include "sil/virtual_board/unicorn_core.h"
 
-#include <algorithm>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -97,23 +95,6 @@ struct UnicornCore::Callbacks {
         }
     }
 
-    /* A store into memory that the emulator takes for read-only: it is done here. What lies beyond
-       the range's end comes again, byte by byte. */
-    static bool store(uc_engine *, uc_mem_type, std::uint64_t address, int bytes,
-                      std::int64_t value, void *user)
-    {
-        const Data &data = *static_cast<Data *>(user);
-        const std::uint32_t offset = static_cast<std::uint32_t>(address) - data.range.base;
-        if (bytes == 4 && data.range.bytes - offset >= 4) {
-            std::memcpy(data.host + offset, &value, 4);
-        } else {
-            const std::size_t room = data.range.bytes - offset;
-            std::memcpy(data.host + offset, &value,
-                        std::min(static_cast<std::size_t>(bytes), room));
-        }
-        return true;
-    }
-
     static void interrupt(uc_engine *, std::uint32_t number, void *user)
     {
         UnicornCore &core = *static_cast<UnicornCore *>(user);
@@ -189,28 +170,13 @@ void UnicornCore::stop()
     uc_emu_stop(engine_);
 }
 
-void UnicornCore::map_memory(AddressRange range, std::uint8_t *host, bool writable)
+void UnicornCore::map_memory(AddressRange range, std::uint8_t *host, MemoryUse use)
 {
+    const int write = use == MemoryUse::program ? 0 : UC_PROT_WRITE;
+    const int run = use == MemoryUse::data ? 0 : UC_PROT_EXEC;
     check(uc_mem_map_ptr(engine_, range.base, range.bytes,
-                         writable ? UC_PROT_ALL : UC_PROT_READ | UC_PROT_EXEC, host),
+                         static_cast<std::uint32_t>(UC_PROT_READ | write | run), host),
           "memory");
-}
-
-/*
- * Every store into memory that may be run asks the emulator's tables of translated code, under a
- * lock and with an allocation. Into memory that it takes for read-only it does not, and a hook may
- * do the store in its place: three times as quick.
- */
-void UnicornCore::map_data(AddressRange range, std::uint8_t *host)
-{
-    map_memory(range, host, true);
-    check(uc_mem_protect(engine_, range.base, range.bytes, UC_PROT_READ), "memory");
-    data_.push_back({range, host});
-    uc_hook hook = 0;
-    check(uc_hook_add(engine_, &hook, UC_HOOK_MEM_WRITE_PROT,
-                      reinterpret_cast<void *>(&Callbacks::store), &data_.back(), range.base,
-                      std::uint64_t{range.base} + range.bytes - 1),
-          "hook");
 }
 
 void UnicornCore::watch_instructions(std::uint64_t first, std::uint64_t last)

@@ -63,6 +63,13 @@ enum class Stopped {
     undefined_instruction
 };
 
+/* What the core may do with memory besides reading it. */
+enum class MemoryUse {
+    program, /* run it */
+    data,    /* write it */
+    both
+};
+
 /* A word that code jumps to in order to return from an exception, and above. */
 constexpr std::uint32_t first_exception_return = 0xffffffe0;
 
@@ -75,9 +82,7 @@ class UnicornCore
     UnicornCore &operator=(const UnicornCore &) = delete;
 
     /* `host`: the memory's contents; they stay the caller's. Whole kilobytes times 4. */
-    void map_memory(AddressRange range, std::uint8_t *host, bool writable);
-    /* Memory that is never run, with quick stores. */
-    void map_data(AddressRange range, std::uint8_t *host);
+    void map_memory(AddressRange range, std::uint8_t *host, MemoryUse use);
     void map_registers(AddressRange range);
     /* Every instruction is watched by itself, until this is called: from then on all blocks are,
        and instructions in these ranges only, which must not overlap. While the core stands. */
@@ -97,10 +102,6 @@ class UnicornCore
         UnicornCore *core;
         std::uint32_t base;
     };
-    struct Data {
-        AddressRange range;
-        std::uint8_t *host;
-    };
     struct Callbacks;
     friend struct Callbacks;
 
@@ -111,7 +112,6 @@ class UnicornCore
     CoreObserver &observer_;
     uc_struct *engine_ = nullptr;
     std::list<Window> windows_; /* their addresses are given away */
-    std::list<Data> data_;
     std::vector<std::size_t> instruction_hooks_;
     bool watches_blocks_ = false;
     std::uint32_t stopped_before_ = 0; /* this block; 0: the emulator itself knows where */
