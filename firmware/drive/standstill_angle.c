@@ -37,7 +37,8 @@ void standstill_angle_step(struct drive *drive, const struct estimate *estimate,
         standstill_pulses_stop(pulses);
         return;
     }
-    if (standstill_pulses_add(pulses, &drive->pulses_params, estimate->current, voltage)) {
+    if (standstill_pulses_add(pulses, &drive->pulses_params, estimate->current,
+                              drive->actuation.loss, voltage)) {
         drive->current_control = *before;
     }
     shown = standstill_pulses_result(pulses, &drive->pulses_params);

@@ -56,6 +56,7 @@ void standstill_pulses_design(struct standstill_pulses_params *params,
     params->pulse_periods = one ? 1u : 2u;
     params->current_max = num_from_double(task->current_max_A / base->current_A - pulse);
     params->per_magnet = coef_from_double(base->current_A / magnet_A);
+    params->per_period = coef_from_double(1.0 / (IMPULSES * (last_period(params) + 1u)));
     params->rest_periods = (uint32_t)((rest_s + task->hold_ramp_s) / task->period_s + 0.5);
     params->pause_periods = (uint32_t)(pause_s / task->period_s + 0.5);
 }
@@ -69,6 +70,7 @@ void standstill_pulses_stop(struct standstill_pulses *pulses)
     pulses->number = 0;
     pulses->sum = nothing;
     pulses->current = nothing;
+    pulses->mean = nothing;
     pulses->response = NUM(0.0);
 }
 
@@ -104,11 +106,31 @@ void standstill_pulses_sample(struct standstill_pulses *pulses,
     pulses->response += num_mul_unit(num_abs(change), UNIT(1.0 / IMPULSES));
 }
 
-bool standstill_pulses_add(struct standstill_pulses *pulses,
-                           const struct standstill_pulses_params *params, struct phases current,
-                           struct phases *voltage)
+/*
+ * The hold behind a pulse: the bridge takes of its phase what it takes of the current that the
+ * pulse has left, and not what the compensation expects of the hold's.
+ */
+static struct phases behind(struct impulse impulse, struct phases hold, struct phases loss)
 {
-    const struct phases pulse = impulse_phases(impulse_of(pulses->number), params->voltage);
+    const num_t a = num_abs(loss.a), b = num_abs(loss.b);
+    const struct phases taken = impulse_phases(impulse, a > b ? a : b);
+
+    if (impulse.in_b) {
+        hold.b += loss.b + taken.b;
+    } else {
+        hold.a += loss.a + taken.a;
+    }
+    return hold;
+}
+
+/* Apart: a law that holds without pulses keeps its registers. */
+__attribute__((noinline)) bool standstill_pulses_add(struct standstill_pulses *pulses,
+                                                     const struct standstill_pulses_params *params,
+                                                     struct phases current, struct phases loss,
+                                                     struct phases *voltage)
+{
+    const struct impulse impulse = impulse_of(pulses->number);
+    const struct phases pulse = impulse_phases(impulse, params->voltage);
     const uint32_t n = params->pulse_periods;
     const uint32_t period = pulses->period++;
 
@@ -120,6 +142,8 @@ bool standstill_pulses_add(struct standstill_pulses *pulses,
         }
         return false;
     }
+    pulses->mean.a += num_mul_coef(current.a, params->per_period);
+    pulses->mean.b += num_mul_coef(current.b, params->per_period);
     if (period == 0u) {
         pulses->command = *voltage;
     }
@@ -132,7 +156,7 @@ bool standstill_pulses_add(struct standstill_pulses *pulses,
         voltage->a = pulses->command.a + pulse.a;
         voltage->b = pulses->command.b + pulse.b;
     } else if (period == n) {
-        *voltage = pulses->command;
+        *voltage = behind(impulse, pulses->command, loss);
     } else if (period <= 2u * n) {
         voltage->a = pulses->command.a - pulse.a;
         voltage->b = pulses->command.b - pulse.b;
@@ -181,7 +205,7 @@ struct standstill_angle standstill_pulses_result(struct standstill_pulses *pulse
     /* A disturbance has another size. */
     result.found = num_abs(difference) < num_mul_unit(signal, UNIT(0.4));
     result.angle = angle_of_vector(magnet.a, magnet.b);
-    result.current = held;
+    result.current = pulses->mean;
     standstill_pulses_stop(pulses);
     pulses->period = params->rest_periods - params->pause_periods;
     return result;

@@ -10,7 +10,9 @@
  *
  * with i_0 the hold current and m what the impulses have shown when the drive was enabled, scaled
  * by the square of the flux. Sixteen pulses, in an order that leaves the rotor where it is, give
- * the angle phi, and with it the torque of the hold current, which at rest is the load.
+ * the angle phi, and with it the torque of the mean current, which at rest is the load. Where the
+ * hold current of a phase passes zero under the pulses, the bridge takes more of those of one sign,
+ * and this mean is not the hold current.
  */
 #ifndef STEADYSTEP_STANDSTILL_PULSES_H
 #define STEADYSTEP_STANDSTILL_PULSES_H
@@ -25,6 +27,7 @@ struct standstill_pulses_params {
     coef_t signal;          /* m, in sums of eight, per asymmetry of the impulses */
     coef_t per_response;    /* 1 / the change of the current that a pulse should make */
     coef_t per_magnet;      /* 1 / I_f */
+    coef_t per_period;      /* 1 / the periods of all sixteen pulses */
     uint32_t rest_periods;  /* of the hold before the first pulse */
     uint32_t pause_periods; /* between sixteen and sixteen */
 };
@@ -36,7 +39,8 @@ struct standstill_pulses {
     bool at_rest;
     struct phases command; /* of the hold, when the pulse began */
     struct phases sum;     /* of what the samples differ from that */
-    struct phases current; /* sum of the hold currents */
+    struct phases current; /* sum of the hold currents, when the pulses began */
+    struct phases mean;    /* of the currents of all periods */
     struct phases start;   /* hold current when the present pulse began */
     num_t response;        /* mean change of the current */
 };
@@ -76,18 +80,18 @@ void standstill_pulses_sample(struct standstill_pulses *pulses,
 
 /*
  * At S(k), after the control: adds to the voltage it wants, or takes the place of it. `current`: as
- * estimated at S(k). true: the current in force is the pulse's, the control must forget what it
- * has made of it.
+ * estimated at S(k). `loss`: what is added to compensate the bridge, with the opposite sign. true:
+ * the current in force is the pulse's, the control must forget what it has made of it.
  */
 bool standstill_pulses_add(struct standstill_pulses *pulses,
                            const struct standstill_pulses_params *params, struct phases current,
-                           struct phases *voltage);
+                           struct phases loss, struct phases *voltage);
 
 /* What sixteen pulses have shown. */
 struct standstill_angle {
     bool found;
     angle_t angle;         /* electrical, of the rotor */
-    struct phases current; /* mean of the hold */
+    struct phases current; /* mean, pulses included: its torque has held the rotor there */
 };
 
 /* In the period in which the last pulse has ended; else nothing is found. */

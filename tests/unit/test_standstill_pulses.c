@@ -16,6 +16,7 @@ static struct per_unit base;
 static struct motor_model_params model;
 static struct standstill_pulses_params params;
 static struct standstill_pulses pulses;
+static const struct phases no_loss = {NUM(0.0), NUM(0.0)};
 
 /* Of one phase: flux linkage over L, A; the rotor stands. */
 struct winding_bench {
@@ -96,7 +97,7 @@ static struct standstill_angle look(double rotor_rad, uint32_t *periods)
         } else {
             estimated = measured;
         }
-        (void)standstill_pulses_add(&pulses, &params, estimated, &wanted);
+        (void)standstill_pulses_add(&pulses, &params, estimated, no_loss, &wanted);
         found = standstill_pulses_result(&pulses, &params);
         if (found.found || (pulses.at_rest && *periods > 400u)) {
             return found;
@@ -145,14 +146,14 @@ static void test_only_a_pulse_hides_samples(void)
         struct phases voltage = {NUM(0.0), NUM(0.0)};
 
         TEST_ASSERT_FALSE(standstill_pulses_hides_sample(&pulses, &params));
-        (void)standstill_pulses_add(&pulses, &params, voltage, &voltage);
+        (void)standstill_pulses_add(&pulses, &params, voltage, no_loss, &voltage);
         TEST_ASSERT_NUM_WITHIN(0.0, 0.0, voltage.a);
     }
     for (uint32_t k = 0; k < 12u; k++) {
         struct phases voltage = {NUM(0.0), NUM(0.0)};
 
         hidden += standstill_pulses_hides_sample(&pulses, &params) ? 1u : 0u;
-        (void)standstill_pulses_add(&pulses, &params, voltage, &voltage);
+        (void)standstill_pulses_add(&pulses, &params, voltage, no_loss, &voltage);
     }
     TEST_ASSERT_EQUAL_UINT32(6u, hidden);
 }
@@ -170,12 +171,58 @@ static void test_a_hold_that_ends_begins_anew(void)
     struct phases voltage = {NUM(0.0), NUM(0.0)};
 
     for (uint32_t k = 0; k < 305u; k++) {
-        (void)standstill_pulses_add(&pulses, &params, voltage, &voltage);
+        (void)standstill_pulses_add(&pulses, &params, voltage, no_loss, &voltage);
     }
     TEST_ASSERT_FALSE(pulses.at_rest);
     standstill_pulses_stop(&pulses);
     TEST_ASSERT_TRUE(pulses.at_rest);
     TEST_ASSERT_EQUAL_UINT32(0u, pulses.period);
+}
+
+/* From the rest before the first pulse on: adds for this many periods; the last voltage. */
+static struct phases go_on(uint32_t periods, struct phases current, struct phases loss)
+{
+    struct phases voltage = {NUM(0.0), NUM(0.0)};
+
+    for (uint32_t k = 0; k < periods; k++) {
+        voltage = (struct phases){NUM(0.05), NUM(0.0)};
+        (void)standstill_pulses_add(&pulses, &params, current, loss, &voltage);
+    }
+    return voltage;
+}
+
+static void test_the_load_is_the_torque_of_all_current_pulses_included(void)
+{
+    const struct phases hold = {NUM(0.1), NUM(0.0)}, pulse = {NUM(0.1), NUM(0.06)};
+    const uint32_t length = 2u * params.pulse_periods + 9u;
+    struct standstill_angle shown;
+
+    (void)go_on(301u, hold, no_loss);
+    TEST_ASSERT_FALSE(pulses.at_rest);
+    for (uint32_t number = 0; number < IMPULSES; number++) {
+        (void)go_on(2u, hold, no_loss);
+        (void)go_on(1u, pulse, no_loss);
+        (void)go_on(length - 3u, hold, no_loss);
+    }
+    shown = standstill_pulses_result(&pulses, &params);
+    TEST_ASSERT_NUM_WITHIN(1e-5, 0.1, shown.current.a);
+    TEST_ASSERT_NUM_WITHIN(1e-5, 0.06 / length, shown.current.b);
+}
+
+static void test_the_hold_behind_a_pulse_has_the_loss_of_the_current_it_left(void)
+{
+    const struct phases hold = {NUM(0.1), NUM(0.01)}, loss = {NUM(-0.02), NUM(-0.005)};
+    const uint32_t behind = params.pulse_periods + 1u, others = params.pulse_periods + 8u;
+
+    (void)go_on(301u, hold, loss);
+    /* the current stays positive: nothing to change */
+    TEST_ASSERT_NUM_WITHIN(1e-6, 0.05, go_on(behind, hold, loss).a);
+    (void)go_on(others, hold, loss);
+    /* it is negative: what is added for the positive one is taken off, and as much again */
+    TEST_ASSERT_NUM_WITHIN(1e-6, 0.05 - 0.04, go_on(behind, hold, loss).a);
+    (void)go_on(others + 2u * (behind + others), hold, loss);
+    /* in the other phase; the hold's loss there is smaller than that of such a current */
+    TEST_ASSERT_NUM_WITHIN(1e-6, 0.015, go_on(behind, hold, loss).b);
 }
 
 int main(void)
@@ -186,5 +233,7 @@ int main(void)
     RUN_TEST(test_only_a_pulse_hides_samples);
     RUN_TEST(test_a_disturbance_of_another_size_shows_no_angle);
     RUN_TEST(test_a_hold_that_ends_begins_anew);
+    RUN_TEST(test_the_load_is_the_torque_of_all_current_pulses_included);
+    RUN_TEST(test_the_hold_behind_a_pulse_has_the_loss_of_the_current_it_left);
     return UNITY_END();
 }
