@@ -1,5 +1,5 @@
 /*
- * The firmware is optimised as a whole, into one object (tools/cmake/FirmwareObject.cmake): what
+ * Where the firmware is optimised into one object (tools/cmake/FirmwareObject.cmake), what
  * programs outside it call keeps its name, all else may be inlined, specialised or left out.
  */
 #ifndef STEADYSTEP_LINKAGE_H

@@ -1,9 +1,9 @@
 #include "firmware/application/application.h"
-#include "firmware/linkage.h"
 
 #include "firmware/application/settings_record.h"
 #include "firmware/design/refusal.h"
 #include "firmware/drive/drive_hash.h"
+#include "firmware/linkage.h"
 
 static const struct hal_outputs bridge_off = {.bridge_on = false};
 

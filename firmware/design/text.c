@@ -1,7 +1,7 @@
 #include "firmware/design/text.h"
-#include "firmware/linkage.h"
 
 #include "firmware/design/elementary.h"
+#include "firmware/linkage.h"
 
 enum { EXPONENT_MIN = -4, EXPONENT_MAX = 5 };
 

@@ -7,7 +7,7 @@
  * What is computed from S(k) acts from S(k+1) on. So currents and rotor are predicted to S(k+1)
  * with the voltage already committed, and compared with the reference of S(k+1).
  */
-#include "firmware/drive/command_bridge.h"
+#include "firmware/drive/modulate.h"
 #include "firmware/drive/drive.h"
 #include "firmware/drive/finding_position.h"
 #include "firmware/drive/inferred_voltage.h"
@@ -232,9 +232,9 @@ __attribute__((noinline)) static struct hal_outputs control_in_full(struct drive
         standstill_angle_step(drive, estimate, &before, &voltage);
     }
     remember_demand(drive, estimate, &next, voltage);
-    duties = command_bridge(drive, params->bridge_loss_compensation
-                                       ? actuation_compensate(&drive->actuation, voltage)
-                                       : voltage);
+    duties = modulate(drive, params->bridge_loss_compensation
+                                 ? actuation_compensate(&drive->actuation, voltage)
+                                 : voltage);
     if (params->immediate) {
         actuation_commit_past(&drive->actuation); /* measured at the next S(k) already */
     }
@@ -251,7 +251,7 @@ IN_PLACE struct hal_outputs control_current(struct drive *drive, const struct es
 
     predict(&next, drive, estimate);
     voltage = regulate_current(drive, estimate, &next);
-    duties = command_bridge(drive, actuation_compensate(&drive->actuation, voltage));
+    duties = modulate(drive, actuation_compensate(&drive->actuation, voltage));
     standstill_hold_leave(&drive->hold, drive->reference.rest_periods);
     return duties;
 }

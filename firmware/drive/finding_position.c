@@ -1,6 +1,6 @@
 #include "firmware/drive/finding_position.h"
 
-#include "firmware/drive/command_bridge.h"
+#include "firmware/drive/modulate.h"
 #include "firmware/drive/inferred_voltage.h"
 #include "firmware/drive/state_machine.h"
 
@@ -10,9 +10,9 @@ static struct hal_outputs act(struct drive *drive, struct initial_position_outpu
         actuation_reset(&drive->actuation);
         return (struct hal_outputs){.bridge_on = false};
     }
-    const struct hal_outputs duties = command_bridge(
-        drive,
-        output.in_full ? actuation_compensate(&drive->actuation, output.voltage) : output.voltage);
+    const struct hal_outputs duties =
+        modulate(drive, output.in_full ? actuation_compensate(&drive->actuation, output.voltage)
+                                       : output.voltage);
 
     if (drive->params.immediate) {
         actuation_commit_past(&drive->actuation);

@@ -80,8 +80,9 @@ void standstill_pulses_sample(struct standstill_pulses *pulses,
 
 /*
  * At S(k), after the control: adds to the voltage it wants, or takes the place of it. `current`: as
- * estimated at S(k). `loss`: what is added to compensate the bridge, with the opposite sign. true:
- * the current in force is the pulse's, the control must forget what it has made of it.
+ * estimated at S(k). `loss`: what the bridge adds to a voltage in the hold (actuation.h), for which
+ * what this returns is still compensated. true: the current in force is the pulse's, the control
+ * must forget what it has made of it.
  */
 bool standstill_pulses_add(struct standstill_pulses *pulses,
                            const struct standstill_pulses_params *params, struct phases current,

@@ -40,7 +40,7 @@ struct BlockPart {
 /* One line of the host's cache: this is looked up at every block. */
 struct alignas(64) BlockCost {
     std::uint32_t address = no_code;
-    std::uint32_t bytes = 0; /* 0: nothing is known of it any more */
+    std::uint32_t bytes = 0; /* 0: an empty place */
     /* Of its first part: its first instruction comes from the one before, or not. */
     BlockCycles head_after, head;
     std::uint32_t nominal_after = 0, nominal = 0; /* of all of it, likewise */

@@ -1,6 +1,8 @@
 # firmware_object(<file> <object>...): optimises the objects as a whole, once, into one relocatable
 # object, so that each program with the firmware in it links in no time. Objects that were compiled
-# without -flto are only joined.
+# without -flto are only joined. To the compiler it is a program, of which firmware/linkage.h says
+# what is called: with -flinker-output=nolto-rel every name would stay visible, and nothing that is
+# called once would be inlined.
 function(firmware_object file)
   separate_arguments(flags UNIX_COMMAND "${CMAKE_C_FLAGS} ${CMAKE_C_FLAGS_RELEASE}")
   if(NOT CMAKE_C_COMPILER_ID STREQUAL GNU)
