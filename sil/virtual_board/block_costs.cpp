@@ -9,9 +9,11 @@ namespace virtual_board
 namespace
 {
 
-BlockCycles cycles_of(unsigned nominal, unsigned worst, unsigned waits, const CostRules &rules)
+/* `waits`: for lines and literals, if the code runs from flash; this does if it lies there. */
+BlockCycles cycles_of(unsigned nominal, unsigned worst, unsigned waits, CodePlace place)
 {
-    return {nominal, worst, worst + waits * rules.flash_wait};
+    const unsigned flash = worst + waits;
+    return {nominal, place == CodePlace::flash ? flash : worst, flash};
 }
 
 } // namespace
@@ -48,10 +50,11 @@ void BlockCosts::forget()
 }
 
 BlockCost BlockCosts::sum(std::uint32_t address, const std::vector<InstructionCost> &instructions,
-                          const CostRules &rules)
+                          const CostRules &rules, CodePlace place)
 {
     BlockCost block;
     block.address = address;
+    block.place = place;
     block.instructions = static_cast<std::uint32_t>(instructions.size());
     block.first_part = static_cast<std::uint32_t>(parts_.size());
     std::uint32_t line_before = (address - 1) >> rules.flash_line_shift;
@@ -62,11 +65,13 @@ BlockCost BlockCosts::sum(std::uint32_t address, const std::vector<InstructionCo
         const std::uint32_t last_line = last >> rules.flash_line_shift;
         const unsigned beside = (last_line != first_line ? 1u : 0u) + cost.literals;
         const unsigned waits = (first_line != line_before ? 1u : 0u) + beside;
-        const BlockCycles after = cycles_of(cost.nominal_after, cost.worst_after, waits, rules);
+        const BlockCycles after =
+            cycles_of(cost.nominal_after, cost.worst_after, waits * rules.flash_wait, place);
         if (first) {
             block.stage = cost.stage;
             block.head_after = after;
-            block.head = cycles_of(cost.nominal, cost.worst, 1 + beside, rules);
+            block.head =
+                cycles_of(cost.nominal, cost.worst, (1 + beside) * rules.flash_wait, place);
             block.nominal_after = after.nominal;
             block.nominal = block.head.nominal;
         } else {
@@ -85,7 +90,10 @@ BlockCost BlockCosts::sum(std::uint32_t address, const std::vector<InstructionCo
             block.nominal += after.nominal;
         }
         block.bytes += cost.bytes;
-        block.last_line = line_before = last_line;
+        line_before = last_line;
+        if (cost.conditional > 0) {
+            block.conditional = {address + block.bytes, cost.conditional};
+        }
     }
     return block;
 }

@@ -37,6 +37,10 @@ struct BlockPart {
     BlockCycles cycles;
 };
 
+/* Where code lies, as far as its cost goes: in the memory that is meant for it, in flash although
+   another is, or elsewhere. */
+enum class CodePlace : std::uint8_t { as_wanted, flash, elsewhere };
+
 /* One line of the host's cache: this is looked up at every block. */
 struct alignas(64) BlockCost {
     std::uint32_t address = no_code;
@@ -47,9 +51,9 @@ struct alignas(64) BlockCost {
     std::uint32_t instructions = 0;
     std::uint32_t first_part = 0; /* of the others */
     std::uint16_t parts = 0;
-    std::uint8_t stage = 0;            /* of its first part */
-    bool by_instruction = false;       /* it is charged by the instruction: nothing of the above */
-    std::uint32_t last_line = 0;       /* of flash */
+    std::uint8_t stage = 0;      /* of its first part */
+    bool by_instruction = false; /* it is charged by the instruction: nothing of the above */
+    CodePlace place = CodePlace::as_wanted;
     AddressRange conditional = {0, 0}; /* instructions of its last IT block */
 
     static constexpr std::uint32_t no_code = 1; /* instructions have even addresses */
@@ -74,7 +78,7 @@ class BlockCosts
     const BlockCost &set(const BlockCost &block);
     /* The sums over some instructions from this address on; their parts are kept here. */
     BlockCost sum(std::uint32_t address, const std::vector<InstructionCost> &instructions,
-                  const CostRules &rules);
+                  const CostRules &rules, CodePlace place);
     /* Nothing is known any more. */
     void forget();
 

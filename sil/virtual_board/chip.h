@@ -65,6 +65,15 @@ class Chip
     virtual std::uint32_t load(std::uint32_t address, unsigned bytes) = 0;
     virtual void store(std::uint32_t address, unsigned bytes, std::uint32_t value) = 0;
 
+    /* Plain memory from an address on, for a master with many items; nullptr: load and store them
+       one by one. */
+    virtual std::uint8_t *plain_memory(std::uint32_t address, std::uint32_t bytes)
+    {
+        static_cast<void>(address);
+        static_cast<void>(bytes);
+        return nullptr;
+    }
+
     /* Resets the chip after the present instruction; `cause` is told to the clock tree, which keeps
        it for the firmware. Memory keeps its contents. */
     virtual void reset(const std::string &cause) = 0;

@@ -17,11 +17,12 @@ void EventQueue::schedule(Event &event, Ticks at)
     event.at = at;
     if (at != Event::never) {
         /* Before all of the same time, so behind them in the order of taking. */
-        const auto place =
-            std::find_if(entries_.rbegin(), entries_.rend(), [&](const Entry &entry) {
-                return entry.at > at;
-            }).base();
-        entries_.insert(place, {at, &event});
+        std::size_t place = entries_.size();
+        entries_.push_back({at, &event});
+        for (; place > 0 && entries_[place - 1].at <= at; --place) {
+            entries_[place] = entries_[place - 1];
+        }
+        entries_[place] = {at, &event};
     }
     remember_next();
 }

@@ -24,51 +24,51 @@ void InterruptController::reset()
                                   exception::pend_sv, exception::system_tick}) {
         of(always).enabled = true;
     }
+    waiting_.assign((exceptions_.size() + 63) / 64, 0);
     stack_.clear();
     group_mask_ = 0xff;
     find_next();
     find_running_priority();
 }
 
-const InterruptController::State &InterruptController::of(unsigned exception) const
+/* Whether it waits has changed. */
+void InterruptController::note(unsigned exception)
 {
-    return exceptions_.at(exception);
+    const State &state = of(exception);
+    const std::uint64_t bit = std::uint64_t{1} << exception % 64;
+    std::uint64_t &word = waiting_[exception / 64];
+    word = state.pending && state.enabled ? word | bit : word & ~bit;
+    find_next();
 }
 
-InterruptController::State &InterruptController::of(unsigned exception)
+void InterruptController::change_line(unsigned line, bool level)
 {
-    return exceptions_.at(exception);
-}
-
-void InterruptController::set_line(unsigned line, bool level)
-{
-    State &state = of(exception::first_interrupt + line);
-    if (level && !state.line && !state.pending) {
-        state.pending = true;
-        if (state.enabled) {
-            find_next();
-        }
-    }
+    const unsigned exception = exception::first_interrupt + line;
+    State &state = of(exception);
     state.line = level;
+    if (level && !state.pending) {
+        state.pending = true;
+        note(exception);
+    }
 }
 
 void InterruptController::set_pending(unsigned exception)
 {
     of(exception).pending = true;
-    find_next();
+    note(exception);
 }
 
 void InterruptController::clear_pending(unsigned exception)
 {
     State &state = of(exception);
     state.pending = state.line && !state.active;
-    find_next();
+    note(exception);
 }
 
 void InterruptController::set_enabled(unsigned exception, bool enabled)
 {
     of(exception).enabled = enabled;
-    find_next();
+    note(exception);
 }
 
 void InterruptController::set_priority(unsigned exception, unsigned priority)
@@ -92,11 +92,14 @@ void InterruptController::find_next()
 {
     next_ = 0;
     int best = idle_priority;
-    for (unsigned i = exception::nmi; i < exceptions_.size(); ++i) {
-        const State &state = exceptions_[i];
-        if (state.pending && state.enabled && state.priority < best) {
-            next_ = i;
-            best = state.priority;
+    for (std::size_t word = 0; word < waiting_.size(); ++word) {
+        for (std::uint64_t left = waiting_[word]; left != 0; left &= left - 1) {
+            const unsigned exception =
+                static_cast<unsigned>(64 * word) + static_cast<unsigned>(__builtin_ctzll(left));
+            if (of(exception).priority < best) {
+                next_ = exception;
+                best = of(exception).priority;
+            }
         }
     }
     next_priority_ = next_ == 0 ? idle_priority : group(best);
@@ -143,7 +146,7 @@ void InterruptController::enter(unsigned exception)
     state.pending = false;
     state.active = true;
     stack_.push_back(exception);
-    find_next();
+    note(exception);
     find_running_priority();
 }
 
@@ -152,11 +155,12 @@ void InterruptController::leave()
     if (stack_.empty()) {
         throw std::logic_error("return from an exception while none is active");
     }
-    State &state = of(stack_.back());
+    const unsigned left = stack_.back();
+    State &state = of(left);
     stack_.pop_back();
     state.active = false;
     state.pending = state.pending || state.line;
-    find_next();
+    note(left);
     find_running_priority();
 }
 

@@ -43,7 +43,12 @@ class InterruptController
 
     void reset();
 
-    void set_line(unsigned line, bool level);
+    void set_line(unsigned line, bool level)
+    {
+        if (of(exception::first_interrupt + line).line != level) {
+            change_line(line, level);
+        }
+    }
     void set_pending(unsigned exception);
     void clear_pending(unsigned exception);
     void set_enabled(unsigned exception, bool enabled);
@@ -110,19 +115,28 @@ class InterruptController
     };
     static constexpr int idle_priority = 256, hard_fault_priority = -1;
 
-    const State &of(unsigned exception) const;
-    State &of(unsigned exception);
+    const State &of(unsigned exception) const
+    {
+        return exceptions_.at(exception);
+    }
+    State &of(unsigned exception)
+    {
+        return exceptions_.at(exception);
+    }
+    void change_line(unsigned line, bool level);
     int group(int priority) const
     {
         return priority < 0 ? priority : priority & group_mask_;
     }
     int priority_of_execution(const Masks &masks) const;
+    void note(unsigned exception);
     void find_next();
     void find_running_priority();
 
     const CoreModel &core_;
     std::vector<State> exceptions_;
-    std::vector<unsigned> stack_; /* active exceptions, the running one last */
+    std::vector<std::uint64_t> waiting_; /* pending and enabled exceptions, a bit each */
+    std::vector<unsigned> stack_;        /* active exceptions, the running one last */
     int group_mask_ = 0xff;
     unsigned next_ = 0;
     int next_priority_ = idle_priority, running_priority_ = idle_priority; /* of their groups */

@@ -113,6 +113,10 @@ class Machine final : private CoreObserver, public Chip
     void non_maskable_interrupt() override;
     std::uint32_t load(std::uint32_t address, unsigned bytes) override;
     void store(std::uint32_t address, unsigned bytes, std::uint32_t value) override;
+    std::uint8_t *plain_memory(std::uint32_t address, std::uint32_t bytes) override
+    {
+        return description_.flash.contains(address) ? nullptr : memory(address, bytes);
+    }
     void reset(const std::string &cause) override;
     [[noreturn]] void fail(const std::string &what) const override;
 
@@ -132,7 +136,11 @@ class Machine final : private CoreObserver, public Chip
     unsigned conditional_bytes(std::uint32_t address);
     const InstructionCost &visit(std::uint32_t address, unsigned bytes);
     void refill_behind_branch(bool straight);
-    void charge_block(const BlockCost &block, bool straight);
+    const BlockCost &instruction(std::uint32_t address, unsigned bytes);
+    const BlockCost &visit_instruction(std::uint32_t address, unsigned bytes);
+    CodePlace place_of(std::uint32_t address) const;
+    bool quiet() const;
+    void begin(const BlockCost &block);
     void watch_by_instruction(AddressRange range);
     const BlockCost &visit_block(std::uint32_t address, unsigned bytes);
     void note_write()
@@ -148,10 +156,10 @@ class Machine final : private CoreObserver, public Chip
                address - conditional_.base <= conditional_.bytes &&
                costs_.find(next_address_)->bytes > 0;
     }
-    void charge(std::uint32_t address, unsigned bytes);
+    void charge(const BlockCost &block);
     void add_time(const Cycles &cycles);
     void account(const Cycles &cycles);
-    void inject(std::uint32_t address, unsigned instructions);
+    void inject(const BlockCost &block);
     void serve_events();
     void finish_instruction()
     {
@@ -190,7 +198,7 @@ class Machine final : private CoreObserver, public Chip
     InterruptController interrupts_;
     SystemControl system_;
     InstructionCosts costs_;
-    BlockCosts blocks_;
+    BlockCosts blocks_, instructions_; /* the latter of one instruction each */
     InterruptAccount account_;
     UnicornCore core_;
     unsigned control_exception_;
@@ -202,7 +210,6 @@ class Machine final : private CoreObserver, public Chip
     /* the present instruction, and what the next one has to know of it */
     std::uint32_t pc_ = 0;
     std::uint32_t next_address_ = 0; /* 0: the program does not come from an instruction */
-    std::uint32_t flash_line_ = 0;
     unsigned stage_ = 0, entry_stage_ = 0, exit_stage_ = 0;
     AddressRange conditional_ = {0, 0}; /* instructions of the last IT block */
     bool floating_point_begun_ = false;

@@ -73,50 +73,70 @@ inline void Machine::refill_behind_branch(bool straight)
     }
 }
 
-/* This and what it calls run before every instruction: nearly all of the simulation's time. */
-inline void Machine::charge(std::uint32_t address, unsigned bytes)
+/* What instructions that are executed behind one another cost. */
+inline void Machine::charge(const BlockCost &block)
 {
-    const CostRules &rules = costs_.rules;
-    const InstructionCost *known = costs_.find(address);
-    const InstructionCost &cost =
-        known != nullptr && known->visited != 0 ? *known : visit(address, bytes);
-    const bool straight = address == next_address_;
+    const bool straight = block.address == next_address_;
     refill_behind_branch(straight);
-    next_address_ = address + bytes;
-    if (cost.conditional > 0) {
-        conditional_ = {next_address_, cost.conditional};
+    next_address_ = block.address + block.bytes;
+    if (block.conditional.bytes > 0) {
+        conditional_ = block.conditional;
     }
-    const unsigned nominal = straight ? cost.nominal_after : cost.nominal;
-    instruction_end_ = now_ + nominal * core_cycle_;
+    instruction_end_ = now_ + (straight ? block.nominal_after : block.nominal) * core_cycle_;
     if (above_control_ == 0) {
         return;
     }
-    if (cost.stage != inherited_stage) {
-        stage_ = cost.stage;
+    stage_ = block.stage != inherited_stage ? block.stage : stage_;
+    account(straight ? block.head_after : block.head);
+    if (block.parts > 0) {
+        const BlockPart *const parts = blocks_.parts(block);
+        for (unsigned i = 0; i < block.parts; ++i) {
+            stage_ = parts[i].stage; /* known, or it would be the part's before */
+            account(parts[i].cycles);
+        }
     }
-    const std::uint32_t first_line = address >> rules.flash_line_shift;
-    const std::uint32_t last_line = (address + bytes - 1) >> rules.flash_line_shift;
-    const bool new_line = !straight || first_line != flash_line_;
-    const unsigned waits =
-        (new_line ? 1u : 0u) + (last_line != first_line ? 1u : 0u) + cost.literals;
-    flash_line_ = last_line;
-    Cycles cycles;
-    cycles.nominal = nominal;
-    cycles.worst = straight ? cost.worst_after : cost.worst;
-    cycles.flash = cycles.worst + waits * rules.flash_wait;
-    if (description_.fast_code.bytes > 0 && description_.flash.contains(address)) {
-        cycles.worst = cycles.flash; /* this one does run from flash */
-    }
-    account(cycles);
 }
 
-/* Time, events, and whether nothing comes before the instruction at this address. */
-inline bool Machine::may_go_on(std::uint32_t address)
+/* In the control interrupt: its first instruction, code out of place, and what a test injects. */
+inline void Machine::inject(const BlockCost &block)
 {
-    finish_instruction();
-    if (now_ >= events_.next()) {
-        serve_events();
+    if (first_of_control_) {
+        first_of_control_ = false;
+        account_.latency((now_ - sampled_at_) / core_cycle_);
     }
+    if (block.place != CodePlace::as_wanted) {
+        account_.count_outside_fast_code();
+    }
+    control_instructions_ += block.instructions;
+    if (stall_cycles_ > 0 && control_instructions_ > stall_at_) {
+        const Cycles stall = {stall_cycles_, stall_cycles_, stall_cycles_};
+        stall_cycles_ = 0;
+        add_time(stall);
+    }
+}
+
+/* This and what it calls run before every block: most of the simulation's time. */
+inline void Machine::begin(const BlockCost &block)
+{
+    pc_ = block.address;
+    charge(block);
+    if (above_control_ == 1) {
+        inject(block);
+    }
+}
+
+/* Whether nothing comes before the next instruction: no event, and nothing wanted of the core. */
+inline bool Machine::quiet() const
+{
+    return now_ < events_.next() && !stop_wanted_ && !reset_wanted_ && to_be_watched_.bytes == 0 &&
+           !interrupts_.may_preempt();
+}
+
+/* The events that are due; and whether the instruction at this address is the next, all the same.
+ */
+bool Machine::may_go_on(std::uint32_t address)
+{
+    serve_events();
     to_enter_ = 0;
     /* Never inside an IT block: the emulator stops behind it only, with its time not charged. */
     if (conditional_.contains(address)) {
@@ -131,39 +151,18 @@ inline bool Machine::may_go_on(std::uint32_t address)
     return to_enter_ == 0;
 }
 
-/* In the control interrupt: its first instruction, code out of place, and what a test injects. */
-inline void Machine::inject(std::uint32_t address, unsigned instructions)
-{
-    if (first_of_control_) {
-        first_of_control_ = false;
-        account_.latency((now_ - sampled_at_) / core_cycle_);
-    }
-    if (description_.fast_code.bytes > 0 && !description_.fast_code.contains(address)) {
-        account_.count_outside_fast_code();
-    }
-    control_instructions_ += instructions;
-    if (stall_cycles_ > 0 && control_instructions_ > stall_at_) {
-        const Cycles stall = {stall_cycles_, stall_cycles_, stall_cycles_};
-        stall_cycles_ = 0;
-        add_time(stall);
-    }
-}
-
 bool Machine::before_instruction(std::uint32_t address, unsigned bytes)
 {
     in_block_ = false;
-    if (!may_go_on(address)) {
+    finish_instruction();
+    if (!quiet() && !may_go_on(address)) {
         return false;
     }
     while (skipped_by_condition(address)) { /* costs what it costs when it is executed */
-        charge(next_address_, costs_.find(next_address_)->bytes);
+        charge(instruction(next_address_, costs_.find(next_address_)->bytes));
         finish_instruction();
     }
-    pc_ = address;
-    charge(address, bytes);
-    if (above_control_ == 1) {
-        inject(address, 1);
-    }
+    begin(instruction(address, bytes));
     return true;
 }
 
@@ -171,24 +170,6 @@ void Machine::add_time(const Cycles &cycles)
 {
     account(cycles);
     instruction_end_ += cycles.nominal * core_cycle_;
-}
-
-inline void Machine::charge_block(const BlockCost &block, bool straight)
-{
-    instruction_end_ = now_ + (straight ? block.nominal_after : block.nominal) * core_cycle_;
-    if (above_control_ == 0) {
-        return;
-    }
-    flash_line_ = block.last_line;
-    stage_ = block.stage != inherited_stage ? block.stage : stage_;
-    account(straight ? block.head_after : block.head);
-    if (block.parts > 0) {
-        const BlockPart *const parts = blocks_.parts(block);
-        for (unsigned i = 0; i < block.parts; ++i) {
-            stage_ = parts[i].stage; /* known, or it would be the part's before */
-            account(parts[i].cycles);
-        }
-    }
 }
 
 bool Machine::before_block(std::uint32_t address, unsigned bytes)
@@ -201,43 +182,52 @@ bool Machine::before_block(std::uint32_t address, unsigned bytes)
     if (block->by_instruction) {
         return true;
     }
-    if (!may_go_on(address)) {
+    finish_instruction();
+    if (!quiet() && !may_go_on(address)) {
         return false;
     }
     in_block_ = true;
-    pc_ = address;
-    const bool straight = address == next_address_;
-    refill_behind_branch(straight);
-    next_address_ = address + bytes;
-    if (block->conditional.bytes > 0) {
-        conditional_ = block->conditional;
-    }
-    charge_block(*block, straight);
-    if (above_control_ == 1) {
-        inject(address, block->instructions);
-    }
+    begin(*block);
     return true;
+}
+
+/* One that is watched by itself. */
+inline const BlockCost &Machine::instruction(std::uint32_t address, unsigned bytes)
+{
+    const BlockCost *const known = instructions_.find(address, bytes);
+    return known != nullptr ? *known : visit_instruction(address, bytes);
+}
+
+const BlockCost &Machine::visit_instruction(std::uint32_t address, unsigned bytes)
+{
+    return instructions_.set(
+        instructions_.sum(address, {visit(address, bytes)}, costs_.rules, place_of(address)));
+}
+
+/* Where code lies, as far as its cost goes. */
+CodePlace Machine::place_of(std::uint32_t address) const
+{
+    const AddressRange &fast = description_.fast_code;
+    if (fast.bytes == 0 || fast.contains(address)) {
+        return CodePlace::as_wanted;
+    }
+    return description_.flash.contains(address) ? CodePlace::flash : CodePlace::elsewhere;
 }
 
 /* What runs in the block at this address, whose instructions the map names. */
 const BlockCost &Machine::visit_block(std::uint32_t address, unsigned bytes)
 {
     std::vector<InstructionCost> instructions;
-    AddressRange conditional = {0, 0};
     std::uint32_t next = address;
     while (next < address + bytes) {
         const InstructionCost *const known = costs_.find(next);
         instructions.push_back(visit(next, known == nullptr ? 0 : known->bytes));
         next += instructions.back().bytes;
-        if (instructions.back().conditional > 0) {
-            conditional = {next, instructions.back().conditional};
-        }
     }
     if (next != address + bytes) {
         fail("an instruction of another size than the image's map says");
     }
-    BlockCost block = blocks_.sum(address, instructions, costs_.rules);
-    block.conditional = conditional;
+    BlockCost block = blocks_.sum(address, instructions, costs_.rules, place_of(address));
     for (const AddressRange &range : by_instruction_) {
         const bool begins = range.contains(address), ends = range.contains(next - 1);
         if (begins && ends) {

@@ -110,8 +110,8 @@ bool Adc::enabled() const
 
 std::uint32_t Adc::fetch(std::uint32_t offset, Master master)
 {
-    if (master == Master::core) {
-        look();
+    if (master == Master::core && (offset == ISR || offset == DR)) {
+        look(Access::read);
     }
     if (offset == DR) {
         read_by_dma_ += master == Master::dma ? 1u : 0u;
@@ -127,7 +127,7 @@ std::uint32_t Adc::fetch(std::uint32_t offset, Master master)
 
 void Adc::put(std::uint32_t offset, std::uint32_t value, Master)
 {
-    look();
+    look(Access::write);
     const bool started = (at(CR) & (ADSTART | JADSTART)) != 0;
     switch (offset) {
     case ISR:

@@ -65,8 +65,8 @@ class Adc : public RegisterBlock
     /* Results that have been put off (adc_deferred.cpp) come: those that are due up to a time, of
        sequences that were triggered before another. */
     void settle(Ticks until, Ticks triggered_before = Event::never);
-    /* The core is about to look at what those results have changed, or to change what they do. */
-    void look();
+    /* The core is about to read what those results have changed, or to change what they do. */
+    void look(Access access);
 
     struct Counters {
         std::uint64_t conversions = 0, injected_sequences = 0, regular_sequences = 0;
@@ -115,6 +115,7 @@ class Adc : public RegisterBlock
     void plan();
     bool silent();
     bool defer(Ticks trigger);
+    template <typename Take> void form(Ticks until, Ticks triggered_before, Take take);
     void deferred_due();
     std::uint32_t resolved(std::uint32_t code) const;
     void flag(std::uint32_t flags);
@@ -130,11 +131,12 @@ class Adc : public RegisterBlock
     Sequence injected_, regular_;
     Event calibration_event_, ready_event_, injected_event_, regular_event_;
     Triggers::Listener *triggers_ = nullptr;
+    unsigned injected_sources_ = 0, regular_sources_ = 0; /* as Listener::sources */
 
     /* regular sequences that are put off: times of their triggers, the rank that the first is at,
        and when that is due */
     std::vector<Ticks> deferred_;
-    unsigned deferred_rank_ = 0;
+    std::size_t deferred_rank_ = 0;
     Ticks due_ = Event::never, deferred_until_ = 0;
     std::vector<Rank> plan_;
     Ticks planned_half_clock_ = 0, planned_latency_ = 0;

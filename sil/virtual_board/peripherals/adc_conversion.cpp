@@ -86,40 +86,32 @@ bool injected_source(unsigned number, Trigger *source)
 void Adc::choose_triggers()
 {
     Trigger chosen;
-    triggers_->sources = 0;
+    injected_sources_ = regular_sources_ = 0;
     if ((at(CR) & JADSTART) != 0) {
         const bool known = injected_source(field(at(JSQR), 2, 5), &chosen);
-        triggers_->sources |= known ? only(chosen) : every_trigger;
+        injected_sources_ = known ? only(chosen) : every_trigger;
     }
     if ((at(CR) & ADSTART) != 0 && field(at(CFGR), 10, 2) != 0) {
         const bool known = regular_source(field(at(CFGR), 5, 5), &chosen);
-        triggers_->sources |= known ? only(chosen) : every_trigger;
+        regular_sources_ = known ? only(chosen) : every_trigger;
     }
+    triggers_->sources = injected_sources_ | regular_sources_;
 }
 
 void Adc::triggered(Trigger source, TriggerEdge edge)
 {
-    if (edge != TriggerEdge::rising || (at(CR) & (ADSTART | JADSTART)) == 0 || !clocked()) {
+    if (edge != TriggerEdge::rising || !clocked()) {
         return;
     }
-    Trigger chosen;
-    if ((at(CR) & JADSTART) != 0) {
-        const unsigned number = field(at(JSQR), 2, 5);
-        if (!injected_source(number, &chosen)) {
-            refuse(JSQR, at(JSQR), "JEXTSEL: this trigger is not modelled");
-        }
-        if (chosen == source) {
-            start_injected();
-        }
+    require(injected_sources_ != every_trigger, JSQR, at(JSQR),
+            "JEXTSEL: this trigger is not modelled");
+    require(regular_sources_ != every_trigger, CFGR, at(CFGR),
+            "EXTSEL: this trigger is not modelled");
+    if ((injected_sources_ & only(source)) != 0) {
+        start_injected();
     }
-    if ((at(CR) & ADSTART) != 0 && field(at(CFGR), 10, 2) != 0) {
-        const unsigned number = field(at(CFGR), 5, 5);
-        if (!regular_source(number, &chosen)) {
-            refuse(CFGR, at(CFGR), "EXTSEL: this trigger is not modelled");
-        }
-        if (chosen == source) {
-            start_regular();
-        }
+    if ((regular_sources_ & only(source)) != 0) {
+        start_regular();
     }
 }
 

@@ -72,58 +72,67 @@ bool Adc::defer(Ticks trigger)
     return true;
 }
 
+/* Forms the results that settle is to form; `take` gets each with its conversion. */
+template <typename Take> void Adc::form(Ticks until, Ticks triggered_before, Take take)
+{
+    const std::size_t ranks = plan_.size();
+    std::array<std::uint32_t, 16> results{}; /* between two peaks their inputs stand still */
+    unsigned known = 0, formed = 0;          /* ranks, a bit each */
+    std::size_t done = 0;
+    while (due_ <= until && deferred_[done] < triggered_before) {
+        const Ticks trigger = deferred_[done];
+        const std::size_t rank = deferred_rank_;
+        const Conversion conversion = {number_, plan_[rank].channel, false, trigger,
+                                       trigger + plan_[rank].sampled};
+        if ((known >> rank & 1) == 0) {
+            known |= 1u << rank;
+            results[rank] = regular_result(conversion);
+        }
+        const bool last = rank + 1 == ranks;
+        deferred_rank_ = last ? 0 : rank + 1;
+        done += last ? 1 : 0;
+        due_ = done < deferred_.size() ? deferred_[done] + plan_[deferred_rank_].end : Event::never;
+        formed++;
+        take(results[rank], conversion);
+        if (last) {
+            flag(EOS);
+        }
+    }
+    counters.conversions += formed * oversampling();
+    deferred_.erase(deferred_.begin(), deferred_.begin() + static_cast<std::ptrdiff_t>(done));
+}
+
 void Adc::settle(Ticks until, Ticks triggered_before)
 {
     if (due_ > until) {
         return;
     }
-    const unsigned factor = oversampling(), shift = oversampling_shift();
-    const bool direct = silent(); /* a ring never ends: it stays so */
-    std::size_t done = 0;
-    unsigned known = 0; /* ranks, a bit each: between two peaks their inputs stand still */
-    std::array<std::uint32_t, 16> results{};
-    while (done < deferred_.size() && due_ <= until && deferred_[done] < triggered_before) {
-        const Ticks trigger = deferred_[done];
-        const Rank &rank = plan_[deferred_rank_];
-        const Conversion conversion = {number_, rank.channel, false, trigger,
-                                       trigger + rank.sampled};
-        if ((known >> deferred_rank_ & 1) == 0) {
-            known |= 1u << deferred_rank_;
-            results[deferred_rank_] = regular_result(conversion);
-        }
-        const std::uint32_t data = results[deferred_rank_];
-        const bool last = ++deferred_rank_ == plan_.size();
-        if (last) {
-            deferred_rank_ = 0;
-            ++done;
-        }
-        due_ = done < deferred_.size() ? deferred_[done] + plan_[deferred_rank_].end : Event::never;
-        counters.conversions += factor;
-        if (direct) {
-            at(DR) = data;
-            const std::uint32_t address = route_.dma->hand_over(route_.channel, data);
-            if (stuck_code < 0) {
-                inputs_.stored(conversion, address, factor, shift);
-            }
-        } else {
+    if (!silent()) {
+        form(until, triggered_before, [this](std::uint32_t data, const Conversion &conversion) {
             deliver(data, conversion);
-        }
-        if (last) {
-            flag(EOS);
-        }
+        });
+        return;
     }
-    deferred_.erase(deferred_.begin(), deferred_.begin() + static_cast<std::ptrdiff_t>(done));
+    const unsigned factor = oversampling(), shift = oversampling_shift();
+    Dma::Ring ring(*route_.dma, route_.channel); /* which never ends: it stays silent */
+    form(until, triggered_before, [&](std::uint32_t data, const Conversion &conversion) {
+        at(DR) = data;
+        const std::uint32_t address = ring.put(data);
+        if (stuck_code < 0) {
+            inputs_.stored(conversion, address, factor, shift);
+        }
+    });
 }
 
-/* Up to now; what is still to come does so by an event, since what follows a look may be a write
-   that lets it be told otherwise. */
-void Adc::look()
+/* Up to now; behind a write what is still to come does so by an event, since it may be told by more
+   than registers from now on. */
+void Adc::look(Access access)
 {
     if (due_ == Event::never) {
         return;
     }
     settle(chip_.now());
-    if (due_ != Event::never && regular_event_.at == Event::never) {
+    if (access == Access::write && due_ != Event::never && regular_event_.at == Event::never) {
         chip_.schedule(regular_event_, due_);
     }
 }

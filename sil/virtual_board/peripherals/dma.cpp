@@ -173,15 +173,25 @@ bool Dma::transfer(unsigned channel, std::uint32_t *where)
     return true;
 }
 
-std::uint32_t Dma::hand_over(unsigned channel, std::uint32_t data)
+Dma::Ring::Ring(Dma &dma, unsigned channel)
+    : dma_(dma), channel_(channel), address_(dma.at(channel * channel_stride + CMAR)),
+      items_(dma.loaded_[channel]), left_(dma.at(channel * channel_stride + CNDTR))
 {
-    const std::uint32_t control = at(CCR + channel * channel_stride);
-    const unsigned peripheral_bytes = 1u << field(control, 8, 2);
-    const unsigned memory_bytes = 1u << field(control, 10, 2);
-    const std::uint32_t memory = memory_address(channel);
-    count_item(channel);
-    chip_.store(memory, memory_bytes, data & mask(peripheral_bytes) & mask(memory_bytes));
-    return memory;
+    const std::uint32_t control = dma.at(channel * channel_stride + CCR);
+    bytes_ = 1u << field(control, 10, 2);
+    step_ = (control & MINC) != 0 ? bytes_ : 0;
+    mask_ = mask(1u << field(control, 8, 2)) & mask(bytes_);
+    if (bytes_ == 2 && mask_ == mask(2)) {
+        host_ = dma.chip_.plain_memory(address_, items_ * step_ + bytes_ - step_);
+    }
+}
+
+Dma::Ring::~Ring()
+{
+    dma_.at(channel_ * channel_stride + CNDTR) = left_;
+    if (flags_ != 0) { /* which raise no interrupt: the channel is silent */
+        dma_.at(ISR) |= (flags_ | 1u) << (4 * channel_);
+    }
 }
 
 void Dma::flag(unsigned channel, std::uint32_t flags)

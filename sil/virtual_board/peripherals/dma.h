@@ -36,9 +36,7 @@ class Dma : public RegisterBlock
     bool enabled(unsigned channel) const;
     /* One item; false if the channel takes none. The memory address it used goes to `where`. */
     bool transfer(unsigned channel, std::uint32_t *where);
-    /* The same on a silent channel that is known to read the register of a peripheral, which hands
-       over what that holds. Returns the memory address. */
-    std::uint32_t hand_over(unsigned channel, std::uint32_t data);
+    class Ring;
     /* Whether a channel fetches from one register for ever and raises no interrupt: only its
        registers tell how far it is. */
     bool silent(unsigned channel) const;
@@ -63,6 +61,47 @@ class Dma : public RegisterBlock
     unsigned number_;
     unsigned changes_ = 0;
     std::array<std::uint32_t, channels> loaded_{}; /* items when the channel was enabled */
+};
+
+/* A silent channel that is known to read the register of a peripheral, which hands over what that
+   holds, many items at once. The channel's registers show them when this is gone. */
+class Dma::Ring
+{
+  public:
+    Ring(Dma &dma, unsigned channel);
+    ~Ring();
+    Ring(const Ring &) = delete;
+    Ring &operator=(const Ring &) = delete;
+
+    /* Returns the memory address. */
+    std::uint32_t put(std::uint32_t data)
+    {
+        const std::uint32_t offset = (items_ - left_) * step_;
+        left_--;
+        flags_ |= left_ == items_ / 2 ? half_flag : 0u;
+        if (left_ == 0) {
+            flags_ |= whole_flag;
+            left_ = items_;
+        }
+        if (host_ != nullptr) {
+            host_[offset] = static_cast<std::uint8_t>(data);
+            host_[offset + 1] = static_cast<std::uint8_t>(data >> 8);
+        } else {
+            dma_.chip_.store(address_ + offset, bytes_, data & mask_);
+        }
+        return address_ + offset;
+    }
+
+  private:
+    static constexpr std::uint32_t whole_flag = 2, half_flag = 4;
+
+    Dma &dma_;
+    unsigned channel_;
+    std::uint32_t address_, items_, left_;
+    unsigned bytes_;
+    std::uint32_t step_, mask_;
+    std::uint32_t flags_ = 0;
+    std::uint8_t *host_ = nullptr; /* memory of 16-bit items, if it is plain */
 };
 
 class Dmamux : public RegisterBlock

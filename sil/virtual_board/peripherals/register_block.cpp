@@ -62,7 +62,7 @@ std::uint32_t RegisterBlock::read(std::uint32_t offset, unsigned bytes, Master m
 {
     find(offset, bytes);
     if (before_access_ && master == Master::core) {
-        before_access_();
+        before_access_(Access::read);
     }
     const std::uint32_t value = fetch(offset, master);
     return bytes == 4 ? value : value & ((1u << (8 * bytes)) - 1u);
@@ -77,7 +77,7 @@ void RegisterBlock::write(std::uint32_t offset, unsigned bytes, std::uint32_t va
                "bits " + hexadecimal(unknown) + " are reserved, read-only or not modelled");
     }
     if (before_access_ && master == Master::core) {
-        before_access_();
+        before_access_(Access::write);
     }
     put(offset, value, master);
 }

@@ -24,6 +24,8 @@ struct Register {
     bool narrow = false;      /* accesses of 1 and 2 bytes are served */
 };
 
+enum class Access { read, write };
+
 /* Whether the clock of a block runs: its enable bit in the clock tree. */
 using Clocked = std::function<bool()>;
 
@@ -44,7 +46,7 @@ class RegisterBlock : public Peripheral
         clocked_ = std::move(clocked);
     }
     /* Called before every access of the core: what was put off until somebody looks comes now. */
-    void before_access(std::function<void()> act)
+    void before_access(std::function<void(Access)> act)
     {
         before_access_ = std::move(act);
     }
@@ -92,7 +94,7 @@ class RegisterBlock : public Peripheral
     std::vector<int> index_;
     std::vector<std::uint32_t> values_;
     Clocked clocked_;
-    std::function<void()> before_access_;
+    std::function<void(Access)> before_access_;
 };
 
 constexpr std::uint32_t field(std::uint32_t value, unsigned position, unsigned bits)

@@ -63,9 +63,9 @@ Stm32g474Device::Stm32g474Device(Chip &chip, const Stm32g474Config &config)
         adcs_.push_back(std::make_unique<Adc>(chip, i + 1, i < 2 ? adc12_ : adc345_, triggers_,
                                               dmamux_, power_stage_, interrupt));
     }
-    const auto look = [this] {
+    const auto look = [this](Access access) {
         for (auto &adc : adcs_) {
-            adc->look();
+            adc->look(access);
         }
     };
     for (RegisterBlock *const block : std::initializer_list<RegisterBlock *>{

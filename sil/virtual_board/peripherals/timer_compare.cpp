@@ -43,9 +43,8 @@ void Timer::take_flags()
 void Timer::schedule_compare()
 {
     Ticks next = Event::never;
-    if ((at(DIER) & 0x1eu) == 0) {
-        chip_.schedule(compare_event_, next);
-        return;
+    if ((at(DIER) & 0x1eu) == 0 && compare_event_.at == next) {
+        return; /* as a rule */
     }
     const Ticks count_time = count_ticks();
     for (int channel = 0; kind_.general && counting() && channel < 4; channel++) {
