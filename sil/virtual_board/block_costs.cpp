@@ -34,7 +34,7 @@ const BlockCost &BlockCosts::set(const BlockCost &block)
 void BlockCosts::grow()
 {
     const std::vector<BlockCost> known = std::move(table_);
-    table_ = std::vector<BlockCost>(2 * known.size());
+    table_ = std::vector<BlockCost>(std::size_t{1} << ++size_log2_);
     for (const BlockCost &block : known) {
         if (block.address != BlockCost::no_code) {
             table_[place(block.address)] = block;
@@ -47,6 +47,14 @@ void BlockCosts::forget()
     std::fill(table_.begin(), table_.end(), BlockCost());
     blocks_ = 0;
     parts_.clear();
+    accesses_.clear();
+}
+
+void BlockCosts::set_accesses(BlockCost &block, const std::vector<TimedAccess> &accesses)
+{
+    block.first_access = static_cast<std::uint16_t>(accesses_.size());
+    block.accesses = static_cast<std::uint8_t>(accesses.size());
+    accesses_.insert(accesses_.end(), accesses.begin(), accesses.end());
 }
 
 BlockCost BlockCosts::sum(std::uint32_t address, const std::vector<InstructionCost> &instructions,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sil/virtual_board/instruction_costs.h"
+#include "sil/virtual_board/register_lessons.h"
 
 namespace virtual_board
 {
@@ -37,6 +38,13 @@ struct BlockPart {
     BlockCycles cycles;
 };
 
+/* An access of a block's to a register. */
+struct TimedAccess {
+    RegisterAccess access;
+    std::uint32_t left; /* nominal cycles of the block from the beginning of its instruction on */
+    std::uint8_t stage; /* or inherited_stage */
+};
+
 /* Where code lies, as far as its cost goes: in the memory that is meant for it, in flash although
    another is, or elsewhere. */
 enum class CodePlace : std::uint8_t { as_wanted, flash, elsewhere };
@@ -54,6 +62,8 @@ struct alignas(64) BlockCost {
     std::uint8_t stage = 0;      /* of its first part */
     bool by_instruction = false; /* it is charged by the instruction: nothing of the above */
     CodePlace place = CodePlace::as_wanted;
+    std::uint8_t accesses = 0; /* to registers, as far as they are known */
+    std::uint16_t first_access = 0;
     AddressRange conditional = {0, 0}; /* instructions of its last IT block */
 
     static constexpr std::uint32_t no_code = 1; /* instructions have even addresses */
@@ -74,6 +84,11 @@ class BlockCosts
     {
         return parts_.data() + block.first_part;
     }
+    const TimedAccess *accesses(const BlockCost &block) const
+    {
+        return accesses_.data() + block.first_access;
+    }
+    void set_accesses(BlockCost &block, const std::vector<TimedAccess> &accesses);
     /* In the place of what was known of that address. */
     const BlockCost &set(const BlockCost &block);
     /* The sums over some instructions from this address on; their parts are kept here. */
@@ -86,18 +101,22 @@ class BlockCosts
     /* Where the block at an address lies, or is to lie. */
     std::size_t place(std::uint32_t address) const
     {
-        const std::size_t mask = table_.size() - 1;
-        std::size_t at = (address >> 1 ^ address >> 16) & mask;
+        std::size_t at = (address * scatter) >> (32 - size_log2_);
         while (table_[at].address != address && table_[at].address != BlockCost::no_code) {
-            at = (at + 1) & mask;
+            at = (at + 1) & (table_.size() - 1);
         }
         return at;
     }
     void grow();
 
-    std::vector<BlockCost> table_ = std::vector<BlockCost>(4096); /* a power of two */
+    /* 2^32 over the golden ratio: code lies close together, in the table it must not. */
+    static constexpr std::uint32_t scatter = 0x9e3779b1;
+
+    unsigned size_log2_ = 12;
+    std::vector<BlockCost> table_ = std::vector<BlockCost>(std::size_t{1} << size_log2_);
     std::size_t blocks_ = 0;
     std::vector<BlockPart> parts_;
+    std::vector<TimedAccess> accesses_;
 };
 
 } // namespace virtual_board

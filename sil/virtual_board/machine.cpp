@@ -219,9 +219,10 @@ void Machine::run()
             start();
             return;
         }
-        if (to_be_watched_.bytes > 0) {
-            watch_by_instruction(to_be_watched_);
+        if (watch_changes_) {
+            change_watch();
         }
+        lessons_.abandon(); /* whatever has stopped the core */
         act_on(core_.run(core_.get(CoreRegister::pc)));
     }
 }

@@ -141,14 +141,13 @@ class Machine final : private CoreObserver, public Chip
     CodePlace place_of(std::uint32_t address) const;
     bool quiet() const;
     void begin(const BlockCost &block);
-    void watch_by_instruction(AddressRange range);
     const BlockCost &visit_block(std::uint32_t address, unsigned bytes);
-    void note_write()
-    {
-        if (in_block_ && interrupts_.running() != 0) {
-            to_be_watched_ = {pc_, next_address_ - pc_};
-        }
-    }
+    std::vector<TimedAccess> timed(const std::vector<RegisterAccess> &accesses,
+                                   const BlockCost &block);
+    unsigned time_access(std::uint32_t address);
+    void watch_by_instruction(AddressRange block);
+    void begin_lesson(AddressRange block);
+    void change_watch();
     /* Whether the program came here past the instruction at next_address_, in an IT block. */
     bool skipped_by_condition(std::uint32_t address)
     {
@@ -157,8 +156,16 @@ class Machine final : private CoreObserver, public Chip
                costs_.find(next_address_)->bytes > 0;
     }
     void charge(const BlockCost &block);
-    void add_time(const Cycles &cycles);
-    void account(const Cycles &cycles);
+    void add_time(const Cycles &cycles, unsigned stage);
+    void add_time(const Cycles &cycles)
+    {
+        add_time(cycles, stage_);
+    }
+    void account(const Cycles &cycles, unsigned stage);
+    void account(const Cycles &cycles)
+    {
+        account(cycles, stage_);
+    }
     void inject(const BlockCost &block);
     void serve_events();
     void finish_instruction()
@@ -214,11 +221,14 @@ class Machine final : private CoreObserver, public Chip
     AddressRange conditional_ = {0, 0}; /* instructions of the last IT block */
     bool floating_point_begun_ = false;
 
-    /* code that writes registers in an exception, as it shows: watched by the instruction, all
-       other by the block */
+    /* blocks that access registers in an exception, as it shows: watched by the instruction until
+       it is known when in the block they do */
+    const BlockCost *block_ = nullptr; /* the present one, if it is watched as a whole */
+    unsigned accesses_ = 0;            /* of it, so far */
+    RegisterLessons lessons_;
     std::vector<AddressRange> by_instruction_;
-    AddressRange to_be_watched_ = {0, 0}; /* a block that is to become so; 0 bytes: none */
-    bool in_block_ = false;
+    AddressRange to_be_watched_ = {0, 0}, to_be_released_ = {0, 0}; /* 0 bytes: none */
+    bool watch_changes_ = false;
 
     /* what the core is to do before the next instruction */
     unsigned to_enter_ = 0;

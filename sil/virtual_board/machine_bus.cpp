@@ -69,11 +69,12 @@ std::uint32_t Machine::read(std::uint32_t address, unsigned bytes)
         flash_->core_reads(address, bytes);
         return little_endian(memory(address, bytes), bytes);
     }
+    const unsigned stage = time_access(address);
     const bool own = address - SystemControl::base < SystemControl::bytes;
     if (own && address < 0xe0040000) {
         return system_.read(address - SystemControl::base, bytes, Master::core);
     }
-    add_time(costs_.rules.peripheral);
+    add_time(costs_.rules.peripheral, stage);
     return bus_read(address, bytes, Master::core);
 }
 
@@ -83,7 +84,7 @@ void Machine::write(std::uint32_t address, unsigned bytes, std::uint32_t value)
         flash_->store(address, bytes, value);
         return;
     }
-    note_write();
+    const unsigned stage = time_access(address);
     const bool own = address - SystemControl::base < SystemControl::bytes;
     if (own && address < 0xe0040000) {
         const bool allowed = system_.floating_point_allowed();
@@ -93,7 +94,7 @@ void Machine::write(std::uint32_t address, unsigned bytes, std::uint32_t value)
         }
         return;
     }
-    add_time(costs_.rules.peripheral);
+    add_time(costs_.rules.peripheral, stage);
     bus_write(address, bytes, value, Master::core);
 }
 

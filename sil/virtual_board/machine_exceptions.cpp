@@ -14,8 +14,10 @@ constexpr std::uint32_t floating_point_in_use = 1u << 2; /* CONTROL.FPCA */
 constexpr std::uint32_t process_stack = 1u << 1;         /* CONTROL.SPSEL */
 constexpr std::uint32_t basic_words = 8, extended_words = 26;
 
-constexpr CoreRegister basic_frame[] = {CoreRegister::r0, CoreRegister::r1,  CoreRegister::r2,
-                                        CoreRegister::r3, CoreRegister::r12, CoreRegister::lr};
+/* In their order; the last is no part of the frame. */
+constexpr CoreRegister basic_frame[] = {CoreRegister::r0, CoreRegister::r1,   CoreRegister::r2,
+                                        CoreRegister::r3, CoreRegister::r12,  CoreRegister::lr,
+                                        CoreRegister::pc, CoreRegister::xpsr, CoreRegister::sp};
 
 Cycles plus(Cycles a, const Cycles &b)
 {
@@ -85,14 +87,12 @@ std::uint32_t Machine::push_frame()
         check_floating_point();
     }
     const bool extended = system_.floating_point_allowed() && system_.keeps_floating_point();
-    std::uint32_t frame[extended_words] = {};
-    for (std::size_t i = 0; i < 6; ++i) {
-        frame[i] = core_.get(basic_frame[i]);
-    }
-    const std::uint32_t before = core_.get(CoreRegister::sp);
+    std::uint32_t frame[extended_words + 1] = {};
+    core_.get(basic_frame, frame);
+    const std::uint32_t before = frame[basic_words];
     const std::uint32_t padding = before & 4;
-    const std::uint32_t status = core_.get(CoreRegister::xpsr);
-    frame[6] = core_.get(CoreRegister::pc) & ~1u;
+    const std::uint32_t status = frame[7];
+    frame[6] &= ~1u;
     frame[7] = (status & 0xf80f0000) | 1u << 24 | interrupts_.running() | padding << 7;
     if (extended) {
         core_.get_floating_point(&frame[8]);
@@ -162,16 +162,21 @@ void Machine::pop_frame(std::uint32_t exception_return)
     }
     std::uint32_t frame[extended_words];
     std::memcpy(frame, place, 4 * words);
-    for (std::size_t i = 0; i < 6; ++i) {
-        core_.set(basic_frame[i], frame[i]);
-    }
     if (extended) {
         core_.set_floating_point(&frame[8]);
         core_.set(CoreRegister::fpscr, frame[24]);
     }
-    core_.set(CoreRegister::xpsr, frame[7] & ~(1u << 9));
-    core_.set(CoreRegister::sp, before + 4 * words + ((frame[7] >> 9 & 1) != 0 ? 4 : 0));
-    core_.set(CoreRegister::pc, frame[6] | 1);
+    const std::uint32_t padding = (frame[7] >> 9 & 1) != 0 ? 4 : 0;
+    const std::uint32_t back[] = {frame[0],
+                                  frame[1],
+                                  frame[2],
+                                  frame[3],
+                                  frame[4],
+                                  frame[5],
+                                  frame[6] | 1,
+                                  frame[7] & ~(1u << 9),
+                                  before + 4 * words + padding};
+    core_.set(basic_frame, back);
     if ((frame[7] & 0x1ff) != interrupts_.running()) {
         fail("return from an exception to another mode than it came from: the stack is spoilt");
     }

@@ -17,10 +17,10 @@ void Machine::serve_events()
 }
 
 /* Cycles of the present instruction or exception, on the control interrupt's bill if it is its. */
-inline void Machine::account(const Cycles &cycles)
+inline void Machine::account(const Cycles &cycles, unsigned stage)
 {
     if (above_control_ == 1) {
-        account_.add(stage_, cycles);
+        account_.add(stage, cycles);
     } else if (above_control_ > 1) {
         account_.add_preempting(cycles);
     }
@@ -128,7 +128,7 @@ inline void Machine::begin(const BlockCost &block)
 /* Whether nothing comes before the next instruction: no event, and nothing wanted of the core. */
 inline bool Machine::quiet() const
 {
-    return now_ < events_.next() && !stop_wanted_ && !reset_wanted_ && to_be_watched_.bytes == 0 &&
+    return now_ < events_.next() && !stop_wanted_ && !reset_wanted_ && !watch_changes_ &&
            !interrupts_.may_preempt();
 }
 
@@ -142,7 +142,7 @@ bool Machine::may_go_on(std::uint32_t address)
     if (conditional_.contains(address)) {
         return true;
     }
-    if (stop_wanted_ || reset_wanted_ || to_be_watched_.bytes > 0) {
+    if (stop_wanted_ || reset_wanted_ || watch_changes_) {
         return false;
     }
     if (interrupts_.may_preempt()) {
@@ -153,7 +153,7 @@ bool Machine::may_go_on(std::uint32_t address)
 
 bool Machine::before_instruction(std::uint32_t address, unsigned bytes)
 {
-    in_block_ = false;
+    block_ = nullptr;
     finish_instruction();
     if (!quiet() && !may_go_on(address)) {
         return false;
@@ -166,27 +166,33 @@ bool Machine::before_instruction(std::uint32_t address, unsigned bytes)
     return true;
 }
 
-void Machine::add_time(const Cycles &cycles)
+void Machine::add_time(const Cycles &cycles, unsigned stage)
 {
-    account(cycles);
+    account(cycles, stage);
     instruction_end_ += cycles.nominal * core_cycle_;
 }
 
 bool Machine::before_block(std::uint32_t address, unsigned bytes)
 {
-    in_block_ = false;
+    block_ = nullptr;
+    if (lessons_.running()) {
+        to_be_released_ = lessons_.finish();
+        watch_changes_ = true;
+    }
     const BlockCost *block = blocks_.find(address, bytes);
     if (block == nullptr) {
         block = &visit_block(address, bytes);
     }
     if (block->by_instruction) {
+        begin_lesson({address, bytes});
         return true;
     }
     finish_instruction();
     if (!quiet() && !may_go_on(address)) {
         return false;
     }
-    in_block_ = true;
+    block_ = block;
+    accesses_ = 0;
     begin(*block);
     return true;
 }
@@ -212,56 +218,6 @@ CodePlace Machine::place_of(std::uint32_t address) const
         return CodePlace::as_wanted;
     }
     return description_.flash.contains(address) ? CodePlace::flash : CodePlace::elsewhere;
-}
-
-/* What runs in the block at this address, whose instructions the map names. */
-const BlockCost &Machine::visit_block(std::uint32_t address, unsigned bytes)
-{
-    std::vector<InstructionCost> instructions;
-    std::uint32_t next = address;
-    while (next < address + bytes) {
-        const InstructionCost *const known = costs_.find(next);
-        instructions.push_back(visit(next, known == nullptr ? 0 : known->bytes));
-        next += instructions.back().bytes;
-    }
-    if (next != address + bytes) {
-        fail("an instruction of another size than the image's map says");
-    }
-    BlockCost block = blocks_.sum(address, instructions, costs_.rules, place_of(address));
-    for (const AddressRange &range : by_instruction_) {
-        const bool begins = range.contains(address), ends = range.contains(next - 1);
-        if (begins && ends) {
-            block.by_instruction = true;
-        } else if (begins || ends || range.base - address < bytes) {
-            to_be_watched_ = {address, bytes}; /* one of both, all of it */
-        }
-    }
-    return blocks_.set(block);
-}
-
-/*
- * Code that has written a register in an exception, or runs into such code: from now on it is
- * watched by the instruction, so that what it does comes at its own time. Ranges that nearly touch
- * become one.
- */
-void Machine::watch_by_instruction(AddressRange range)
-{
-    constexpr std::uint32_t near = 32; /* bytes: costs less than one range more */
-    to_be_watched_ = {0, 0};
-    std::vector<AddressRange> apart;
-    for (const AddressRange &other : by_instruction_) {
-        const std::uint32_t end = range.base + range.bytes, other_end = other.base + other.bytes;
-        if (other.base > end + near || range.base > other_end + near) {
-            apart.push_back(other);
-        } else {
-            range.base = std::min(range.base, other.base);
-            range.bytes = std::max(end, other_end) - range.base;
-        }
-    }
-    apart.push_back(range);
-    by_instruction_ = apart;
-    blocks_.forget();
-    core_.watch_blocks(by_instruction_);
 }
 
 } // namespace virtual_board

@@ -236,6 +236,28 @@ void UnicornCore::set(CoreRegister name, std::uint32_t value)
     check(uc_reg_write(engine_, number_of(name), &value), "register");
 }
 
+void UnicornCore::get(const CoreRegister *names, std::size_t count, std::uint32_t *values) const
+{
+    int numbers[most];
+    void *places[most];
+    for (std::size_t i = 0; i < count; ++i) {
+        numbers[i] = number_of(names[i]);
+        places[i] = &values[i];
+    }
+    check(uc_reg_read_batch(engine_, numbers, places, static_cast<int>(count)), "registers");
+}
+
+void UnicornCore::set(const CoreRegister *names, std::size_t count, const std::uint32_t *values)
+{
+    int numbers[most];
+    void *places[most]; /* only read */
+    for (std::size_t i = 0; i < count; ++i) {
+        numbers[i] = number_of(names[i]);
+        places[i] = const_cast<std::uint32_t *>(&values[i]);
+    }
+    check(uc_reg_write_batch(engine_, numbers, places, static_cast<int>(count)), "registers");
+}
+
 void UnicornCore::get_floating_point(std::uint32_t s0_to_s15[16]) const
 {
     int numbers[16];

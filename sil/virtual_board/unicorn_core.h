@@ -92,6 +92,17 @@ class UnicornCore
 
     std::uint32_t get(CoreRegister name) const;
     void set(CoreRegister name, std::uint32_t value);
+    /* Several at once, which is quicker. */
+    template <std::size_t count>
+    void get(const CoreRegister (&names)[count], std::uint32_t *values) const
+    {
+        get(names, count, values);
+    }
+    template <std::size_t count>
+    void set(const CoreRegister (&names)[count], const std::uint32_t *values)
+    {
+        set(names, count, values);
+    }
     void get_floating_point(std::uint32_t s0_to_s15[16]) const;
     void set_floating_point(const std::uint32_t s0_to_s15[16]);
 
@@ -105,7 +116,11 @@ class UnicornCore
     struct Callbacks;
     friend struct Callbacks;
 
+    static constexpr std::size_t most = 16; /* registers at once */
+
     void check(int error, const char *what) const;
+    void get(const CoreRegister *names, std::size_t count, std::uint32_t *values) const;
+    void set(const CoreRegister *names, std::size_t count, const std::uint32_t *values);
     void stop();
     void watch_instructions(std::uint64_t first, std::uint64_t last);
 

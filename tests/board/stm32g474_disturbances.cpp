@@ -18,7 +18,7 @@ namespace
 
 using namespace stm32g474_bench;
 
-enum : std::uint32_t { TIM1_BDTR = 0x40012c44, TIM3_CR1 = 0x40000400 };
+enum : std::uint32_t { TIM1_CCR1 = 0x40012c34, TIM1_BDTR = 0x40012c44, TIM3_CR1 = 0x40000400 };
 constexpr std::uint32_t MOE = 1u << 15;
 constexpr unsigned line_interrupt = 16 + Lpuart::interrupt_line;
 
@@ -118,7 +118,32 @@ void program_leaves_memory(Expectations &expectations, const std::string &image)
                         "but not at the one behind");
 }
 
+/* Of the virtual board: code that is watched by the block writes registers at its instructions' own
+   times all the same. */
+void compares_are_written_in_turn(Expectations &expectations, const std::string &image)
+{
+    Powered run(image);
+    (void)run.start();
+    expectations.expect(run.enable(), "the drive holds the motor");
+    std::vector<Ticks> written;
+    run.device.before_write = [&](std::uint32_t address, std::uint32_t) {
+        if (address >= TIM1_CCR1 && address < TIM1_CCR1 + 4 * 4) {
+            written.push_back(run.machine.now());
+        }
+    };
+    run.run_behind_peak(50 * us);
+    written.clear();
+    run.run_for(ms);
+    bool in_turn = written.size() == 4 * 10;
+    for (std::size_t i = 1; i < written.size(); ++i) {
+        in_turn = in_turn && written[i] >= written[i - 1] + run.machine.core_cycle();
+    }
+    expectations.expect(in_turn, "the four compares of each of ten periods are written in turn, by "
+                                 "a cycle or more");
+}
+
 const Case cases[] = {
+    {"compares-in-turn", compares_are_written_in_turn},
     {"halt", debugger_halts},
     {"conversions-lost", conversions_are_lost},
     {"break-while-closing", break_while_closing},

@@ -75,31 +75,33 @@ bool Adc::defer(Ticks trigger)
 /* Forms the results that settle is to form; `take` gets each with its conversion. */
 template <typename Take> void Adc::form(Ticks until, Ticks triggered_before, Take take)
 {
-    const std::size_t ranks = plan_.size();
+    const std::size_t ranks = plan_.size(), sequences = deferred_.size();
     std::array<std::uint32_t, 16> results{}; /* between two peaks their inputs stand still */
     unsigned known = 0, formed = 0;          /* ranks, a bit each */
-    std::size_t done = 0;
-    while (due_ <= until && deferred_[done] < triggered_before) {
+    std::size_t done = 0, at_rank = deferred_rank_;
+    Ticks due = due_;
+    while (due <= until && deferred_[done] < triggered_before) {
+        const Rank &rank = plan_[at_rank];
         const Ticks trigger = deferred_[done];
-        const std::size_t rank = deferred_rank_;
-        const Conversion conversion = {number_, plan_[rank].channel, false, trigger,
-                                       trigger + plan_[rank].sampled};
-        if ((known >> rank & 1) == 0) {
-            known |= 1u << rank;
-            results[rank] = regular_result(conversion);
+        const Conversion conversion = {number_, rank.channel, false, trigger,
+                                       trigger + rank.sampled};
+        if ((known >> at_rank & 1) == 0) {
+            known |= 1u << at_rank;
+            results[at_rank] = regular_result(conversion);
         }
-        const bool last = rank + 1 == ranks;
-        deferred_rank_ = last ? 0 : rank + 1;
-        done += last ? 1 : 0;
-        due_ = done < deferred_.size() ? deferred_[done] + plan_[deferred_rank_].end : Event::never;
+        take(results[at_rank], conversion);
         formed++;
-        take(results[rank], conversion);
-        if (last) {
+        if (++at_rank == ranks) {
+            at_rank = 0;
+            done++;
             flag(EOS);
         }
+        due = done < sequences ? deferred_[done] + plan_[at_rank].end : Event::never;
     }
-    counters.conversions += formed * oversampling();
+    due_ = due;
+    deferred_rank_ = at_rank;
     deferred_.erase(deferred_.begin(), deferred_.begin() + static_cast<std::ptrdiff_t>(done));
+    counters.conversions += formed * oversampling();
 }
 
 void Adc::settle(Ticks until, Ticks triggered_before)
@@ -114,11 +116,12 @@ void Adc::settle(Ticks until, Ticks triggered_before)
         return;
     }
     const unsigned factor = oversampling(), shift = oversampling_shift();
+    const bool wired = stuck_code < 0;
     Dma::Ring ring(*route_.dma, route_.channel); /* which never ends: it stays silent */
     form(until, triggered_before, [&](std::uint32_t data, const Conversion &conversion) {
         at(DR) = data;
         const std::uint32_t address = ring.put(data);
-        if (stuck_code < 0) {
+        if (wired) {
             inputs_.stored(conversion, address, factor, shift);
         }
     });

@@ -43,14 +43,15 @@ bool AdvancedTimer::all_low(Ticks time) const
     if (!counting()) {
         return false;
     }
-    const Ticks phase = phase_ticks(time);
+    const Ticks phase = phase_ticks(time), period = period_ticks();
+    const Ticks count = count_ticks(), dead = dead_time();
     for (int leg = 0; leg < legs; leg++) {
         const std::uint32_t compare = std::min(active_compare(leg), reload_);
-        const Ticks high = Ticks{compare} * count_ticks();
+        const Ticks high = Ticks{compare} * count;
         if (output_mode(leg) != 6) {
             return false;
         }
-        if (compare != 0 && (phase < high + dead_time() || phase >= period_ticks() - high)) {
+        if (compare != 0 && (phase < high + dead || phase >= period - high)) {
             return false;
         }
     }

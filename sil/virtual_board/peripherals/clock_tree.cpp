@@ -239,6 +239,10 @@ void Rcc::apply()
     }
     check();
     chip_.set_core_cycle(static_cast<Ticks>(rounded));
+    for (unsigned bus : {1u, 2u}) {
+        const unsigned divider = apb_divider(at(CFGR), bus);
+        timer_clocks_[bus - 1] = static_cast<Ticks>(rounded) * (divider == 1 ? 1 : divider / 2);
+    }
     if (on_clock) {
         on_clock();
     }
@@ -280,12 +284,6 @@ double Rcc::sysclk_Hz() const
 double Rcc::pclk_Hz(unsigned bus) const
 {
     return hclk_Hz_ / apb_divider(at(CFGR), bus);
-}
-
-Ticks Rcc::timer_clock(unsigned bus) const
-{
-    const unsigned divider = apb_divider(at(CFGR), bus);
-    return chip_.core_cycle() * (divider == 1 ? 1 : divider / 2);
 }
 
 } // namespace virtual_board

@@ -63,7 +63,10 @@ class Rcc : public RegisterBlock
         return 16e6;
     }
     /* Of the timers on bus 1 or 2: the bus clock, doubled if the bus is divided. */
-    Ticks timer_clock(unsigned bus) const;
+    Ticks timer_clock(unsigned bus) const
+    {
+        return timer_clocks_[bus - 1];
+    }
     unsigned lpuart_source() const
     {
         return field(at(0x88), 10, 2);
@@ -99,6 +102,7 @@ class Rcc : public RegisterBlock
     ClockConfig config_;
     std::vector<Owned> owned_;
     double hclk_Hz_ = 16e6;
+    Ticks timer_clocks_[2] = {1, 1};
     Ticks ready_hse_ = Event::never, ready_hsi_ = 0, ready_pll_ = Event::never;
     Ticks ready_lsi_ = Event::never;
     Ticks fast_since_ = 0; /* when SYSCLK went above 80 MHz behind a divided AHB */
