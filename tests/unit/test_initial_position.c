@@ -29,8 +29,9 @@ enum { EVERY = 1 };
 struct saturable {
     double saturation; /* b, 1/A^2; 0.00095 is a depth of 10 % */
     double x_a, x_b;
-    double angle; /* electrical */
-    double speed; /* mechanical */
+    double angle;              /* electrical */
+    double magnet_a, magnet_b; /* I_f m there, A */
+    double speed;              /* mechanical */
     double inertia_kgm2;
     double friction_Nm;
     double resistance_ohm;
@@ -52,7 +53,10 @@ static double flux_of(double x, double saturation) /* x + b x^3 = its argument *
 {
     double y = x;
 
-    for (int i = 0; i < 40; i++) {
+    double last = x + 1.0;
+
+    for (int i = 0; i < 40 && y != last; i++) {
+        last = y;
         y -= (y + saturation * y * y * y - x) / (1.0 + 3.0 * saturation * y * y);
     }
     return y;
@@ -60,21 +64,27 @@ static double flux_of(double x, double saturation) /* x + b x^3 = its argument *
 
 static double current_a(void)
 {
-    return motor.x_a + motor.saturation * motor.x_a * motor.x_a * motor.x_a -
-           MAGNET_A * cos(motor.angle);
+    return motor.x_a + motor.saturation * motor.x_a * motor.x_a * motor.x_a - motor.magnet_a;
 }
 
 static double current_b(void)
 {
-    return motor.x_b + motor.saturation * motor.x_b * motor.x_b * motor.x_b -
-           MAGNET_A * sin(motor.angle);
+    return motor.x_b + motor.saturation * motor.x_b * motor.x_b * motor.x_b - motor.magnet_b;
+}
+
+static void turn_to(double angle_rad)
+{
+    motor.angle = angle_rad;
+    motor.magnet_a = MAGNET_A * cos(angle_rad);
+    motor.magnet_b = MAGNET_A * sin(angle_rad);
 }
 
 static void place(double angle_rad)
 {
-    motor.angle = motor.began = angle_rad;
-    motor.x_a = flux_of(MAGNET_A * cos(angle_rad), motor.saturation);
-    motor.x_b = flux_of(MAGNET_A * sin(angle_rad), motor.saturation);
+    turn_to(angle_rad);
+    motor.began = angle_rad;
+    motor.x_a = flux_of(motor.magnet_a, motor.saturation);
+    motor.x_b = flux_of(motor.magnet_b, motor.saturation);
 }
 
 /* With the bridge off the diodes drive the current to zero, and hold it there. */
@@ -95,23 +105,23 @@ static void run_motor(bool on, double u_a, double u_b)
         const double i_b = current_b();
         const double v_a = on ? u_a : diode_voltage(i_a);
         const double v_b = on ? u_b : diode_voltage(i_b);
-        const double torque = (double)p->rotor_teeth * p->inductance_H * MAGNET_A *
-                              (-motor.x_a * sin(motor.angle) + motor.x_b * cos(motor.angle));
+        const double torque = (double)p->rotor_teeth * p->inductance_H *
+                              (-motor.x_a * motor.magnet_b + motor.x_b * motor.magnet_a);
         double slowed;
 
         motor.x_a += per_L * (v_a - motor.resistance_ohm * i_a);
         motor.x_b += per_L * (v_b - motor.resistance_ohm * i_b);
         if (motor.broken_a || (!on && i_a * current_a() <= 0.0)) {
-            motor.x_a = flux_of(MAGNET_A * cos(motor.angle), motor.saturation);
+            motor.x_a = flux_of(motor.magnet_a, motor.saturation);
         }
         if (!on && i_b * current_b() <= 0.0) {
-            motor.x_b = flux_of(MAGNET_A * sin(motor.angle), motor.saturation);
+            motor.x_b = flux_of(motor.magnet_b, motor.saturation);
         }
         motor.speed += dt * torque / motor.inertia_kgm2;
         slowed = dt * motor.friction_Nm / motor.inertia_kgm2;
         motor.speed =
             fabs(motor.speed) < slowed ? 0.0 : motor.speed - copysign(slowed, motor.speed);
-        motor.angle += dt * motor.speed * (double)p->rotor_teeth;
+        turn_to(motor.angle + dt * motor.speed * (double)p->rotor_teeth);
         motor.u_a += v_a / STEPS;
         motor.u_b += v_b / STEPS;
         motor.furthest = fmax(motor.furthest, fabs(motor.angle - motor.began));
