@@ -55,7 +55,6 @@ struct drive_params {
     union position_law_params law; /* large, so behind what every law uses */
     struct detent_compensation_params detent;
     struct bridge_loss_params bridge_loss;
-    struct synchronism_monitor_params synchronism_monitor;
     enum drive_synchronism_policy synchronism_policy;
     bool monitors_synchronism;
 };
@@ -99,6 +98,7 @@ struct drive {
     /* of the synchronism monitor, and what only a few settings use */
     enum drive_synchronism synchronism;
     struct synchronism_monitor synchronism_monitor;
+    struct synchronism_monitor_params synchronism_monitor_params;
     uint32_t synchronism_step;  /* the monitor's next */
     uint32_t synchronism_block; /* period in which its block began */
     struct phases past_current; /* of S(k-1), where the phase voltages are inferred from it */

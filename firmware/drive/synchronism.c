@@ -17,11 +17,12 @@ void synchronism_design(struct drive *drive, const struct drive_settings *settin
         .current_gain_moving = coef_to_double(params->estimator.invariant.moving.current),
         .current_gain_holding = coef_to_double(params->estimator.invariant.holding.current),
         .current_limit_A = settings->current_limit_A,
-        .resistance_known = settings->resistance_adaptation && settings->hold_on_enable,
+        .resistance_adapted = settings->resistance_adaptation,
+        .resistance_calibrated = settings->resistance_adaptation && settings->hold_on_enable,
     };
 
     params->synchronism_policy = settings->synchronism_policy;
-    params->synchronism_monitor = synchronism_monitor_design(&task);
+    drive->synchronism_monitor_params = synchronism_monitor_design(&task);
 }
 
 #define NOT_YET (1u << 30) /* periods; longer than any enabling */
@@ -41,7 +42,7 @@ enum step {
 
 void synchronism_reset(struct drive *drive)
 {
-    synchronism_monitor_reset(&drive->synchronism_monitor);
+    synchronism_monitor_reset(&drive->synchronism_monitor, &drive->synchronism_monitor_params);
     drive->synchronism = DRIVE_SYNCHRONISM_SURE;
     drive->synchronism_step = UNMONITORED;
     drive->synchronism_due = drive->period + NOT_YET;
@@ -59,7 +60,7 @@ void synchronism_start(struct drive *drive)
 static enum synchronism doubt(struct drive *drive)
 {
     const enum synchronism verdict =
-        synchronism_monitor_doubt(&drive->synchronism_monitor, &drive->params.synchronism_monitor);
+        synchronism_monitor_doubt(&drive->synchronism_monitor, &drive->synchronism_monitor_params);
 
     drive->synchronism_step = TAKE;
     if (drive->period - drive->synchronism_block < SYNCHRONISM_BLOCK_PERIODS) {
@@ -81,7 +82,7 @@ static num_t error_of(const struct drive *drive, const struct rotor *rotor)
 static enum synchronism step(struct drive *drive, const struct rotor *rotor)
 {
     struct synchronism_monitor *monitor = &drive->synchronism_monitor;
-    const struct synchronism_monitor_params *params = &drive->params.synchronism_monitor;
+    const struct synchronism_monitor_params *params = &drive->synchronism_monitor_params;
     struct invariant_ekf *ekf = &drive->estimator.invariant;
 
     drive->synchronism_due = drive->period + 1u;

@@ -76,32 +76,43 @@ synchronism_monitor_design(const struct synchronism_monitor_task *task)
     const struct per_unit *base = task->base;
     const double resistance = num_to_double(task->model->nominal_resistance);
     const double rated_torque_Nm = motor->torque_constant_Nm_A * motor->rated_current_A;
+    const double resistance_error =
+        task->resistance_calibrated ? resistance_error_known : resistance_error_unknown;
     const double standing_rad_s =
         standing_torque * rated_torque_Nm / motor->inertia_kgm2 * standing_s;
+    /* A rotor that stands at full current is taken to turn so fast. */
+    const double feigned_rad_s = task->resistance_calibrated
+                                     ? 0.0
+                                     : resistance_error_unknown * motor->resistance_ohm *
+                                           task->current_limit_A / motor->torque_constant_Nm_A;
 
     return (struct synchronism_monitor_params){
         .voltage_per_sum_moving = voltage_per_sum(task->model, task->current_gain_moving),
         .voltage_per_sum_holding = voltage_per_sum(task->model, task->current_gain_holding),
         .voltage_per_current =
-            coef_from_double(resistance * (task->resistance_known ? resistance_error_known
-                                                                  : resistance_error_unknown)),
+            coef_from_double(resistance * (task->resistance_adapted ? resistance_error_known
+                                                                    : resistance_error_unknown)),
+        .voltage_per_current_at_first = coef_from_double(resistance * resistance_error),
         .voltage_floor = num_from_double(voltage_floor * motor->supply_V / base->voltage_V),
         .settled_floor = num_from_double(settled_floor * motor->supply_V / base->voltage_V),
-        .standing_speed = num_from_double(standing_rad_s / base->speed_rad_s),
+        .standing_speed = num_from_double((standing_rad_s + feigned_rad_s) / base->speed_rad_s),
+        .closing_speed = num_from_double(standing_rad_s / base->speed_rad_s),
         .full_current = num_from_double(0.99 * task->current_limit_A / base->current_A),
         .load_limit = num_from_double(torn_load * rated_torque_Nm / base->torque_Nm),
         .standing_blocks = blocks(standing_s, task->period_s),
         .lagging_blocks = blocks(lagging_s, task->period_s),
         .torn_blocks = blocks(torn_s, task->period_s),
-        .settled_blocks = task->resistance_known ? blocks(settled_s, task->period_s) : UINT32_MAX,
+        .settled_blocks = task->resistance_adapted ? blocks(settled_s, task->period_s) : UINT32_MAX,
         .doubt_blocks = blocks(doubt_s, task->period_s),
         .doubtful_blocks = blocks(doubtful_s, task->period_s),
     };
 }
 
-void synchronism_monitor_reset(struct synchronism_monitor *monitor)
+void synchronism_monitor_reset(struct synchronism_monitor *monitor,
+                               const struct synchronism_monitor_params *params)
 {
-    *monitor = (struct synchronism_monitor){.disturbance = NUM(0.0)};
+    *monitor =
+        (struct synchronism_monitor){.voltage_per_current = params->voltage_per_current_at_first};
 }
 
 void synchronism_monitor_take(struct synchronism_monitor *monitor,
@@ -121,7 +132,7 @@ enum synchronism synchronism_monitor_judge_voltage(struct synchronism_monitor *m
                                                    num_t speed, num_t i_d)
 {
     const num_t allowed = params->voltage_floor + quarter(num_abs(speed)) +
-                          num_mul_coef(num_abs(i_d), params->voltage_per_current);
+                          num_mul_coef(num_abs(i_d), monitor->voltage_per_current);
 
     if (!(monitor->disturbance < allowed)) { /* a NaN is a loss, too */
         return SYNCHRONISM_LOST;
@@ -144,6 +155,7 @@ enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *moni
         monitor->settled = NUM(0.0);
         return SYNCHRONISM_SURE;
     }
+    monitor->voltage_per_current = params->voltage_per_current;
     monitor->settled += eighth;
     if (num_abs(monitor->settled) > num_half(allowed)) {
         monitor->doubtful = params->doubtful_blocks;
@@ -181,7 +193,7 @@ synchronism_monitor_judge_following(struct synchronism_monitor *monitor,
     const num_t opening = error < NUM(0.0) ? -deficit : deficit;
 
     monitor->lagging = count(monitor->lagging, monitor->full && num_abs(error) > GRIP &&
-                                                   opening > -params->standing_speed);
+                                                   opening > -params->closing_speed);
     return stalled_after(monitor, params, monitor->lagging, params->lagging_blocks);
 }
 

@@ -12,14 +12,16 @@
  *
  * V_0 stands for offsets of the voltage sensing and for what a quick change of load leaves, the
  * quarter for errors of Km and L (the sine of 15 degrees), r for the resistance as far as it is
- * not calibrated.
+ * not known: a twentieth of it if it is calibrated before operation or a hold that adapts it has
+ * settled, else three quarters.
  *
  * In motion and for the first tenth of a second of a hold. A rotor that a growing load draws out of
  * a settled hold, whose resistance is known by then, creeps past the quarter turn: there the mean
  * over eight blocks has the same bound with V_1 for V_0, a quarter of it.
  *
  * Stalled: the estimate is sound and says that the rotor does not follow:
- *   standing    all current is in use and yet the rotor stands
+ *   standing    all current is in use and yet the rotor stands, or seems to turn no faster than an
+ *               error of the resistance that nobody has calibrated feigns: at full current r i / Km
  *   lagging     all current is in use and yet the rotor falls further behind
  *   torn        a load of 1.6 times the rated torque, or, holding, a rotor a quarter of an
  * electrical turn beside its reference, where the current that holds it has lost its grip
@@ -44,17 +46,20 @@ struct synchronism_monitor_task {
     double period_s;
     double current_gain_moving; /* k_i of the estimator, 0...1 */
     double current_gain_holding;
-    double current_limit_A; /* of the position law and of the hold */
-    bool resistance_known;  /* calibrated before operation, and adapted */
+    double current_limit_A;     /* of the position law and of the hold */
+    bool resistance_adapted;    /* in every hold */
+    bool resistance_calibrated; /* and before operation, too */
 };
 
 struct synchronism_monitor_params {
     coef_t voltage_per_sum_moving; /* c, of a block's sum of innovations */
     coef_t voltage_per_sum_holding;
-    coef_t voltage_per_current; /* r */
-    num_t voltage_floor;        /* V_0 */
-    num_t settled_floor;        /* V_1 */
-    num_t standing_speed;
+    coef_t voltage_per_current_at_first; /* r, until a hold has settled */
+    coef_t voltage_per_current;          /* r, from then on */
+    num_t voltage_floor;                 /* V_0 */
+    num_t settled_floor;                 /* V_1 */
+    num_t standing_speed;                /* which an error of the resistance may feign, too */
+    num_t closing_speed;                 /* that makes up for a lag */
     num_t full_current;
     num_t load_limit;
     uint32_t standing_blocks; /* in a row, to be called so */
@@ -68,11 +73,12 @@ struct synchronism_monitor_params {
 enum synchronism { SYNCHRONISM_SURE, SYNCHRONISM_DOUBTFUL, SYNCHRONISM_STALLED, SYNCHRONISM_LOST };
 
 struct synchronism_monitor {
-    num_t past_mean;   /* e_d of the last block, per-unit voltage */
-    num_t disturbance; /* magnitude of its mean over the last two */
-    num_t settled;     /* mean of e_d over eight blocks of a hold */
-    uint32_t held;     /* blocks of the hold; in a row, as the next three */
-    bool full;         /* all current is in use */
+    coef_t voltage_per_current; /* r as far as it is known now */
+    num_t past_mean;            /* e_d of the last block, per-unit voltage */
+    num_t disturbance;          /* magnitude of its mean over the last two */
+    num_t settled;              /* mean of e_d over eight blocks of a hold */
+    uint32_t held;              /* blocks of the hold; in a row, as the next three */
+    bool full;                  /* all current is in use */
     uint32_t standing;
     uint32_t lagging;
     uint32_t torn;
@@ -83,7 +89,9 @@ struct synchronism_monitor_params
 synchronism_monitor_design(const struct synchronism_monitor_task *task);
 
 /* Apart, so that the size of what it sets can be read off the image. */
-__attribute__((noinline)) void synchronism_monitor_reset(struct synchronism_monitor *monitor);
+__attribute__((noinline)) void
+synchronism_monitor_reset(struct synchronism_monitor *monitor,
+                          const struct synchronism_monitor_params *params);
 
 /* ---- The eight steps of a block, each for a period of its own. ---- */
 

@@ -14,6 +14,12 @@ static struct synchronism_monitor_task task;
 static struct synchronism_monitor_params params;
 static struct synchronism_monitor monitor;
 
+static void design(void)
+{
+    params = synchronism_monitor_design(&task);
+    synchronism_monitor_reset(&monitor, &params);
+}
+
 void setUp(void)
 {
     base = per_unit_base(&bench_params, PERIOD_S);
@@ -25,9 +31,9 @@ void setUp(void)
                                              .current_gain_moving = CURRENT_GAIN,
                                              .current_gain_holding = CURRENT_GAIN,
                                              .current_limit_A = LIMIT_A,
-                                             .resistance_known = true};
-    params = synchronism_monitor_design(&task);
-    synchronism_monitor_reset(&monitor);
+                                             .resistance_adapted = true,
+                                             .resistance_calibrated = true};
+    design();
 }
 
 void tearDown(void)
@@ -97,7 +103,7 @@ static enum synchronism after(const struct course *c, double time_s)
 
 static void expect(enum synchronism verdict, struct course c, double time_s)
 {
-    synchronism_monitor_reset(&monitor);
+    synchronism_monitor_reset(&monitor, &params);
     TEST_ASSERT_EQUAL_INT(verdict, after(&c, time_s));
 }
 
@@ -159,9 +165,22 @@ static void test_an_unknown_resistance_is_allowed_its_voltage(void)
     const struct course off = {.i_d_A = 1.5, .holding = true, .disturbance_V = 0.7 * 0.37 * 1.5};
 
     expect(SYNCHRONISM_LOST, off, 10e-3);
-    task.resistance_known = false;
-    params = synchronism_monitor_design(&task);
+    task.resistance_calibrated = task.resistance_adapted = false;
+    design();
     TEST_ASSERT_NOT_EQUAL(SYNCHRONISM_LOST, after(&off, 1.0));
+}
+
+static void test_a_hold_that_adapts_the_resistance_makes_it_known(void)
+{
+    const struct course off = {.i_d_A = 1.5, .holding = true, .disturbance_V = 0.7 * 0.37 * 1.5};
+    const struct course held = {.i_d_A = 1.5, .holding = true};
+
+    task.resistance_calibrated = false;
+    design();
+    TEST_ASSERT_NOT_EQUAL(SYNCHRONISM_LOST, after(&off, 0.1));
+    synchronism_monitor_reset(&monitor, &params);
+    TEST_ASSERT_EQUAL_INT(SYNCHRONISM_SURE, after(&held, 0.12));
+    TEST_ASSERT_EQUAL_INT(SYNCHRONISM_LOST, after(&off, 10e-3));
 }
 
 /* A tenth of a volt: a rotor that creeps at 0.7 rad/s. In motion that is nothing. */
@@ -187,6 +206,17 @@ static void test_a_rotor_that_stands_under_full_current_is_stalled_in_15_ms(void
 
     expect(SYNCHRONISM_DOUBTFUL, stands, 12e-3);
     expect(SYNCHRONISM_STALLED, stands, 14.4e-3);
+}
+
+/* 3 A through 0.2 ohm that nobody knows of look like 4 rad/s. */
+static void test_a_speed_that_an_unknown_resistance_feigns_is_standing(void)
+{
+    const struct course feigned = {.wanted_A = LIMIT_A, .speed_rad_s = 4.0};
+
+    expect(SYNCHRONISM_SURE, feigned, 1.0);
+    task.resistance_calibrated = false;
+    design();
+    expect(SYNCHRONISM_STALLED, feigned, 14.4e-3);
 }
 
 /* With a twentieth of the rated torque left. */
@@ -280,8 +310,10 @@ int main(void)
     RUN_TEST(test_the_voltage_allowed_grows_with_a_quarter_of_the_back_emf);
     RUN_TEST(test_what_lasts_a_block_or_changes_its_sign_is_no_loss);
     RUN_TEST(test_an_unknown_resistance_is_allowed_its_voltage);
+    RUN_TEST(test_a_hold_that_adapts_the_resistance_makes_it_known);
     RUN_TEST(test_a_settled_hold_sees_a_rotor_creep_away_in_20_ms);
     RUN_TEST(test_a_rotor_that_stands_under_full_current_is_stalled_in_15_ms);
+    RUN_TEST(test_a_speed_that_an_unknown_resistance_feigns_is_standing);
     RUN_TEST(test_a_rotor_that_starts_under_a_heavy_load_is_not);
     RUN_TEST(test_a_rotor_that_falls_behind_for_a_tenth_of_a_second_is_stalled);
     RUN_TEST(test_a_lag_with_current_to_spare_is_the_laws_own);
