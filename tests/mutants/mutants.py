@@ -404,6 +404,12 @@ MUTANTS = [
     Mutant(ESTIMATOR + "synchronism_monitor.c", "synchronism_monitor",
            "a_rotor_that_starts_under_a_heavy_load_is_not",
            "monitor->full && slow", "monitor->full"),
+    Mutant(ESTIMATOR + "synchronism_monitor.c", "synchronism_monitor",
+           "a_speed_that_an_unknown_resistance_feigns_is_standing",
+           "(standing_rad_s + feigned_rad_s)", "(standing_rad_s)"),
+    Mutant(ESTIMATOR + "synchronism_monitor.c", "synchronism_monitor",
+           "a_hold_that_adapts_the_resistance_makes_it_known",
+           "monitor->voltage_per_current = params->voltage_per_current;", ""),
     # ---- where the rotor stands ----
     Mutant(ESTIMATOR + "impulse_order.h", "initial_position",
            "impulses_find_the_rotor_all_around_and_leave_it_where_it_was",
