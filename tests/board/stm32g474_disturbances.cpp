@@ -106,7 +106,7 @@ void program_leaves_memory(Expectations &expectations, const std::string &image)
         opened = opened || (address == TIM1_BDTR && (value & MOE) == 0);
     };
     run.device.serial_line().send(run.machine.now(), "\n");
-    run.run_for(20 * us);
+    run.run_for(40 * us); /* its interrupt may have to wait for the control interrupt */
     expectations.expect(opened, "behind a jump to nowhere the program opens the bridge");
     const std::string text = run.start();
     expectations.expect(run.machine.resets().size() == 1 &&
