@@ -133,6 +133,7 @@ class Machine final : private CoreObserver, public Chip
     void write(std::uint32_t address, unsigned bytes, std::uint32_t value) override;
 
     bool may_go_on(std::uint32_t address);
+    bool before_unusual_block(std::uint32_t address, unsigned bytes);
     unsigned conditional_bytes(std::uint32_t address);
     const InstructionCost &visit(std::uint32_t address, unsigned bytes);
     void refill_behind_branch(bool straight);

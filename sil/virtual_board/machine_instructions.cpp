@@ -98,7 +98,7 @@ inline void Machine::charge(const BlockCost &block)
 }
 
 /* In the control interrupt: its first instruction, code out of place, and what a test injects. */
-inline void Machine::inject(const BlockCost &block)
+void Machine::inject(const BlockCost &block)
 {
     if (first_of_control_) {
         first_of_control_ = false;
@@ -107,7 +107,6 @@ inline void Machine::inject(const BlockCost &block)
     if (block.place != CodePlace::as_wanted) {
         account_.count_outside_fast_code();
     }
-    control_instructions_ += block.instructions;
     if (stall_cycles_ > 0 && control_instructions_ > stall_at_) {
         const Cycles stall = {stall_cycles_, stall_cycles_, stall_cycles_};
         stall_cycles_ = 0;
@@ -121,7 +120,10 @@ inline void Machine::begin(const BlockCost &block)
     pc_ = block.address;
     charge(block);
     if (above_control_ == 1) {
-        inject(block);
+        control_instructions_ += block.instructions;
+        if (first_of_control_ || block.place != CodePlace::as_wanted || stall_cycles_ > 0) {
+            inject(block);
+        }
     }
 }
 
@@ -172,7 +174,21 @@ void Machine::add_time(const Cycles &cycles, unsigned stage)
     instruction_end_ += cycles.nominal * core_cycle_;
 }
 
+/* The usual case by itself: without a call it saves no registers of the host. */
 bool Machine::before_block(std::uint32_t address, unsigned bytes)
+{
+    finish_instruction();
+    const BlockCost *const block = blocks_.find(address, bytes);
+    if (block == nullptr || block->by_instruction || lessons_.running() || !quiet()) {
+        return before_unusual_block(address, bytes);
+    }
+    block_ = block;
+    accesses_ = 0;
+    begin(*block);
+    return true;
+}
+
+bool Machine::before_unusual_block(std::uint32_t address, unsigned bytes)
 {
     block_ = nullptr;
     if (lessons_.running()) {
@@ -187,7 +203,6 @@ bool Machine::before_block(std::uint32_t address, unsigned bytes)
         begin_lesson({address, bytes});
         return true;
     }
-    finish_instruction();
     if (!quiet() && !may_go_on(address)) {
         return false;
     }

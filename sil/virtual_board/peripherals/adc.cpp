@@ -69,9 +69,10 @@ Ticks AdcCommon::latency() const
 Adc::Adc(Chip &chip, unsigned number, AdcCommon &common, Triggers &triggers, Dmamux &dmamux,
          AnalogInputs &inputs, std::function<void(bool)> interrupt)
     : RegisterBlock(chip, "ADC" + std::to_string(number), registers()), number_(number),
-      common_(common), dmamux_(dmamux), inputs_(inputs), interrupt_(std::move(interrupt)),
-      calibration_event_([this] { calibrated(); }), ready_event_([this] { ready(); }),
-      injected_event_([this] { end_of_injected(); }), regular_event_([this] {
+      common_(common), triggers_(triggers), dmamux_(dmamux), inputs_(inputs),
+      interrupt_(std::move(interrupt)), calibration_event_([this] { calibrated(); }),
+      ready_event_([this] { ready(); }), injected_event_([this] { end_of_injected(); }),
+      regular_event_([this] {
           if (regular_.running) {
               end_of_regular();
           } else {
@@ -79,7 +80,7 @@ Adc::Adc(Chip &chip, unsigned number, AdcCommon &common, Triggers &triggers, Dma
           }
       })
 {
-    triggers_ =
+    listener_ =
         &triggers.listen([this](Trigger source, TriggerEdge edge) { triggered(source, edge); });
     choose_triggers();
 }

@@ -122,6 +122,7 @@ class Adc : public RegisterBlock
 
     unsigned number_;
     AdcCommon &common_;
+    Triggers &triggers_;
     Dmamux &dmamux_;
     AnalogInputs &inputs_;
     std::function<void(bool)> interrupt_;
@@ -130,7 +131,7 @@ class Adc : public RegisterBlock
     bool dma_stopped_ = false;
     Sequence injected_, regular_;
     Event calibration_event_, ready_event_, injected_event_, regular_event_;
-    Triggers::Listener *triggers_ = nullptr;
+    Triggers::Listener *listener_ = nullptr;
     unsigned injected_sources_ = 0, regular_sources_ = 0; /* as Listener::sources */
 
     /* regular sequences that are put off: times of their triggers, the rank that the first is at,

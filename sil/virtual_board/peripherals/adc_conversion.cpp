@@ -95,7 +95,7 @@ void Adc::choose_triggers()
         const bool known = regular_source(field(at(CFGR), 5, 5), &chosen);
         regular_sources_ = known ? only(chosen) : every_trigger;
     }
-    triggers_->sources = injected_sources_ | regular_sources_;
+    triggers_.choose(*listener_, injected_sources_ | regular_sources_);
 }
 
 void Adc::triggered(Trigger source, TriggerEdge edge)

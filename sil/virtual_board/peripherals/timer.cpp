@@ -71,7 +71,7 @@ Timer::Timer(Chip &chip, const TimerKind &kind, Triggers &triggers, std::functio
     if (kind_.general) {
         triggers_in_ = &triggers_.listen(
             [this](Trigger source, TriggerEdge edge) { triggered(source, edge); });
-        triggers_in_->sources = 0; /* until the slave controller is told one */
+        triggers_.choose(*triggers_in_, 0); /* until the slave controller is told one */
     }
 }
 
@@ -86,7 +86,7 @@ void Timer::reset()
     compare_.fill(0);
     compare_flags_ = 0x1e;
     if (kind_.general) {
-        triggers_in_->sources = 0;
+        triggers_.choose(*triggers_in_, 0);
     }
     chip_.schedule(compare_event_, Event::never);
     chip_.schedule(overflow_event_, Event::never);
@@ -216,7 +216,8 @@ void Timer::slave_mode(std::uint32_t value)
     require(!counting() || (at(SMCR) & 0x10007u) == (value & 0x10007u), SMCR, value,
             "slave mode changed while counting");
     keep(SMCR, value);
-    triggers_in_->sources = mode == 4 || mode == 6 ? only(internal_triggers[input & 3u]) : 0;
+    triggers_.choose(*triggers_in_,
+                     mode == 4 || mode == 6 ? only(internal_triggers[input & 3u]) : 0);
 }
 
 void Timer::start()
@@ -274,8 +275,8 @@ void Timer::update(bool by_software)
     if (!disabled) {
         prescaler_ = at(PSC);
         reload_ = at(ARR);
-        for (std::uint32_t i = 0; kind_.general && i < 4; i++) {
-            compare_[i] = at(CCR1 + 4 * i);
+        if (kind_.general) {
+            compare_ = {at(CCR1), at(CCR1 + 4), at(CCR1 + 8), at(CCR1 + 12)};
         }
         updates++;
     }
@@ -320,9 +321,10 @@ void Timer::act_on_trigger()
 
 void Timer::interrupt()
 {
-    if (kind_.interrupt_line >= 0) {
-        chip_.interrupt(static_cast<unsigned>(kind_.interrupt_line),
-                        (at(SR) & at(DIER) & 0x1fu) != 0);
+    const bool level = (at(SR) & at(DIER) & 0x1fu) != 0;
+    if (kind_.interrupt_line >= 0 && level != line_) {
+        line_ = level;
+        chip_.interrupt(static_cast<unsigned>(kind_.interrupt_line), level);
     }
 }
 

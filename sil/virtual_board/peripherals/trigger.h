@@ -2,8 +2,10 @@
 #ifndef STEADYSTEP_VIRTUAL_BOARD_TRIGGER_H
 #define STEADYSTEP_VIRTUAL_BOARD_TRIGGER_H
 
+#include <array>
 #include <functional>
 #include <list>
+#include <vector>
 
 #include "sil/virtual_board/chip.h"
 
@@ -24,13 +26,21 @@ class Triggers
   public:
     struct Listener {
         std::function<void(Trigger, TriggerEdge)> act;
-        unsigned sources = every_trigger; /* a bit each; it is called for these only */
+        unsigned sources = every_trigger; /* a bit each; it is called for these only; see choose */
     };
     /* The listener stays where it is: its owner narrows it down as its registers choose. */
     Listener &listen(std::function<void(Trigger, TriggerEdge)> act)
     {
         listeners_.push_back({std::move(act)});
+        sort();
         return listeners_.back();
+    }
+    void choose(Listener &listener, unsigned sources)
+    {
+        if (listener.sources != sources) {
+            listener.sources = sources;
+            sort();
+        }
     }
     /* Nothing that listens acts on a falling edge: registers that ask for it are refused. */
     void edge(Trigger source, TriggerEdge edge)
@@ -38,10 +48,9 @@ class Triggers
         if (edge == TriggerEdge::falling) {
             return;
         }
-        for (Listener &listener : listeners_) {
-            if ((listener.sources & only(source)) != 0) {
-                listener.act(source, edge);
-            }
+        const auto &listening = by_source_[static_cast<std::size_t>(source)];
+        for (std::size_t i = 0; i < listening.size(); ++i) {
+            listening[i]->act(source, edge);
         }
     }
     void pulse(Trigger source)
@@ -51,7 +60,20 @@ class Triggers
     }
 
   private:
+    void sort()
+    {
+        for (std::size_t source = 0; source < by_source_.size(); ++source) {
+            by_source_[source].clear();
+            for (Listener &listener : listeners_) {
+                if ((listener.sources >> source & 1u) != 0) {
+                    by_source_[source].push_back(&listener);
+                }
+            }
+        }
+    }
+
     std::list<Listener> listeners_; /* their addresses are given away */
+    std::array<std::vector<Listener *>, static_cast<std::size_t>(Trigger::count)> by_source_;
 };
 
 /* Several peripherals on one line of the NVIC: the line is high while one of them is. */
