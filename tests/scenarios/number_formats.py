@@ -1,5 +1,10 @@
 """Fixed point loses nothing: over the envelope's scenarios the rms of the estimate error in fixed
-point is that in double, within 0.05 electrical degrees over eight seeds."""
+point is that in double, within 0.05 electrical degrees over eight seeds.
+
+Left out: the slips, whose error is what the rotor does behind a fault; resistance-drift and
+current-offset, where friction and detent turn the last bit of a hold into tenths of a degree. Eight
+seeds scatter there by 0.2 degrees between float and double, too; over 64 the fixed-point drive
+differs from double by -0.14 of 3.77 and +0.015 of 2.97 degrees."""
 import json
 import math
 
@@ -13,12 +18,19 @@ SCENARIOS = [
     "low-speed",
     "low-speed-20mV",
     "reversal",
+    "slow-crossing",
     "slow-crossing-1Hz",
     "slow-crossing-4Hz",
     "load-step",
+    "load-step-stretch",
     "start-under-load",
+    "start-under-load-back",
     "start-under-load-driving",
+    "start-under-load-none",
     "standstill-load",
+    "standstill-pulses",
+    "bus-sag",
+    "long-run",
 ]
 ELECTRICAL_DEGREE_RAD = math.pi / 180 / 50
 MUST_DEG = 0.05
@@ -36,5 +48,5 @@ for name in SCENARIOS:
     exact = rms_deg(name, "double")
     loss = rms_deg(name, "fixed") - exact
     print(f"{name}: {exact:.3f} degrees rms in double, {loss:+.4f} in fixed point")
-    CHECKS.that(loss <= MUST_DEG, f"{name}: fixed point loses {loss:.4f} degrees")
+    CHECKS.that(abs(loss) <= MUST_DEG, f"{name}: fixed point differs by {loss:.4f} degrees")
 CHECKS.end()
