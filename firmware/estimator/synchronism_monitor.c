@@ -81,10 +81,10 @@ synchronism_monitor_design(const struct synchronism_monitor_task *task)
     const double standing_rad_s =
         standing_torque * rated_torque_Nm / motor->inertia_kgm2 * standing_s;
     /* A rotor that stands at full current is taken to turn so fast. */
-    const double feigned_rad_s = task->resistance_calibrated
-                                     ? 0.0
-                                     : resistance_error_unknown * motor->resistance_ohm *
-                                           task->current_limit_A / motor->torque_constant_Nm_A;
+    const double feigned_rad_s =
+        task->resistance_calibrated ? 0.0
+                                    : resistance_error_unknown * resistance * base->resistance_ohm *
+                                          task->current_limit_A / motor->torque_constant_Nm_A;
 
     return (struct synchronism_monitor_params){
         .voltage_per_sum_moving = voltage_per_sum(task->model, task->current_gain_moving),
@@ -95,8 +95,9 @@ synchronism_monitor_design(const struct synchronism_monitor_task *task)
         .voltage_per_current_at_first = coef_from_double(resistance * resistance_error),
         .voltage_floor = num_from_double(voltage_floor * motor->supply_V / base->voltage_V),
         .settled_floor = num_from_double(settled_floor * motor->supply_V / base->voltage_V),
-        .standing_speed = num_from_double((standing_rad_s + feigned_rad_s) / base->speed_rad_s),
-        .closing_speed = num_from_double(standing_rad_s / base->speed_rad_s),
+        .standing_speed_at_first =
+            num_from_double((standing_rad_s + feigned_rad_s) / base->speed_rad_s),
+        .standing_speed = num_from_double(standing_rad_s / base->speed_rad_s),
         .full_current = num_from_double(0.99 * task->current_limit_A / base->current_A),
         .load_limit = num_from_double(torn_load * rated_torque_Nm / base->torque_Nm),
         .standing_blocks = blocks(standing_s, task->period_s),
@@ -111,8 +112,10 @@ synchronism_monitor_design(const struct synchronism_monitor_task *task)
 void synchronism_monitor_reset(struct synchronism_monitor *monitor,
                                const struct synchronism_monitor_params *params)
 {
-    *monitor =
-        (struct synchronism_monitor){.voltage_per_current = params->voltage_per_current_at_first};
+    *monitor = (struct synchronism_monitor){
+        .voltage_per_current = params->voltage_per_current_at_first,
+        .standing_speed = params->standing_speed_at_first,
+    };
 }
 
 void synchronism_monitor_take(struct synchronism_monitor *monitor,
@@ -156,6 +159,7 @@ enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *moni
         return SYNCHRONISM_SURE;
     }
     monitor->voltage_per_current = params->voltage_per_current;
+    monitor->standing_speed = params->standing_speed;
     monitor->settled += eighth;
     if (num_abs(monitor->settled) > num_half(allowed)) {
         monitor->doubtful = params->doubtful_blocks;
@@ -167,7 +171,7 @@ enum synchronism synchronism_monitor_judge_torque(struct synchronism_monitor *mo
                                                   const struct synchronism_monitor_params *params,
                                                   num_t wanted, num_t speed)
 {
-    const bool slow = num_abs(speed) < params->standing_speed;
+    const bool slow = num_abs(speed) < monitor->standing_speed;
 
     monitor->full = num_abs(wanted) > params->full_current;
     monitor->standing = count(monitor->standing, monitor->full && slow);
@@ -193,7 +197,7 @@ synchronism_monitor_judge_following(struct synchronism_monitor *monitor,
     const num_t opening = error < NUM(0.0) ? -deficit : deficit;
 
     monitor->lagging = count(monitor->lagging, monitor->full && num_abs(error) > GRIP &&
-                                                   opening > -params->closing_speed);
+                                                   opening > -params->standing_speed);
     return stalled_after(monitor, params, monitor->lagging, params->lagging_blocks);
 }
 

@@ -21,7 +21,7 @@
  *
  * Stalled: the estimate is sound and says that the rotor does not follow:
  *   standing    all current is in use and yet the rotor stands, or seems to turn no faster than an
- *               error of the resistance that nobody has calibrated feigns: at full current r i / Km
+ *               error of the resistance that is not known yet feigns: at full current r i / Km
  *   lagging     all current is in use and yet the rotor falls further behind
  *   torn        a load of 1.6 times the rated torque, or, holding, a rotor a quarter of an
  * electrical turn beside its reference, where the current that holds it has lost its grip
@@ -58,8 +58,9 @@ struct synchronism_monitor_params {
     coef_t voltage_per_current;          /* r, from then on */
     num_t voltage_floor;                 /* V_0 */
     num_t settled_floor;                 /* V_1 */
-    num_t standing_speed;                /* which an error of the resistance may feign, too */
-    num_t closing_speed;                 /* that makes up for a lag */
+    num_t standing_speed_at_first; /* an error of the resistance may feign it; until a hold has
+                                      settled */
+    num_t standing_speed;          /* from then on */
     num_t full_current;
     num_t load_limit;
     uint32_t standing_blocks; /* in a row, to be called so */
@@ -74,6 +75,7 @@ enum synchronism { SYNCHRONISM_SURE, SYNCHRONISM_DOUBTFUL, SYNCHRONISM_STALLED, 
 
 struct synchronism_monitor {
     coef_t voltage_per_current; /* r as far as it is known now */
+    num_t standing_speed;       /* likewise */
     num_t past_mean;            /* e_d of the last block, per-unit voltage */
     num_t disturbance;          /* magnitude of its mean over the last two */
     num_t settled;              /* mean of e_d over eight blocks of a hold */

@@ -237,9 +237,11 @@ void Machine::act_on(Stopped stopped)
         }
         return;
     case Stopped::by_itself:
+        end_lesson();
         sleep();
         return;
     case Stopped::exception_return:
+        end_lesson(); /* the handler's last block */
         leave(core_.get(CoreRegister::pc) | 1);
         return;
     case Stopped::supervisor_call:

@@ -148,6 +148,7 @@ class Machine final : private CoreObserver, public Chip
     unsigned time_access(std::uint32_t address);
     void watch_by_instruction(AddressRange block);
     void begin_lesson(AddressRange block);
+    void end_lesson();
     void change_watch();
     /* Whether the program came here past the instruction at next_address_, in an IT block. */
     bool skipped_by_condition(std::uint32_t address)

@@ -191,10 +191,7 @@ bool Machine::before_block(std::uint32_t address, unsigned bytes)
 bool Machine::before_unusual_block(std::uint32_t address, unsigned bytes)
 {
     block_ = nullptr;
-    if (lessons_.running()) {
-        to_be_released_ = lessons_.finish();
-        watch_changes_ = true;
-    }
+    end_lesson();
     const BlockCost *block = blocks_.find(address, bytes);
     if (block == nullptr) {
         block = &visit_block(address, bytes);

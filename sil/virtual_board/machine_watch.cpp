@@ -68,7 +68,7 @@ unsigned Machine::time_access(std::uint32_t address)
         if (next.access.address == address) {
             pc_ = next.access.instruction;
             if (pc_ != block.address) {
-                now_ = instruction_end_ - next.left * core_cycle_;
+                now_ = std::max(now_, instruction_end_ - next.left * core_cycle_);
                 if (now_ >= events_.next()) {
                     serve_events();
                 }
@@ -90,6 +90,14 @@ void Machine::watch_by_instruction(AddressRange block)
 {
     to_be_watched_ = block;
     watch_changes_ = true;
+}
+
+void Machine::end_lesson()
+{
+    if (lessons_.running()) {
+        to_be_released_ = lessons_.finish();
+        watch_changes_ = true;
+    }
 }
 
 void Machine::begin_lesson(AddressRange block)

@@ -211,11 +211,15 @@ static void test_a_rotor_that_stands_under_full_current_is_stalled_in_15_ms(void
 static void test_a_speed_that_an_unknown_resistance_feigns_is_standing(void)
 {
     const struct course feigned = {.wanted_A = LIMIT_A, .speed_rad_s = 4.0};
+    const struct course held = {.i_d_A = 1.5, .holding = true};
 
     expect(SYNCHRONISM_SURE, feigned, 1.0);
     task.resistance_calibrated = false;
     design();
     expect(SYNCHRONISM_STALLED, feigned, 14.4e-3);
+    synchronism_monitor_reset(&monitor, &params);
+    TEST_ASSERT_EQUAL_INT(SYNCHRONISM_SURE, after(&held, 0.15));
+    TEST_ASSERT_NOT_EQUAL(SYNCHRONISM_STALLED, after(&feigned, 1.0));
 }
 
 /* With a twentieth of the rated torque left. */
