@@ -1,6 +1,8 @@
 #include "sil/virtual_board/block_costs.h"
 
 #include <algorithm>
+#include <limits>
+#include <stdexcept>
 #include <utility>
 
 namespace virtual_board
@@ -52,6 +54,11 @@ void BlockCosts::forget()
 
 void BlockCosts::set_accesses(BlockCost &block, const std::vector<TimedAccess> &accesses)
 {
+    constexpr std::size_t most = std::numeric_limits<decltype(block.accesses)>::max();
+    constexpr std::size_t most_in_all = std::numeric_limits<decltype(block.first_access)>::max();
+    if (accesses.size() > most || accesses_.size() > most_in_all) {
+        throw std::length_error("more accesses to registers than the table of blocks can name");
+    }
     block.first_access = static_cast<std::uint16_t>(accesses_.size());
     block.accesses = static_cast<std::uint8_t>(accesses.size());
     accesses_.insert(accesses_.end(), accesses.begin(), accesses.end());

@@ -88,6 +88,7 @@ class BlockCosts
     {
         return accesses_.data() + block.first_access;
     }
+    /* Throws std::length_error if they are too many: 255 of a block, some 65,000 in all. */
     void set_accesses(BlockCost &block, const std::vector<TimedAccess> &accesses);
     /* In the place of what was known of that address. */
     const BlockCost &set(const BlockCost &block);

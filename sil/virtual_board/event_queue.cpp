@@ -17,12 +17,10 @@ void EventQueue::schedule(Event &event, Ticks at)
     event.at = at;
     if (at != Event::never) {
         /* Before all of the same time, so behind them in the order of taking. */
-        std::size_t place = entries_.size();
-        entries_.push_back({at, &event});
-        for (; place > 0 && entries_[place - 1].at <= at; --place) {
-            entries_[place] = entries_[place - 1];
-        }
-        entries_[place] = {at, &event};
+        const auto place =
+            std::lower_bound(entries_.begin(), entries_.end(), at,
+                             [](const Entry &entry, Ticks time) { return entry.at > time; });
+        entries_.insert(place, {at, &event});
     }
     remember_next();
 }

@@ -133,9 +133,8 @@ ImageMap ImageMap::read(const std::string &file, const ElfImage &image)
     if (!stream) {
         throw std::invalid_argument(file + ": cannot be read; tools/image_map writes it");
     }
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
     try {
-        ImageMap map = parse(Json::parse(text), image);
+        ImageMap map = parse(Json::parse(stream), image);
         map.file = file;
         return map;
     } catch (const Json::exception &error) {

@@ -41,7 +41,6 @@ struct InstructionCost {
     std::uint8_t literals = 0;    /* constants that it loads from beside the code */
     std::uint8_t stage = 0;       /* index into stages, or inherited_stage */
     std::uint8_t conditional = 0; /* bytes of the IT block that it opens */
-    std::uint8_t visited = 0;     /* it has been executed, and is what is said here */
 };
 
 constexpr std::uint8_t inherited_stage = 255; /* the stage that the program came from */

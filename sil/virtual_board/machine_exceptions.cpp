@@ -14,10 +14,10 @@ constexpr std::uint32_t floating_point_in_use = 1u << 2; /* CONTROL.FPCA */
 constexpr std::uint32_t process_stack = 1u << 1;         /* CONTROL.SPSEL */
 constexpr std::uint32_t basic_words = 8, extended_words = 26;
 
-/* In their order; the last is no part of the frame. */
-constexpr CoreRegister basic_frame[] = {CoreRegister::r0, CoreRegister::r1,   CoreRegister::r2,
-                                        CoreRegister::r3, CoreRegister::r12,  CoreRegister::lr,
-                                        CoreRegister::pc, CoreRegister::xpsr, CoreRegister::sp};
+/* The basic frame in its order, and behind it, no part of it, where it goes. */
+constexpr CoreRegister frame_and_pointer[] = {
+    CoreRegister::r0, CoreRegister::r1, CoreRegister::r2,   CoreRegister::r3, CoreRegister::r12,
+    CoreRegister::lr, CoreRegister::pc, CoreRegister::xpsr, CoreRegister::sp};
 
 Cycles plus(Cycles a, const Cycles &b)
 {
@@ -87,8 +87,8 @@ std::uint32_t Machine::push_frame()
         check_floating_point();
     }
     const bool extended = system_.floating_point_allowed() && system_.keeps_floating_point();
-    std::uint32_t frame[extended_words + 1] = {};
-    core_.get(basic_frame, frame);
+    std::uint32_t frame[extended_words] = {};
+    core_.get(frame_and_pointer, frame);
     const std::uint32_t before = frame[basic_words];
     const std::uint32_t padding = before & 4;
     const std::uint32_t status = frame[7];
@@ -176,7 +176,7 @@ void Machine::pop_frame(std::uint32_t exception_return)
                                   frame[6] | 1,
                                   frame[7] & ~(1u << 9),
                                   before + 4 * words + padding};
-    core_.set(basic_frame, back);
+    core_.set(frame_and_pointer, back);
     if ((frame[7] & 0x1ff) != interrupts_.running()) {
         fail("return from an exception to another mode than it came from: the stack is spoilt");
     }

@@ -61,7 +61,6 @@ const InstructionCost &Machine::visit(std::uint32_t address, unsigned bytes)
     if (bytes == 2) {
         cost->conditional = static_cast<std::uint8_t>(conditional_bytes(address));
     }
-    cost->visited = 1;
     return *cost;
 }
 
@@ -114,7 +113,8 @@ void Machine::inject(const BlockCost &block)
     }
 }
 
-/* This and what it calls run before every block: most of the simulation's time. */
+/* This and what it calls run before every block and every instruction that is watched by itself:
+ * most of the simulation's time. */
 inline void Machine::begin(const BlockCost &block)
 {
     pc_ = block.address;
@@ -125,6 +125,13 @@ inline void Machine::begin(const BlockCost &block)
             inject(block);
         }
     }
+}
+
+inline void Machine::begin_block(const BlockCost &block)
+{
+    block_ = &block;
+    accesses_ = 0;
+    begin(block);
 }
 
 /* Whether nothing comes before the next instruction: no event, and nothing wanted of the core. */
@@ -174,7 +181,7 @@ void Machine::add_time(const Cycles &cycles, unsigned stage)
     instruction_end_ += cycles.nominal * core_cycle_;
 }
 
-/* The usual case by itself: without a call it saves no registers of the host. */
+/* The usual case by itself, short: it comes 170 times a period. */
 bool Machine::before_block(std::uint32_t address, unsigned bytes)
 {
     finish_instruction();
@@ -182,9 +189,7 @@ bool Machine::before_block(std::uint32_t address, unsigned bytes)
     if (block == nullptr || block->by_instruction || lessons_.running() || !quiet()) {
         return before_unusual_block(address, bytes);
     }
-    block_ = block;
-    accesses_ = 0;
-    begin(*block);
+    begin_block(*block);
     return true;
 }
 
@@ -203,9 +208,7 @@ bool Machine::before_unusual_block(std::uint32_t address, unsigned bytes)
     if (!quiet() && !may_go_on(address)) {
         return false;
     }
-    block_ = block;
-    accesses_ = 0;
-    begin(*block);
+    begin_block(*block);
     return true;
 }
 

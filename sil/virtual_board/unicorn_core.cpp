@@ -1,5 +1,7 @@
 #include "sil/virtual_board/unicorn_core.h"
 
+#include <algorithm>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -239,45 +241,47 @@ void UnicornCore::set(CoreRegister name, std::uint32_t value)
 void UnicornCore::get(const CoreRegister *names, std::size_t count, std::uint32_t *values) const
 {
     int numbers[most];
-    void *places[most];
-    for (std::size_t i = 0; i < count; ++i) {
-        numbers[i] = number_of(names[i]);
-        places[i] = &values[i];
-    }
-    check(uc_reg_read_batch(engine_, numbers, places, static_cast<int>(count)), "registers");
+    std::transform(names, names + count, numbers, number_of);
+    get(numbers, count, values);
 }
 
 void UnicornCore::set(const CoreRegister *names, std::size_t count, const std::uint32_t *values)
 {
     int numbers[most];
+    std::transform(names, names + count, numbers, number_of);
+    set(numbers, count, values);
+}
+
+void UnicornCore::get_floating_point(std::uint32_t s0_to_s15[most]) const
+{
+    int numbers[most];
+    std::iota(numbers, numbers + most, static_cast<int>(UC_ARM_REG_S0));
+    get(numbers, most, s0_to_s15);
+}
+
+void UnicornCore::set_floating_point(const std::uint32_t s0_to_s15[most])
+{
+    int numbers[most];
+    std::iota(numbers, numbers + most, static_cast<int>(UC_ARM_REG_S0));
+    set(numbers, most, s0_to_s15);
+}
+
+void UnicornCore::get(int *numbers, std::size_t count, std::uint32_t *values) const
+{
+    void *places[most];
+    for (std::size_t i = 0; i < count; ++i) {
+        places[i] = &values[i];
+    }
+    check(uc_reg_read_batch(engine_, numbers, places, static_cast<int>(count)), "registers");
+}
+
+void UnicornCore::set(int *numbers, std::size_t count, const std::uint32_t *values)
+{
     void *places[most]; /* only read */
     for (std::size_t i = 0; i < count; ++i) {
-        numbers[i] = number_of(names[i]);
         places[i] = const_cast<std::uint32_t *>(&values[i]);
     }
     check(uc_reg_write_batch(engine_, numbers, places, static_cast<int>(count)), "registers");
-}
-
-void UnicornCore::get_floating_point(std::uint32_t s0_to_s15[16]) const
-{
-    int numbers[16];
-    void *values[16];
-    for (int i = 0; i < 16; ++i) {
-        numbers[i] = UC_ARM_REG_S0 + i;
-        values[i] = &s0_to_s15[i];
-    }
-    check(uc_reg_read_batch(engine_, numbers, values, 16), "registers");
-}
-
-void UnicornCore::set_floating_point(const std::uint32_t s0_to_s15[16])
-{
-    int numbers[16];
-    void *values[16]; /* only read */
-    for (int i = 0; i < 16; ++i) {
-        numbers[i] = UC_ARM_REG_S0 + i;
-        values[i] = const_cast<std::uint32_t *>(&s0_to_s15[i]);
-    }
-    check(uc_reg_write_batch(engine_, numbers, values, 16), "registers");
 }
 
 Stopped UnicornCore::run(std::uint32_t address)

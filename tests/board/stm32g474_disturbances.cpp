@@ -105,8 +105,9 @@ void program_leaves_memory(Expectations &expectations, const std::string &image)
     run.device.before_write = [&](std::uint32_t address, std::uint32_t value) {
         opened = opened || (address == TIM1_BDTR && (value & MOE) == 0);
     };
+    run.run_behind_peak(60 * us); /* the control interrupt is over */
     run.device.serial_line().send(run.machine.now(), "\n");
-    run.run_for(40 * us); /* its interrupt may have to wait for the control interrupt */
+    run.run_for(20 * us);
     expectations.expect(opened, "behind a jump to nowhere the program opens the bridge");
     const std::string text = run.start();
     expectations.expect(run.machine.resets().size() == 1 &&

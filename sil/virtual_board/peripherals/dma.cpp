@@ -15,7 +15,7 @@ enum : std::uint32_t {
     CMAR = 0x14
 };
 enum : std::uint32_t { EN = 1u << 0, DIR = 1u << 4, CIRC = 1u << 5, PINC = 1u << 6 };
-enum : std::uint32_t { MINC = 1u << 7, TCIF = 2, HTIF = 4 };
+enum : std::uint32_t { MINC = 1u << 7 };
 constexpr std::uint32_t interrupt_enables = 0xe;
 constexpr std::uint32_t channel_stride = 0x14;
 
@@ -131,10 +131,10 @@ void Dma::count_item(unsigned channel)
     const std::uint32_t base = channel * channel_stride;
     const std::uint32_t left = --at(base + CNDTR);
     if (left == loaded_[channel] / 2) {
-        flag(channel, HTIF);
+        flag(channel, half_flag);
     }
     if (left == 0) {
-        flag(channel, TCIF);
+        flag(channel, whole_flag);
         if ((at(base + CCR) & CIRC) != 0) {
             at(base + CNDTR) = loaded_[channel];
         }

@@ -52,6 +52,8 @@ class Dma : public RegisterBlock
     void put(std::uint32_t offset, std::uint32_t value, Master master) override;
 
   private:
+    static constexpr std::uint32_t whole_flag = 2, half_flag = 4; /* TCIF, HTIF */
+
     std::uint32_t memory_address(unsigned channel) const;
     void count_item(unsigned channel);
     void flag(unsigned channel, std::uint32_t flags);
@@ -93,8 +95,6 @@ class Dma::Ring
     }
 
   private:
-    static constexpr std::uint32_t whole_flag = 2, half_flag = 4;
-
     Dma &dma_;
     unsigned channel_;
     std::uint32_t address_, items_, left_;

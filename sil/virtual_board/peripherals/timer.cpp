@@ -321,10 +321,9 @@ void Timer::act_on_trigger()
 
 void Timer::interrupt()
 {
-    const bool level = (at(SR) & at(DIER) & 0x1fu) != 0;
-    if (kind_.interrupt_line >= 0 && level != line_) {
-        line_ = level;
-        chip_.interrupt(static_cast<unsigned>(kind_.interrupt_line), level);
+    if (kind_.interrupt_line >= 0) {
+        chip_.interrupt(static_cast<unsigned>(kind_.interrupt_line),
+                        (at(SR) & at(DIER) & 0x1fu) != 0);
     }
 }
 

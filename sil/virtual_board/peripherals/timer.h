@@ -84,7 +84,6 @@ class Timer : public RegisterBlock
     std::uint32_t compare_flags_ = 0x1e;       /* of the channels that are outputs */
     Ticks flags_until_ = 0;
     Ticks held_since_ = Event::never; /* never: it is not held */
-    bool line_ = false;               /* level of the interrupt line */
     Event overflow_event_, trigger_event_, compare_event_;
     Triggers::Listener *triggers_in_ = nullptr;
 };
