@@ -31,7 +31,7 @@ void synchronism_design(struct drive *drive, const struct drive_settings *settin
 enum step {
     TAKE,
     JUDGE_VOLTAGE,
-    JUDGE_HOLD,
+    JUDGE_LASTING,
     JUDGE_TORQUE,
     JUDGE_LOAD,
     JUDGE_FOLLOWING,
@@ -95,8 +95,9 @@ static enum synchronism step(struct drive *drive, const struct rotor *rotor)
     case JUDGE_VOLTAGE:
         return synchronism_monitor_judge_voltage(monitor, params, rotor->speed,
                                                  drive->current_reference.d);
-    case JUDGE_HOLD:
-        return synchronism_monitor_judge_hold(monitor, params, rotor->speed, drive->hold.active);
+    case JUDGE_LASTING:
+        return drive->hold.active ? synchronism_monitor_judge_hold(monitor, params, rotor->speed)
+                                  : synchronism_monitor_judge_motion(monitor, params, rotor->speed);
     case JUDGE_TORQUE:
         return synchronism_monitor_judge_torque(monitor, params, drive->current_reference.q,
                                                 rotor->speed);

@@ -47,6 +47,9 @@ static const double standing_torque = 0.05;
 /* Moves that ask for more than the motor has are caught up with in half of this. */
 static const double lagging_s = 0.1;
 
+/* Quick changes of load leave as much for two blocks at most. */
+static const double mirrored_s = 6.4e-3;
+
 static const double torn_load = 1.6; /* of the rated torque */
 static const double torn_s = 3.2e-3;
 static const double doubt_s = 5e-3;
@@ -103,6 +106,7 @@ synchronism_monitor_design(const struct synchronism_monitor_task *task)
         .standing_blocks = blocks(standing_s, task->period_s),
         .lagging_blocks = blocks(lagging_s, task->period_s),
         .torn_blocks = blocks(torn_s, task->period_s),
+        .mirrored_blocks = blocks(mirrored_s, task->period_s),
         .settled_blocks = task->resistance_adapted ? blocks(settled_s, task->period_s) : UINT32_MAX,
         .doubt_blocks = blocks(doubt_s, task->period_s),
         .doubtful_blocks = blocks(doubtful_s, task->period_s),
@@ -146,16 +150,29 @@ enum synchronism synchronism_monitor_judge_voltage(struct synchronism_monitor *m
     return SYNCHRONISM_SURE;
 }
 
+enum synchronism synchronism_monitor_judge_motion(struct synchronism_monitor *monitor,
+                                                  const struct synchronism_monitor_params *params,
+                                                  num_t speed)
+{
+    const num_t magnitude = num_abs(speed);
+
+    monitor->held = 0u;
+    monitor->settled = NUM(0.0);
+    monitor->mirrored = count(monitor->mirrored, magnitude > params->standing_speed &&
+                                                     monitor->disturbance > quarter(magnitude));
+    return monitor->mirrored < params->mirrored_blocks ? SYNCHRONISM_SURE : SYNCHRONISM_LOST;
+}
+
 enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *monitor,
                                                 const struct synchronism_monitor_params *params,
-                                                num_t speed, bool holding)
+                                                num_t speed)
 {
     const num_t allowed = params->settled_floor + quarter(num_abs(speed));
     const num_t eighth = num_half(quarter(monitor->past_mean - monitor->settled));
 
-    if (!holding || monitor->held < params->settled_blocks) {
-        monitor->held = count(monitor->held, holding);
-        monitor->settled = NUM(0.0);
+    monitor->mirrored = 0u;
+    if (monitor->held < params->settled_blocks) {
+        monitor->held++;
         return SYNCHRONISM_SURE;
     }
     monitor->voltage_per_current = params->voltage_per_current;

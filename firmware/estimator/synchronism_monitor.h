@@ -19,6 +19,12 @@
  * a settled hold, whose resistance is known by then, creeps past the quarter turn: there the mean
  * over eight blocks has the same bound with V_1 for V_0, a quarter of it.
  *
+ * Half a turn beside the rotor the estimate has a second equilibrium: it turns against the rotor,
+ * and what is left in d, 0.4 Km |w_hat|, draws its angle along. Of a sound estimate nothing is left
+ * there for long. Lost, too, in motion faster than the standing speed below,
+ *
+ *   if |mean of e_d over two blocks| >= Km |w_hat| / 4 in four blocks in a row
+ *
  * Stalled: the estimate is sound and says that the rotor does not follow:
  *   standing    all current is in use and yet the rotor stands, or seems to turn no faster than an
  *               error of the resistance that is not known yet feigns: at full current r i / Km
@@ -67,6 +73,7 @@ struct synchronism_monitor_params {
     uint32_t lagging_blocks;
     uint32_t torn_blocks;
     uint32_t settled_blocks;  /* of a hold, until it is */
+    uint32_t mirrored_blocks; /* in a row, to be called so */
     uint32_t doubt_blocks;    /* in a row, standing or lagging, to be doubted */
     uint32_t doubtful_blocks; /* that a doubt lasts */
 };
@@ -79,8 +86,9 @@ struct synchronism_monitor {
     num_t past_mean;            /* e_d of the last block, per-unit voltage */
     num_t disturbance;          /* magnitude of its mean over the last two */
     num_t settled;              /* mean of e_d over eight blocks of a hold */
-    uint32_t held;              /* blocks of the hold; in a row, as the next three */
-    bool full;                  /* all current is in use */
+    uint32_t held;              /* blocks of the hold; in a row, as those below */
+    uint32_t mirrored;
+    bool full; /* all current is in use */
     uint32_t standing;
     uint32_t lagging;
     uint32_t torn;
@@ -110,7 +118,13 @@ enum synchronism synchronism_monitor_judge_voltage(struct synchronism_monitor *m
 /* The same of a hold, by the mean over eight blocks. */
 enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *monitor,
                                                 const struct synchronism_monitor_params *params,
-                                                num_t speed, bool holding);
+                                                num_t speed);
+
+/* In motion instead: whether the disturbance lasts, as half a turn beside the rotor: lost, or
+   sure. */
+enum synchronism synchronism_monitor_judge_motion(struct synchronism_monitor *monitor,
+                                                  const struct synchronism_monitor_params *params,
+                                                  num_t speed);
 
 /* Whether the torque is used up in vain: stalled, or sure. `wanted`: the q current asked for. */
 enum synchronism synchronism_monitor_judge_torque(struct synchronism_monitor *monitor,
