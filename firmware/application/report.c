@@ -144,6 +144,10 @@ void report_synchronism(struct text *text, enum drive_synchronism synchronism)
         text_put(text, "warning: synchronism doubtful: near the end of the torque, or the rotor "
                        "beside its estimate");
         break;
+    case DRIVE_SYNCHRONISM_STALLED:
+        text_put(text, "warning: stalled: the rotor does not follow, although the estimate is "
+                       "sound");
+        break;
     default:
         text_put(text, "warning: synchronism lost: the rotor is not where the estimate has it");
         break;

@@ -20,7 +20,8 @@ void report_fault(struct text *text, const struct application *application);
 /* "overcurrent: a phase current beyond 5.4 A" */
 void report_fault_reason(struct text *text, const struct application *application);
 
-/* "warning: synchronism doubtful: ...", "... lost: ..." or "synchronism: sure again" */
+/* "warning: synchronism doubtful: ...", "... lost: ...", "warning: stalled: ..." or
+   "synchronism: sure again" */
 void report_synchronism(struct text *text, enum drive_synchronism synchronism);
 
 /* "ready: ..." */

@@ -240,6 +240,7 @@ const char *drive_synchronism_name(enum drive_synchronism synchronism)
     static const char *const names[DRIVE_SYNCHRONISMS] = {
         [DRIVE_SYNCHRONISM_SURE] = "sure",
         [DRIVE_SYNCHRONISM_DOUBTFUL] = "doubtful",
+        [DRIVE_SYNCHRONISM_STALLED] = "stalled",
         [DRIVE_SYNCHRONISM_LOST] = "lost",
     };
     return names[synchronism];

@@ -66,7 +66,7 @@ static enum synchronism doubt(struct drive *drive)
     if (drive->period - drive->synchronism_block < SYNCHRONISM_BLOCK_PERIODS) {
         drive->synchronism_due = drive->synchronism_block + SYNCHRONISM_BLOCK_PERIODS;
     }
-    if (verdict == SYNCHRONISM_SURE && drive->synchronism == DRIVE_SYNCHRONISM_DOUBTFUL) {
+    if (verdict == SYNCHRONISM_SURE && drive->synchronism != DRIVE_SYNCHRONISM_LOST) {
         drive->synchronism = DRIVE_SYNCHRONISM_SURE;
     }
     return verdict;
@@ -119,13 +119,19 @@ static enum synchronism step(struct drive *drive, const struct rotor *rotor)
     }
 }
 
-/* With the policy `warn` a loss stays on show until the bridge is switched on anew. */
+/* With the policy `warn` the worst stays on show: a loss until the bridge is switched on anew, the
+   rest until no doubt is left. */
 static enum drive_fault act(struct drive *drive, enum synchronism verdict)
 {
-    if (verdict == SYNCHRONISM_LOST) {
-        drive->synchronism = DRIVE_SYNCHRONISM_LOST;
-    } else if (drive->synchronism != DRIVE_SYNCHRONISM_LOST) {
-        drive->synchronism = DRIVE_SYNCHRONISM_DOUBTFUL;
+    static const enum drive_synchronism shown[] = {
+        [SYNCHRONISM_SURE] = DRIVE_SYNCHRONISM_SURE,
+        [SYNCHRONISM_DOUBTFUL] = DRIVE_SYNCHRONISM_DOUBTFUL,
+        [SYNCHRONISM_STALLED] = DRIVE_SYNCHRONISM_STALLED,
+        [SYNCHRONISM_LOST] = DRIVE_SYNCHRONISM_LOST,
+    };
+
+    if (shown[verdict] > drive->synchronism) {
+        drive->synchronism = shown[verdict];
     }
     if (verdict == SYNCHRONISM_DOUBTFUL ||
         drive->params.synchronism_policy != DRIVE_SYNCHRONISM_FAULT) {

@@ -2,9 +2,10 @@
  * Campaign "slip": is every loss of synchronism told, and none that is not one? The runs are those
  * of slip_scenario.h.
  *
- * A slip begins where the estimate is 90 degrees electrical off. Missed: no fault has come 20 ms
- * later. False alarm: the fault lost-synchronism with less than 45 degrees throughout the 100 ms
- * before it. Any fault reports a slip; only lost-synchronism claims one.
+ * A slip begins where the estimate is 90 degrees electrical off. It is told by any fault or, with
+ * the policy `warn`, by a warning of a stall or a loss; missed: neither stands 20 ms later. False
+ * alarm: a loss of synchronism, fault or warning, with less than 45 degrees throughout the 100 ms
+ * before it. Only these claim a slip.
  */
 #include "sil/scenario/campaign.h"
 
@@ -21,12 +22,22 @@ namespace
 
 constexpr double pi = 3.14159265358979323846;
 
-/* What a record shows of slip and report; rows, `none` if there was none. */
+constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+/* What a record shows; the first rows of each, `none` if there is none. */
 struct Course {
-    static constexpr std::size_t none = static_cast<std::size_t>(-1);
     std::size_t slip = none, fault = none, doubt = none;
-    double largest_before_fault_deg = 0; /* in the 100 ms that end with the fault */
+    std::size_t stalled = none, lost = none; /* warnings or faults */
+    std::size_t told = none;                 /* that a slip has begun or was to be expected */
+    double largest_before_loss_deg = 0;      /* in the 100 ms that end with it */
 };
+
+void note(std::size_t &first, std::size_t row, bool happens)
+{
+    if (first == none && happens) {
+        first = row;
+    }
+}
 
 Course course_of(const Record &record, double teeth)
 {
@@ -35,25 +46,23 @@ Course course_of(const Record &record, double teeth)
         return std::fabs(record.at(row, THETA) - record.at(row, THETA_EST)) * degrees;
     };
     Course course;
-    for (std::size_t row = record.time_zero_row(); row < record.rows(); ++row) {
-        const auto state = static_cast<drive_state>(record.at(row, DRIVE_STATE));
-        if (state == DRIVE_FAULT) {
-            course.fault = row;
-            break;
-        }
-        if (course.slip == Course::none && off(row) > 90) {
-            course.slip = row;
-        }
-        if (course.doubt == Course::none &&
-            record.at(row, SYNCHRONISM) > double(DRIVE_SYNCHRONISM_SURE)) {
-            course.doubt = row;
-        }
+    for (std::size_t row = record.time_zero_row(); row < record.rows() && course.fault == none;
+         ++row) {
+        const auto synchronism = static_cast<drive_synchronism>(record.at(row, SYNCHRONISM));
+        const bool fault = record.at(row, DRIVE_STATE) == double(DRIVE_FAULT);
+        note(course.fault, row, fault);
+        note(course.slip, row, !fault && off(row) > 90);
+        note(course.doubt, row, synchronism > DRIVE_SYNCHRONISM_SURE);
+        note(course.stalled, row, synchronism == DRIVE_SYNCHRONISM_STALLED);
+        note(course.lost, row, synchronism == DRIVE_SYNCHRONISM_LOST);
+        note(course.told, row,
+             course.slip != none && (fault || synchronism > DRIVE_SYNCHRONISM_DOUBTFUL));
     }
-    if (course.fault != Course::none) {
+    if (course.lost != none) {
         const auto before = static_cast<std::size_t>(std::floor(0.1 / record.period_s() + 0.5));
-        for (std::size_t row = course.fault > before ? course.fault - before : 0;
-             row <= course.fault; ++row) {
-            course.largest_before_fault_deg = std::max(course.largest_before_fault_deg, off(row));
+        for (std::size_t row = course.lost > before ? course.lost - before : 0; row <= course.lost;
+             ++row) {
+            course.largest_before_loss_deg = std::max(course.largest_before_loss_deg, off(row));
         }
     }
     return course;
@@ -65,30 +74,27 @@ CampaignOutcome judge_slip(const Result &result, const Record &record)
     CampaignOutcome outcome;
     outcome.figures.assign(7, Metrics::none);
     const Course course = course_of(record, result.scenario->motor.params.rotor_teeth);
-    const bool slipped = course.slip != Course::none, reported = course.fault != Course::none;
-    if (!result.failure.empty() && !reported) { /* a drive in fault may refuse the moves to come */
+    if (!result.failure.empty() && course.fault == none) { /* one in fault may refuse moves */
         outcome.verdict = "failed";
         return outcome;
     }
-    const double end_s = record.time_s(record.rows() - 1);
-    const double slip_s = slipped ? record.time_s(course.slip) : end_s;
-    const double delay_s = reported ? record.time_s(course.fault) - slip_s : end_s - slip_s;
-    const auto fault = reported
-                           ? static_cast<drive_fault>(record.at(course.fault, DRIVE_FAULT_CODE))
-                           : DRIVE_FAULT_NONE;
-    const bool lost = fault == DRIVE_FAULT_LOST_SYNCHRONISM, stalled = fault == DRIVE_FAULT_STALLED;
-    outcome.verdict = slipped && delay_s > latest_s + record.period_s() / 2 ? "missed"
-                      : lost && course.largest_before_fault_deg < 45        ? "false alarm"
-                                                                            : "held";
+    const bool slipped = course.slip != none, told = course.told != none;
+    const std::size_t last = told ? course.told : record.rows() - 1;
+    const double delay_s = slipped ? record.time_s(last) - record.time_s(course.slip) : 0;
+    const bool lost = course.lost != none, stalled = course.stalled != none;
+    const bool reported = course.fault != none || lost || stalled;
+    outcome.verdict = delay_s > latest_s + record.period_s() / 2    ? "missed"
+                      : lost && course.largest_before_loss_deg < 45 ? "false alarm"
+                                                                    : "held";
     const auto counted = [](bool what) { return what ? 1.0 : 0.0; };
     outcome.figures = {
         counted(slipped),
         counted(lost),
-        counted(stalled),
+        counted(stalled && !lost),
         counted(reported && !lost && !stalled),
         counted(reported && !slip_is_provoked(result.seed)),
         counted(slipped && course.doubt < course.slip),
-        slipped && reported ? delay_s * 1e3 : Metrics::none,
+        slipped && told ? delay_s * 1e3 : Metrics::none,
     };
     return outcome;
 }

@@ -87,9 +87,9 @@ struct Metrics {
     double slip_full_steps = none; /* largest change of the estimate error since the window began,
                                       in full steps (90 degrees electrical), rounded */
     double resistance_estimate_error_ratio = none; /* |R^ - R| / R in the last row */
-    double synchronism_worst = none;         /* 0 sure, 1 doubtful, 2 lost; as the drive had it */
-    double enabling_time_s = none;           /* first interrupt to the drive ready */
-    double enabling_motion_max_rad = none;   /* of the true rotor from where it stood, until then */
+    double synchronism_worst = none;       /* 0 sure, 1 doubtful, 2 stalled, 3 lost; the drive's */
+    double enabling_time_s = none;         /* first interrupt to the drive ready */
+    double enabling_motion_max_rad = none; /* of the true rotor from where it stood, until then */
     double enabling_displacement_rad = none; /* what is left of it then */
 
     std::string fault = "none"; /* the first in the window, as drive_fault_name spells it */

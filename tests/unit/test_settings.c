@@ -194,6 +194,8 @@ static void test_names_are_spelt_as_scenarios_and_the_serial_line_do(void)
                              drive_initial_position_name(DRIVE_INITIAL_POSITION_IMPULSES));
     TEST_ASSERT_EQUAL_STRING("warn", drive_synchronism_policy_name(DRIVE_SYNCHRONISM_WARN));
     TEST_ASSERT_EQUAL_STRING("doubtful", drive_synchronism_name(DRIVE_SYNCHRONISM_DOUBTFUL));
+    TEST_ASSERT_EQUAL_STRING("stalled", drive_synchronism_name(DRIVE_SYNCHRONISM_STALLED));
+    TEST_ASSERT_EQUAL_STRING("lost", drive_synchronism_name(DRIVE_SYNCHRONISM_LOST));
     TEST_ASSERT_EQUAL_STRING("invariant-ekf", drive_estimator_name(DRIVE_ESTIMATOR_INVARIANT_EKF));
     TEST_ASSERT_EQUAL_STRING("steady-state-ekf",
                              drive_estimator_name(DRIVE_ESTIMATOR_STEADY_STATE_EKF));
