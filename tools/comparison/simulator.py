@@ -1,6 +1,8 @@
 """Runs steadystep-sil and reads what comes of it."""
+import argparse
 import json
 import pathlib
+import re
 import shlex
 import subprocess
 
@@ -68,6 +70,14 @@ class Simulator:
             if len(scenarios) == 1:
                 return [refusal]
             return [self.run_each([one], **how)[0] for one in scenarios]
+
+
+def seed_range(text):
+    """A or A-B, for argparse."""
+    found = re.fullmatch(r"(\d+)(?:-(\d+))?", text)
+    if not found or int(found[2] or found[1]) < int(found[1]):
+        raise argparse.ArgumentTypeError("expected A or A-B with A <= B")
+    return int(found[1]), int(found[2] or found[1])
 
 
 def toml_value(value):
