@@ -44,8 +44,9 @@ std::string heading(const std::vector<Result> &results)
 std::string line(const std::string &metric, const std::string &window, const std::string &value,
                  const std::string &worst, const std::string &bound, const std::string &verdict)
 {
-    std::string text = format("  %-32s %-12s %-13s", metric.c_str(), window.c_str(), value.c_str());
-    text += worst.empty() ? "" : format("%-13s", worst.c_str());
+    std::string text =
+        format("  %-32s %-12s %-12s ", metric.c_str(), window.c_str(), value.c_str());
+    text += worst.empty() ? "" : format("%-12s ", worst.c_str());
     return text + format("%-15s %s\n", bound.c_str(), verdict.c_str());
 }
 
