@@ -84,7 +84,6 @@ _Noreturn void board_fault(enum board_fault fault)
 __attribute__((used)) _Noreturn void crash_with_frame(const uint32_t *frame);
 _Noreturn void crash_with_frame(const uint32_t *frame)
 {
-    port_open_bridge();
     __disable_irq();
     record_begin(__get_IPSR(), BOARD_FAULT_NONE);
     record.stack_pointer = (uint32_t)frame;
@@ -96,11 +95,14 @@ _Noreturn void crash_with_frame(const uint32_t *frame)
     end();
 }
 
-/* With the whole stack, as how much of it was used may be why it came; so what the core pushed is
-   copied first, if the stack pointer shows it within the stack. */
+/* Opens the bridge before anything else: port_open_bridge uses no stack, which may be none. Then
+   with the whole stack, as how much of it was used may be why it came; so what the core pushed is
+   copied before, if the stack pointer shows it within the stack. */
 __attribute__((naked)) void crash_exception(void)
 {
     __asm__ volatile(".syntax unified\n"
+                     "ldr r3, =port_open_bridge\n"
+                     "blx r3\n"
                      "mov r0, sp\n"
                      "ldr r1, =stack_bottom\n"
                      "ldr r2, =stack_top\n"

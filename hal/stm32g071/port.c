@@ -54,7 +54,7 @@ void port_watchdog_feed(void)
 }
 
 /* TIM1 and the bridge's RESET answer only with their clocks; without, RESET is pulled low. */
-void port_open_bridge(void)
+__attribute__((used, noinline)) void port_open_bridge(void)
 {
     if (RCC->apbenr2 & RCC_APBENR2_TIM1EN) {
         bridge_open();

@@ -65,7 +65,7 @@ void port_watchdog_feed(void)
 
 /* TIM1's registers answer only with its clock; without, its outputs are off as after a reset. */
 IN_CCM(port_open_bridge)
-void port_open_bridge(void)
+__attribute__((used)) void port_open_bridge(void)
 {
     if (RCC->apb2enr & RCC_APB2ENR_TIM1EN) {
         pwm_open_bridge();

@@ -1,19 +1,14 @@
 # Targets that need a board and a tool; without the tool they say what is missing.
 set(openocd_files -f interface/stlink.cfg -f target/stm32g4x.cfg)
 
-# add_tool_target(<target> <program> <package> COMMAND...)
+# add_tool_target(<target> <program> <package> COMMAND...): the program is looked for when the target
+# is built.
 function(add_tool_target target program package)
-  find_program(tool_${program} ${program})
-  if(tool_${program})
-    add_custom_target(${target} COMMAND ${tool_${program}} ${ARGN}
-      DEPENDS steadystep USES_TERMINAL VERBATIM)
-  else()
-    add_custom_target(${target}
-      COMMAND ${CMAKE_COMMAND} -E echo
-              "${target}: ${program} is not installed; it is in the package ${package}"
-      COMMAND ${CMAKE_COMMAND} -E false
-      VERBATIM)
-  endif()
+  set(missing "${target}: ${program} is not installed; it is in the package ${package}")
+  add_custom_target(${target}
+    COMMAND sh -c "command -v ${program} >/dev/null || { echo '${missing}'; exit 1; }"
+    COMMAND ${program} ${ARGN}
+    DEPENDS steadystep USES_TERMINAL VERBATIM)
 endfunction()
 
 add_tool_target(flash openocd openocd

@@ -185,8 +185,8 @@ MUTANTS = [
     Mutant(
         "a fault of the core leaves the bridge closed",
         "crash.c",
-        "    port_open_bridge();\n    __disable_irq();\n    record_begin(__get_IPSR(), ",
-        "    __disable_irq();\n    record_begin(__get_IPSR(), ",
+        '                     "blx r3\\n"\n',
+        "",
         "program-leaves-memory",
         "behind a jump to nowhere the program opens the bridge",
     ),
