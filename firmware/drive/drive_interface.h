@@ -92,7 +92,7 @@ enum drive_synchronism {
     DRIVE_SYNCHRONISM_SURE,
     DRIVE_SYNCHRONISM_DOUBTFUL, /* half of what makes a loss, or nothing left of the torque */
     DRIVE_SYNCHRONISM_STALLED,  /* the rotor does not follow, although the estimate is sound */
-    DRIVE_SYNCHRONISM_LOST,     /* until the bridge is switched on anew */
+    DRIVE_SYNCHRONISM_LOST,     /* stays until the bridge is switched on anew */
     DRIVE_SYNCHRONISMS
 };
 

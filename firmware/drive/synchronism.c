@@ -97,7 +97,8 @@ static enum synchronism step(struct drive *drive, const struct rotor *rotor)
                                                  drive->current_reference.d);
     case JUDGE_LASTING:
         return drive->hold.active ? synchronism_monitor_judge_hold(monitor, params, rotor->speed)
-                                  : synchronism_monitor_judge_motion(monitor, params, rotor->speed);
+                                  : synchronism_monitor_judge_motion(monitor, params, rotor->speed,
+                                                                     drive->current_reference.d);
     case JUDGE_TORQUE:
         return synchronism_monitor_judge_torque(monitor, params, drive->current_reference.q,
                                                 rotor->speed);

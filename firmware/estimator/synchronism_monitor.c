@@ -47,7 +47,7 @@ static const double standing_torque = 0.05;
 /* Moves that ask for more than the motor has are caught up with in half of this. */
 static const double lagging_s = 0.1;
 
-/* Quick changes of load leave as much for two blocks at most. */
+/* Twice what quick changes of load take to pass. */
 static const double mirrored_s = 6.4e-3;
 
 static const double torn_load = 1.6; /* of the rated torque */
@@ -152,14 +152,16 @@ enum synchronism synchronism_monitor_judge_voltage(struct synchronism_monitor *m
 
 enum synchronism synchronism_monitor_judge_motion(struct synchronism_monitor *monitor,
                                                   const struct synchronism_monitor_params *params,
-                                                  num_t speed)
+                                                  num_t speed, num_t i_d)
 {
     const num_t magnitude = num_abs(speed);
+    const num_t allowed =
+        quarter(magnitude) + num_mul_coef(num_abs(i_d), monitor->voltage_per_current);
 
     monitor->held = 0u;
     monitor->settled = NUM(0.0);
     monitor->mirrored = count(monitor->mirrored, magnitude > params->standing_speed &&
-                                                     monitor->disturbance > quarter(magnitude));
+                                                     !(monitor->disturbance < allowed));
     return monitor->mirrored < params->mirrored_blocks ? SYNCHRONISM_SURE : SYNCHRONISM_LOST;
 }
 

@@ -21,9 +21,9 @@
  *
  * Half a turn beside the rotor the estimate has a second equilibrium: it turns against the rotor,
  * and what is left in d, 0.4 Km |w_hat|, draws its angle along. Of a sound estimate nothing is left
- * there for long. Lost, too, in motion faster than the standing speed below,
+ * there for long. Lost, too, in motion faster than the standing speed below of a known resistance,
  *
- *   if |mean of e_d over two blocks| >= Km |w_hat| / 4 in four blocks in a row
+ *   if |mean of e_d over two blocks| >= Km |w_hat| / 4 + r |i_d| in four blocks in a row
  *
  * Stalled: the estimate is sound and says that the rotor does not follow:
  *   standing    all current is in use and yet the rotor stands, or seems to turn no faster than an
@@ -124,7 +124,7 @@ enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *moni
    sure. */
 enum synchronism synchronism_monitor_judge_motion(struct synchronism_monitor *monitor,
                                                   const struct synchronism_monitor_params *params,
-                                                  num_t speed);
+                                                  num_t speed, num_t i_d);
 
 /* Whether the torque is used up in vain: stalled, or sure. `wanted`: the q current asked for. */
 enum synchronism synchronism_monitor_judge_torque(struct synchronism_monitor *monitor,

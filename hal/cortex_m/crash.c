@@ -84,7 +84,6 @@ _Noreturn void board_fault(enum board_fault fault)
 __attribute__((used)) _Noreturn void crash_with_frame(const uint32_t *frame);
 _Noreturn void crash_with_frame(const uint32_t *frame)
 {
-    __disable_irq();
     record_begin(__get_IPSR(), BOARD_FAULT_NONE);
     record.stack_pointer = (uint32_t)frame;
     if (frame >= &stack_bottom && frame + FRAME_WORDS <= &stack_top) {
@@ -101,6 +100,7 @@ _Noreturn void crash_with_frame(const uint32_t *frame)
 __attribute__((naked)) void crash_exception(void)
 {
     __asm__ volatile(".syntax unified\n"
+                     "cpsid i\n"
                      "ldr r3, =port_open_bridge\n"
                      "blx r3\n"
                      "mov r0, sp\n"

@@ -3,7 +3,8 @@
  * of slip_scenario.h.
  *
  * A slip begins where the estimate is 90 degrees electrical off. It is told by any fault or, with
- * the policy `warn`, by a warning of a stall or a loss; missed: neither stands 20 ms later. False
+ * the policy `warn`, by a warning of a loss, or of a stall that stands 20 ms later; missed: neither
+ * has come by then. False
  * alarm: a loss of synchronism, fault or warning, with less than 45 degrees throughout the 100 ms
  * before it. Only these claim a slip.
  */
@@ -23,6 +24,7 @@ namespace
 constexpr double pi = 3.14159265358979323846;
 
 constexpr std::size_t none = static_cast<std::size_t>(-1);
+constexpr double latest_s = 0.02; /* behind a slip, for it to be told */
 
 /* What a record shows; the first rows of each, `none` if there is none. */
 struct Course {
@@ -41,7 +43,7 @@ void note(std::size_t &first, std::size_t row, bool happens)
 
 Course course_of(const Record &record, double teeth)
 {
-    const double degrees = teeth * 180 / pi;
+    const double degrees = teeth * 180 / pi, half_period_s = record.period_s() / 2;
     const auto off = [&](std::size_t row) {
         return std::fabs(record.at(row, THETA) - record.at(row, THETA_EST)) * degrees;
     };
@@ -55,8 +57,11 @@ Course course_of(const Record &record, double teeth)
         note(course.doubt, row, synchronism > DRIVE_SYNCHRONISM_SURE);
         note(course.stalled, row, synchronism == DRIVE_SYNCHRONISM_STALLED);
         note(course.lost, row, synchronism == DRIVE_SYNCHRONISM_LOST);
+        const bool late = course.slip != none && record.time_s(row) - record.time_s(course.slip) >
+                                                     latest_s - half_period_s;
         note(course.told, row,
-             course.slip != none && (fault || synchronism > DRIVE_SYNCHRONISM_DOUBTFUL));
+             course.slip != none && (fault || synchronism == DRIVE_SYNCHRONISM_LOST ||
+                                     (late && synchronism == DRIVE_SYNCHRONISM_STALLED)));
     }
     if (course.lost != none) {
         const auto before = static_cast<std::size_t>(std::floor(0.1 / record.period_s() + 0.5));
@@ -70,7 +75,6 @@ Course course_of(const Record &record, double teeth)
 
 CampaignOutcome judge_slip(const Result &result, const Record &record)
 {
-    constexpr double latest_s = 0.02;
     CampaignOutcome outcome;
     outcome.figures.assign(7, Metrics::none);
     const Course course = course_of(record, result.scenario->motor.params.rotor_teeth);

@@ -71,7 +71,8 @@ static enum synchronism block(const struct course *c)
          synchronism_monitor_judge_voltage(&monitor, &params, speed,
                                            num_from_double(c->i_d_A / base.current_A))),
         c->holding ? synchronism_monitor_judge_hold(&monitor, &params, speed)
-                   : synchronism_monitor_judge_motion(&monitor, &params, speed),
+                   : synchronism_monitor_judge_motion(&monitor, &params, speed,
+                                                      num_from_double(c->i_d_A / base.current_A)),
         synchronism_monitor_judge_torque(&monitor, &params,
                                          num_from_double(c->wanted_A / base.current_A), speed),
         synchronism_monitor_judge_load(&monitor, &params,
@@ -212,7 +213,7 @@ static void test_an_unknown_resistance_is_allowed_its_voltage(void)
 
 static void test_a_hold_that_adapts_the_resistance_makes_it_known(void)
 {
-    const struct course off = {.i_d_A = 1.5, .disturbance_V = 0.7 * 0.37 * 1.5};
+    const struct course off = {.i_d_A = 1.5, .speed_rad_s = 3.0, .disturbance_V = 0.7 * 0.37 * 1.5};
     const struct course held = {.i_d_A = 1.5, .holding = true};
 
     task.resistance_calibrated = false;
@@ -237,6 +238,19 @@ static void test_a_settled_hold_sees_a_rotor_creep_away_in_20_ms(void)
     TEST_ASSERT_EQUAL_INT(SYNCHRONISM_LOST, after(&creeps, 20e-3));
     creeps.holding = false;
     expect(SYNCHRONISM_SURE, creeps, 1.0);
+}
+
+/* Motion in between makes it another hold, which has to settle again. */
+static void test_a_hold_settles_anew_behind_motion(void)
+{
+    const struct course held = {.i_d_A = 1.5, .holding = true};
+    struct course creeps = held;
+
+    creeps.disturbance_V = -0.1;
+    TEST_ASSERT_EQUAL_INT(SYNCHRONISM_SURE, after(&held, 0.15));
+    TEST_ASSERT_EQUAL_INT(SYNCHRONISM_SURE, block(&at_rest));
+    TEST_ASSERT_EQUAL_INT(SYNCHRONISM_SURE, after(&creeps, 0.1));
+    TEST_ASSERT_EQUAL_INT(SYNCHRONISM_LOST, after(&creeps, 35e-3));
 }
 
 static void test_a_rotor_that_stands_under_full_current_is_stalled_in_15_ms(void)
@@ -343,6 +357,7 @@ static void test_the_times_follow_the_control_period(void)
 
     TEST_ASSERT_EQUAL_UINT32(2u * params.standing_blocks, half.standing_blocks);
     TEST_ASSERT_EQUAL_UINT32(2u * params.torn_blocks, half.torn_blocks);
+    TEST_ASSERT_EQUAL_UINT32(2u * params.mirrored_blocks, half.mirrored_blocks);
 }
 
 int main(void)
@@ -357,6 +372,7 @@ int main(void)
     RUN_TEST(test_an_unknown_resistance_is_allowed_its_voltage);
     RUN_TEST(test_a_hold_that_adapts_the_resistance_makes_it_known);
     RUN_TEST(test_a_settled_hold_sees_a_rotor_creep_away_in_20_ms);
+    RUN_TEST(test_a_hold_settles_anew_behind_motion);
     RUN_TEST(test_a_rotor_that_stands_under_full_current_is_stalled_in_15_ms);
     RUN_TEST(test_a_speed_that_an_unknown_resistance_feigns_is_standing);
     RUN_TEST(test_a_rotor_that_starts_under_a_heavy_load_is_not);
