@@ -25,7 +25,8 @@ void port_watchdog_feed(void);
 /* Index of the present or last control interrupt; PORT_NOT_STARTED before the first. */
 uint32_t port_control_period(void);
 
-/* All gates off, in whatever state chip and program are. */
+/* All gates off, in whatever state chip and program are, without any stack (tools/stack_bound):
+   crash_exception begins with it. */
 void port_open_bridge(void);
 
 /* What raised a non-maskable interrupt that is not handled: a number of the port's, and its text.

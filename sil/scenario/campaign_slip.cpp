@@ -3,10 +3,9 @@
  * of slip_scenario.h.
  *
  * A slip begins where the estimate is 90 degrees electrical off. It is told by any fault or, with
- * the policy `warn`, by a warning of a loss, or of a stall that stands 20 ms later; missed: neither
- * has come by then. False
- * alarm: a loss of synchronism, fault or warning, with less than 45 degrees throughout the 100 ms
- * before it. Only these claim a slip.
+ * the policy `warn`, by a warning of a loss, or of a stall that stands 20 ms later; missed: none
+ * has come by then. False alarm: a loss of synchronism, fault or warning, with less than 45 degrees
+ * throughout the 100 ms before it. Only these claim a slip.
  */
 #include "sil/scenario/campaign.h"
 
@@ -22,7 +21,6 @@ namespace
 {
 
 constexpr double pi = 3.14159265358979323846;
-
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 constexpr double latest_s = 0.02; /* behind a slip, for it to be told */
 
@@ -30,7 +28,7 @@ constexpr double latest_s = 0.02; /* behind a slip, for it to be told */
 struct Course {
     std::size_t slip = none, fault = none, doubt = none;
     std::size_t stalled = none, lost = none; /* warnings or faults */
-    std::size_t told = none;                 /* that a slip has begun or was to be expected */
+    std::size_t told = none;                 /* of the slip, by what tells it */
     double largest_before_loss_deg = 0;      /* in the 100 ms that end with it */
 };
 
@@ -57,11 +55,13 @@ Course course_of(const Record &record, double teeth)
         note(course.doubt, row, synchronism > DRIVE_SYNCHRONISM_SURE);
         note(course.stalled, row, synchronism == DRIVE_SYNCHRONISM_STALLED);
         note(course.lost, row, synchronism == DRIVE_SYNCHRONISM_LOST);
-        const bool late = course.slip != none && record.time_s(row) - record.time_s(course.slip) >
-                                                     latest_s - half_period_s;
-        note(course.told, row,
-             course.slip != none && (fault || synchronism == DRIVE_SYNCHRONISM_LOST ||
-                                     (late && synchronism == DRIVE_SYNCHRONISM_STALLED)));
+        if (course.slip != none) {
+            const double behind_s = record.time_s(row) - record.time_s(course.slip);
+            const bool late = behind_s > latest_s - half_period_s;
+            note(course.told, row,
+                 fault || synchronism == DRIVE_SYNCHRONISM_LOST ||
+                     (late && synchronism == DRIVE_SYNCHRONISM_STALLED));
+        }
     }
     if (course.lost != none) {
         const auto before = static_cast<std::size_t>(std::floor(0.1 / record.period_s() + 0.5));
