@@ -18,8 +18,9 @@ enum {
     OFFSET_CODES = 4096, /* keeps the division away from negative numbers */
 };
 
+/* Of two periods; DMA stores the sums of the legs + and - in turn. */
 struct phase {
-    uint16_t sums[2 * HALF]; /* of the legs + and - in turn, two periods */
+    uint32_t groups[2 * LEG_GROUPS]; /* leg + in the lower half word, - in the upper */
 };
 
 #define ADC_A PERIPHERAL(ADC, LEGS_A_CONVERTER)
@@ -43,7 +44,7 @@ static void start_converter(struct adc_registers *adc, uint32_t plus, uint32_t m
 static void start_transfer(uint32_t channel, uint32_t request, struct adc_registers *adc,
                            struct phase *phase)
 {
-    dma_start(channel, request, &adc->dr, phase->sums, 2 * HALF,
+    dma_start(channel, request, &adc->dr, phase->groups, 2 * HALF,
               DMA_CR_CIRC | DMA_CR_MINC | DMA_CR_PSIZE(DMA_HALF_WORD) |
                   DMA_CR_MSIZE(DMA_HALF_WORD) | DMA_CR_PL(DMA_PRIORITY_VERY_HIGH));
 }
@@ -72,14 +73,16 @@ void phase_voltage_sampling_configure(void)
     start_converter(ADC_B, LEG_B_PLUS_CHANNEL, LEG_B_MINUS_CHANNEL);
 }
 
-/* To the nearest code, ties upwards. */
-static inline int16_t mean(const uint16_t *sums)
+/* To the nearest code, ties upwards. A sum has 15 bits. */
+IN_CCM(mean)
+static int16_t mean(const uint32_t *groups)
 {
+    const uint32_t once_each = 0x00010001;
     uint32_t difference = DIVISOR * OFFSET_CODES + DIVISOR / 2;
 
+#pragma GCC unroll LEG_GROUPS
     for (int group = 0; group < LEG_GROUPS; group++) {
-        difference += sums[2 * group];
-        difference -= sums[2 * group + 1];
+        difference = __SMLSD(groups[group], once_each, difference);
     }
     return (int16_t)((int32_t)(difference / DIVISOR) - OFFSET_CODES);
 }
@@ -108,8 +111,8 @@ bool phase_voltage_sampling_read(struct hal_samples *samples)
     const bool other_half = done != last_done || deadline_guard_has_missed();
 
     last_done = done;
-    samples->phase_voltage_a = mean(&phase_a.sums[done]);
-    samples->phase_voltage_b = mean(&phase_b.sums[done]);
+    samples->phase_voltage_a = mean(&phase_a.groups[done / LEGS_OF_PHASE]);
+    samples->phase_voltage_b = mean(&phase_b.groups[done / LEGS_OF_PHASE]);
     return other_half && (stored_a < HALF) == (stored_b < HALF) &&
            in_step(stored_a, done, since_peak) && in_step(stored_b, done, since_peak) &&
            ((ADC_A->isr | ADC_B->isr) & ADC_ISR_OVR) == 0;

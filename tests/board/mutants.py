@@ -85,10 +85,10 @@ MUTANTS = [
     Mutant(
         "the voltage mean is one period old",
         "phase_voltage_sampling.c",
-        "    samples->phase_voltage_a = mean(&phase_a.sums[done]);\n"
-        "    samples->phase_voltage_b = mean(&phase_b.sums[done]);\n",
-        "    samples->phase_voltage_a = mean(&phase_a.sums[HALF - done]);\n"
-        "    samples->phase_voltage_b = mean(&phase_b.sums[HALF - done]);\n",
+        "    samples->phase_voltage_a = mean(&phase_a.groups[done / LEGS_OF_PHASE]);\n"
+        "    samples->phase_voltage_b = mean(&phase_b.groups[done / LEGS_OF_PHASE]);\n",
+        "    samples->phase_voltage_a = mean(&phase_a.groups[(HALF - done) / LEGS_OF_PHASE]);\n"
+        "    samples->phase_voltage_b = mean(&phase_b.groups[(HALF - done) / LEGS_OF_PHASE]);\n",
         MOVE,
         "",
     ),
