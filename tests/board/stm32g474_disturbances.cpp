@@ -58,6 +58,7 @@ void conversions_are_lost(Expectations &expectations, const std::string &image)
     Powered run(image);
     (void)run.start();
     expectations.expect(run.enable(), "the drive holds the motor");
+    run.run_behind_peak(60 * us); /* the next control interrupt is that of the next peak */
     run.machine.stall_control_interrupt(0, 130 * us / run.machine.core_cycle());
     run.run_behind_peak(0);
     Event stops([&] { run.machine.store(TIM3_CR1, 4, 0); });
