@@ -183,9 +183,9 @@ void test_a_slave_starts_with_the_trigger_and_updates_each_period()
     TEST_ASSERT_FALSE(bench.chip.lines[29]);
     bench.at_phase(0, 8500 + 10);
     TEST_ASSERT_TRUE(bench.chip.lines[29]);
-    const std::uint64_t before = bench.device.timer(Trigger::tim3).updates;
+    const std::uint64_t before = bench.device.timer(Trigger::tim3).updates();
     bench.at_phase(10, 8500 + 10);
-    TEST_ASSERT_TRUE(bench.device.timer(Trigger::tim3).updates == before + 170);
+    TEST_ASSERT_TRUE(bench.device.timer(Trigger::tim3).updates() == before + 170);
 }
 
 void test_a_general_timer_compares_over_its_overflow()

@@ -82,11 +82,16 @@ Adc::Adc(Chip &chip, unsigned number, AdcCommon &common, Triggers &triggers, Dma
 {
     listener_ =
         &triggers.listen([this](Trigger source, TriggerEdge edge) { triggered(source, edge); });
+    listener_->patient = [this](Ticks period) { return patient(period); };
+    listener_->act_late = [this](Ticks first, Ticks period, unsigned count) {
+        triggered_late(first, period, count);
+    };
     choose_triggers();
 }
 
 void Adc::reset()
 {
+    triggers_.come_promptly(regular_sources_);
     RegisterBlock::reset();
     regulator_ready_ = Event::never;
     calibrated_ = ready_ = dma_stopped_ = false;

@@ -40,15 +40,22 @@ struct Conversion {
     Ticks sampled; /* end of the sampling time (of the last conversion of an oversampled rank) */
 };
 
+/* `factor` x code >> `shift` at an address. */
+struct StoredResult {
+    unsigned adc, channel;
+    Ticks trigger; /* of its sequence */
+    std::uint32_t address;
+    unsigned factor, shift;
+};
+
 /* The analog side: codes of 12 bits. */
 class AnalogInputs
 {
   public:
     virtual ~AnalogInputs() = default;
     virtual std::uint32_t code(const Conversion &conversion) = 0;
-    /* The result of a regular conversion, `factor` x code >> `shift`, was stored by DMA. */
-    virtual void stored(const Conversion &conversion, std::uint32_t address, unsigned factor,
-                        unsigned shift) = 0;
+    /* The result of a regular conversion was stored by DMA. */
+    virtual void stored(const StoredResult &result) = 0;
     /* The core has read JDR1 with the injected interrupt enabled. */
     virtual void injected_result_taken(unsigned adc) = 0;
 };
@@ -115,6 +122,9 @@ class Adc : public RegisterBlock
     void plan();
     bool silent();
     bool defer(Ticks trigger);
+    void put_off(Ticks trigger);
+    bool patient(Ticks period);
+    void triggered_late(Ticks first, Ticks period, unsigned count);
     template <typename Take> void form(Ticks until, Ticks triggered_before, Take take);
     void deferred_due();
     std::uint32_t resolved(std::uint32_t code) const;

@@ -2,8 +2,9 @@
  * Regular results that are put off. While their sequence raises no interrupt and DMA moves them
  * round a ring, nobody can tell when they come but by registers: they are formed, in their order,
  * when the core looks at one of those (Adc::look), and at the latest at the next peak, for which
- * they are (Adc::settle). So 68 results of a period cost no event each. What the core finds in the
- * ring's memory without such a look may be older than on the chip.
+ * they are (Adc::settle). So 68 results of a period cost no event each, and neither do the triggers
+ * of their sequences (trigger.h). What the core finds in the ring's memory without such a look may
+ * be older than on the chip.
  */
 #include "sil/virtual_board/peripherals/adc.h"
 
@@ -60,7 +61,16 @@ bool Adc::defer(Ticks trigger)
         settle(trigger - 1); /* all of them: another cannot begin before */
         return false;
     }
-    if (deferred_.size() == most_deferred || planned_half_clock_ != common_.half_clock()) {
+    if (planned_half_clock_ != common_.half_clock()) {
+        settle(trigger - 1);
+    }
+    put_off(trigger);
+    return true;
+}
+
+void Adc::put_off(Ticks trigger)
+{
+    if (deferred_.size() == most_deferred) {
         settle(trigger - 1);
     }
     if (deferred_.empty()) {
@@ -69,36 +79,54 @@ bool Adc::defer(Ticks trigger)
     }
     deferred_.push_back(trigger);
     deferred_until_ = trigger + plan_.back().end;
-    return true;
 }
 
-/* Forms the results that settle is to form; `take` gets each with its conversion. */
+/* Whether each of such triggers would be put off. What changes that is a write that calls `look`.
+ */
+bool Adc::patient(Ticks period)
+{
+    if (!clocked() || !silent() || regular_.running || (at(CR) & JADSTART) != 0) {
+        return false;
+    }
+    plan();
+    return plan_.back().end < period;
+}
+
+void Adc::triggered_late(Ticks first, Ticks period, unsigned count)
+{
+    counters.regular_sequences += count;
+    for (; count > 0; --count, first += period) {
+        put_off(first);
+    }
+}
+
+/* Forms the results that settle is to form; `take` gets each with its channel and trigger. */
 template <typename Take> void Adc::form(Ticks until, Ticks triggered_before, Take take)
 {
     const std::size_t ranks = plan_.size(), sequences = deferred_.size();
     std::array<std::uint32_t, 16> results{}; /* between two peaks their inputs stand still */
-    unsigned known = 0, formed = 0;          /* ranks, a bit each */
+    std::size_t known = 0;                   /* of them */
     std::size_t done = 0, at_rank = deferred_rank_;
-    Ticks due = due_;
-    while (due <= until && deferred_[done] < triggered_before) {
-        const Rank &rank = plan_[at_rank];
+    unsigned formed = 0;
+    while (done < sequences && deferred_[done] < triggered_before) {
         const Ticks trigger = deferred_[done];
-        const Conversion conversion = {number_, rank.channel, false, trigger,
-                                       trigger + rank.sampled};
-        if ((known >> at_rank & 1) == 0) {
-            known |= 1u << at_rank;
-            results[at_rank] = regular_result(conversion);
+        for (; at_rank < ranks && trigger + plan_[at_rank].end <= until; ++at_rank, ++formed) {
+            const Rank &rank = plan_[at_rank];
+            if ((known >> at_rank & 1) == 0) {
+                known |= std::size_t{1} << at_rank;
+                results[at_rank] =
+                    regular_result({number_, rank.channel, false, trigger, trigger + rank.sampled});
+            }
+            take(results[at_rank], rank, trigger);
         }
-        take(results[at_rank], conversion);
-        formed++;
-        if (++at_rank == ranks) {
-            at_rank = 0;
-            done++;
-            flag(EOS);
+        if (at_rank < ranks) {
+            break;
         }
-        due = done < sequences ? deferred_[done] + plan_[at_rank].end : Event::never;
+        at_rank = 0;
+        done++;
+        flag(EOS);
     }
-    due_ = due;
+    due_ = done < sequences ? deferred_[done] + plan_[at_rank].end : Event::never;
     deferred_rank_ = at_rank;
     deferred_.erase(deferred_.begin(), deferred_.begin() + static_cast<std::ptrdiff_t>(done));
     counters.conversions += formed * oversampling();
@@ -106,23 +134,26 @@ template <typename Take> void Adc::form(Ticks until, Ticks triggered_before, Tak
 
 void Adc::settle(Ticks until, Ticks triggered_before)
 {
+    triggers_.catch_up(regular_sources_, until);
     if (due_ > until) {
         return;
     }
     if (!silent()) {
-        form(until, triggered_before, [this](std::uint32_t data, const Conversion &conversion) {
-            deliver(data, conversion);
+        form(until, triggered_before, [this](std::uint32_t data, const Rank &rank, Ticks trigger) {
+            deliver(data, {number_, rank.channel, false, trigger, trigger + rank.sampled});
         });
         return;
     }
-    const unsigned factor = oversampling(), shift = oversampling_shift();
+    StoredResult stored = {number_, 0, 0, 0, oversampling(), oversampling_shift()};
     const bool wired = stuck_code < 0;
     Dma::Ring ring(*route_.dma, route_.channel); /* which never ends: it stays silent */
-    form(until, triggered_before, [&](std::uint32_t data, const Conversion &conversion) {
+    form(until, triggered_before, [&](std::uint32_t data, const Rank &rank, Ticks trigger) {
         at(DR) = data;
-        const std::uint32_t address = ring.put(data);
+        stored.channel = rank.channel;
+        stored.trigger = trigger;
+        stored.address = ring.put(data);
         if (wired) {
-            inputs_.stored(conversion, address, factor, shift);
+            inputs_.stored(stored);
         }
     });
 }
@@ -131,12 +162,15 @@ void Adc::settle(Ticks until, Ticks triggered_before)
    than registers from now on. */
 void Adc::look(Access access)
 {
-    if (due_ == Event::never) {
+    if (due_ == Event::never && !triggers_.late(regular_sources_)) {
         return;
     }
     settle(chip_.now());
-    if (access == Access::write && due_ != Event::never && regular_event_.at == Event::never) {
-        chip_.schedule(regular_event_, due_);
+    if (access == Access::write) {
+        triggers_.come_promptly(regular_sources_);
+        if (due_ != Event::never && regular_event_.at == Event::never) {
+            chip_.schedule(regular_event_, due_);
+        }
     }
 }
 

@@ -46,6 +46,7 @@ void AdvancedTimer::hold(bool held)
 void Timer::hold(bool held)
 {
     const bool counts_time = counting() && !(kind_.general && encoder_mode());
+    come_promptly();
     if (held && counts_time && held_since_ == Event::never) {
         take_flags();
         held_since_ = chip_.now();

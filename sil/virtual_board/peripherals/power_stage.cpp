@@ -27,6 +27,17 @@ struct LegInput {
 constexpr LegInput leg_inputs[PowerStage::legs] = {
     {3, 1, {'B', 1}}, {3, 5, {'B', 13}}, {4, 3, {'B', 12}}, {4, 4, {'B', 14}}};
 
+/* Leg by converter and channel; below 0: none. */
+constexpr int leg_of(unsigned adc, unsigned channel)
+{
+    for (int leg = 0; leg < PowerStage::legs; leg++) {
+        if (leg_inputs[leg].adc == adc && leg_inputs[leg].channel == channel) {
+            return leg;
+        }
+    }
+    return -1;
+}
+
 plant::Config without_delay(plant::Config config)
 {
     config.bridge.delay_periods = 0;
@@ -157,16 +168,6 @@ void PowerStage::require_analog(Pin pin) const
     }
 }
 
-int PowerStage::leg_of(unsigned adc, unsigned channel) const
-{
-    for (int leg = 0; leg < legs; leg++) {
-        if (leg_inputs[leg].adc == adc && leg_inputs[leg].channel == channel) {
-            return leg;
-        }
-    }
-    return -1;
-}
-
 /* Half the bus and the phase's code on either side of it; the middle gives way at the ends of the
    range so that the difference always is twice the code. */
 std::uint32_t PowerStage::leg_code(int leg) const
@@ -229,16 +230,15 @@ std::uint32_t PowerStage::code(const Conversion &conversion)
     return leg_code(leg);
 }
 
-void PowerStage::stored(const Conversion &conversion, std::uint32_t address, unsigned factor,
-                        unsigned shift)
+void PowerStage::stored(const StoredResult &result)
 {
-    const int leg = leg_of(conversion.adc, conversion.channel);
+    const int leg = leg_of(result.adc, result.channel);
     if (leg < 0) {
         return;
     }
-    if (conversion.trigger >= last_peak_) {
+    if (result.trigger >= last_peak_) {
         if (!settling_) {
-            open_.push_back({address, leg, factor, shift});
+            open_.push_back({result.address, leg, result.factor, result.shift});
         }
         groups_++;
     } else {

@@ -74,8 +74,7 @@ class PowerStage : public AnalogInputs
     Counters counters;
 
     std::uint32_t code(const Conversion &conversion) override;
-    void stored(const Conversion &conversion, std::uint32_t address, unsigned factor,
-                unsigned shift) override;
+    void stored(const StoredResult &result) override;
     void injected_result_taken(unsigned adc) override;
 
   private:
@@ -86,7 +85,6 @@ class PowerStage : public AnalogInputs
     void compare();
     std::uint32_t current_code(const Conversion &conversion);
     std::uint32_t leg_code(int leg) const;
-    int leg_of(unsigned adc, unsigned channel) const;
     void require_analog(Pin pin) const;
 
     struct Group {

@@ -81,7 +81,9 @@ void Timer::reset()
     prescaler_ = 0;
     reload_ = at(ARR);
     frozen_ = 0;
-    updates = 0;
+    updates_ = 0;
+    late_period_ = 0;
+    triggers_.end_late(kind_.output);
     held_since_ = Event::never;
     compare_.fill(0);
     compare_flags_ = 0x1e;
@@ -116,6 +118,7 @@ std::uint32_t Timer::count() const
 std::uint32_t Timer::fetch(std::uint32_t offset, Master)
 {
     if (offset == SR) {
+        catch_up(chip_.now());
         take_flags();
     }
     require(offset != CNT || !counting() || !kind_.general || !encoder_mode() || !encoder_routed ||
@@ -126,6 +129,7 @@ std::uint32_t Timer::fetch(std::uint32_t offset, Master)
 
 void Timer::put(std::uint32_t offset, std::uint32_t value, Master)
 {
+    come_promptly();
     take_flags();
     switch (offset) {
     case CR1:
@@ -250,8 +254,62 @@ void Timer::stop()
     }
 }
 
+namespace
+{
+
+constexpr unsigned most_late = 32; /* overflows; twice those of a PWM period */
+
+} // namespace
+
+/* Whether nobody can tell when an overflow comes, but those that let it come late. */
+bool Timer::may_be_late(Ticks period) const
+{
+    return at(DIER) == 0 && field(at(CR2), 4, 3) == 2 && (at(CR1) & UDIS) == 0 &&
+           field(at(SMCR), 0, 3) != 4 && triggers_.all_patient(kind_.output, period);
+}
+
+/* What as many overflows would have done one by one; UIF is set since the last that was an event.
+ */
+void Timer::catch_up(Ticks until)
+{
+    const Ticks first = origin_ + late_period_;
+    if (late_period_ == 0 || first > until) {
+        return;
+    }
+    unsigned count = 0;
+    for (Ticks time = first; time <= until; time += late_period_, ++count) {
+        take_flags(time);
+        origin_ = time;
+        flags_until_ = origin_ - 1;
+        take_flags(time);
+    }
+    updates_ += count;
+    triggers_.hand_on_late(kind_.output, first, late_period_, count);
+}
+
+void Timer::come_promptly()
+{
+    if (late_period_ > 0) {
+        catch_up(chip_.now());
+        chip_.schedule(overflow_event_, origin_ + late_period_);
+        late_period_ = 0;
+        triggers_.end_late(kind_.output);
+    }
+}
+
+std::uint64_t Timer::updates()
+{
+    catch_up(chip_.now());
+    return updates_;
+}
+
 void Timer::overflow()
 {
+    if (late_period_ > 0) {
+        catch_up(chip_.now());
+        chip_.schedule(overflow_event_, origin_ + most_late * late_period_);
+        return;
+    }
     take_flags();
     origin_ = chip_.now();
     flags_until_ = origin_ - 1; /* a compare of 0 matches now */
@@ -261,7 +319,13 @@ void Timer::overflow()
     }
     update(false);
     if (counting()) {
-        chip_.schedule(overflow_event_, origin_ + (Ticks{top()} + 1) * count_ticks());
+        const Ticks period = (Ticks{top()} + 1) * count_ticks();
+        const bool late = may_be_late(period);
+        if (late) {
+            late_period_ = period;
+            triggers_.begin_late(kind_.output, *this);
+        }
+        chip_.schedule(overflow_event_, origin_ + (late ? most_late : 1) * period);
         take_flags();
         schedule_compare();
         interrupt();
@@ -278,7 +342,7 @@ void Timer::update(bool by_software)
         if (kind_.general) {
             compare_ = {at(CCR1), at(CCR1 + 4), at(CCR1 + 8), at(CCR1 + 12)};
         }
-        updates++;
+        updates_++;
     }
     if (by_software) {
         frozen_ = 0;

@@ -2,7 +2,8 @@
  * General and basic timers (TIM2, 3, 4, 6, 7, 15): up-counting with prescaler and auto-reload,
  * update event, compare flags and their interrupt, TRGO on reset, enable or update, slave modes
  * reset and trigger from another timer, encoder mode 3. Time between events is computed, not
- * stepped. RM0440, chapters "General-purpose timers" and "Basic timers".
+ * stepped, and overflows that nobody can tell but by registers and by triggers that may come late
+ * cost no event each. RM0440, chapters "General-purpose timers" and "Basic timers".
  */
 #ifndef STEADYSTEP_VIRTUAL_BOARD_TIMER_H
 #define STEADYSTEP_VIRTUAL_BOARD_TIMER_H
@@ -23,7 +24,7 @@ struct TimerKind {
     bool wide;          /* 32 bits */
 };
 
-class Timer : public RegisterBlock
+class Timer : public RegisterBlock, private LatePulses
 {
   public:
     Timer(Chip &chip, const TimerKind &kind, Triggers &triggers, std::function<Ticks()> clock);
@@ -41,7 +42,7 @@ class Timer : public RegisterBlock
     {
         return bit(at(0x00), 0);
     }
-    std::uint64_t updates = 0; /* events since the reset, for reports */
+    std::uint64_t updates(); /* events since the reset */
     /* Stops the count, as at a halt of the core with DBG_TIMx_STOP set; goes on where it stood. */
     void hold(bool held);
 
@@ -57,10 +58,17 @@ class Timer : public RegisterBlock
     void start();
     void stop();
     void overflow();
+    bool may_be_late(Ticks period) const;
+    void catch_up(Ticks until) override;
+    void come_promptly() override;
     void update(bool by_software);
     void triggered(Trigger source, TriggerEdge edge);
     void act_on_trigger();
-    void take_flags();
+    void take_flags()
+    {
+        take_flags(chip_.now());
+    }
+    void take_flags(Ticks until);
     void schedule_compare();
     bool output(int channel) const;
     void interrupt();
@@ -83,6 +91,8 @@ class Timer : public RegisterBlock
     std::array<std::uint32_t, 4> compare_{};   /* in force */
     std::uint32_t compare_flags_ = 0x1e;       /* of the channels that are outputs */
     Ticks flags_until_ = 0;
+    std::uint64_t updates_ = 0;
+    Ticks late_period_ = 0;           /* 0: every overflow is an event */
     Ticks held_since_ = Event::never; /* never: it is not held */
     Event overflow_event_, trigger_event_, compare_event_;
     Triggers::Listener *triggers_in_ = nullptr;

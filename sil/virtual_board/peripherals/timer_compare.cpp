@@ -19,25 +19,24 @@ bool Timer::output(int channel) const
     return field(mode, channel % 2 == 0 ? 0 : 8, 2) == 0;
 }
 
-/* Sets the compare flags of all matches up to now. */
-void Timer::take_flags()
+/* Sets the compare flags of all matches up to a time. */
+void Timer::take_flags(Ticks until)
 {
-    const Ticks now = chip_.now();
-    if (!kind_.general || !counting() || encoder_mode() || now <= flags_until_) {
+    if (!kind_.general || !counting() || encoder_mode() || until <= flags_until_) {
         return;
     }
     if ((at(SR) & compare_flags_) == compare_flags_) { /* all are set as it is */
-        flags_until_ = now;
+        flags_until_ = until;
         return;
     }
     const Ticks count_time = count_ticks();
     for (int channel = 0; channel < 4; channel++) {
         const Ticks match = origin_ + compare_[static_cast<std::size_t>(channel)] * count_time;
-        if (output(channel) && match > flags_until_ && match <= now) {
+        if (output(channel) && match > flags_until_ && match <= until) {
             at(SR) |= 2u << channel;
         }
     }
-    flags_until_ = now;
+    flags_until_ = until;
 }
 
 void Timer::schedule_compare()
