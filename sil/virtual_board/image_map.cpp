@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
@@ -74,32 +75,47 @@ InstructionCost kind_of(const Json &row)
     return cost;
 }
 
-/* One run of instructions, one behind the other. */
+std::size_t digit(char c)
+{
+    if (c >= '0' && c <= '9') {
+        return static_cast<std::size_t>(c - '0');
+    }
+    if (c >= 'a' && c <= 'f') {
+        return static_cast<std::size_t>(c - 'a' + 10);
+    }
+    throw std::invalid_argument("costs of a run of code: expected hexadecimal digits");
+}
+
+/* One run of instructions, one behind the other: two digits each, and how many are of a stage. */
 void read_run(const Json &run, const std::vector<InstructionCost> &kinds, ImageMap &map)
 {
-    const Json &stages = run.at("stages");
+    const std::string &costs = run.at("costs").get_ref<const std::string &>();
     std::uint32_t address = run.at("address");
-    std::size_t stage = 0, left = 0;
-    for (const std::size_t kind : run.at("costs")) {
-        while (left == 0) {
-            left = stages.at(stage++).at(1);
+    std::size_t at = 0;
+    for (const Json &stage : run.at("stages")) {
+        const std::size_t named = stage.at(0), instructions = stage.at(1);
+        for (const std::size_t end = at + 2 * instructions; at < end; at += 2) {
+            const std::size_t kind = 16 * digit(costs.at(at)) + digit(costs.at(at + 1));
+            if (kind >= kinds.size()) {
+                throw std::invalid_argument(
+                    "names a kind of instruction that it does not describe");
+            }
+            InstructionCost cost = kinds[kind];
+            cost.stage =
+                named < map.stages.size() ? static_cast<std::uint8_t>(named) : inherited_stage;
+            map.code.push_back({address, cost});
+            address += cost.bytes;
         }
-        --left;
-        if (kind >= kinds.size()) {
-            throw std::invalid_argument("names a kind of instruction that it does not describe");
-        }
-        InstructionCost cost = kinds[kind];
-        const std::size_t named = stages.at(stage - 1).at(0);
-        cost.stage = named < map.stages.size() ? static_cast<std::uint8_t>(named) : inherited_stage;
-        map.code.push_back({address, cost});
-        address += cost.bytes;
+    }
+    if (at != costs.size()) {
+        throw std::invalid_argument("names no stage of some instructions");
     }
 }
 
 ImageMap parse(const Json &json, const ElfImage &image)
 {
-    if (json.at("format") != 1) {
-        throw std::invalid_argument("is of another format than 1");
+    if (json.at("format") != 2) {
+        throw std::invalid_argument("is of another format than 2; tools/image_map writes it");
     }
     if (json.at("identity").at("fnv1a") != identity_of(image)) {
         throw std::invalid_argument("is the map of another image; build both anew");
@@ -134,12 +150,14 @@ ImageMap ImageMap::read(const std::string &file, const ElfImage &image)
         throw std::invalid_argument(file + ": cannot be read; tools/image_map writes it");
     }
     try {
-        ImageMap map = parse(Json::parse(stream), image);
+        std::ostringstream text;
+        text << stream.rdbuf();
+        ImageMap map = parse(Json::parse(text.str()), image);
         map.file = file;
         return map;
     } catch (const Json::exception &error) {
         throw std::invalid_argument(file + ": " + error.what());
-    } catch (const std::invalid_argument &error) {
+    } catch (const std::logic_error &error) { /* of parse, or a run that ends early */
         throw std::invalid_argument(file + ": " + error.what());
     }
 }

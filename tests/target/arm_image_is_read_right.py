@@ -200,7 +200,8 @@ def check_map(compiler, m4f):
         image_map.write(image_map.image_map(elf, with_signals=False), output)
         written.append(output.read_bytes())
     content = json.loads(written[0])
-    costs = [content["costs"][kind] for run in content["code"] for kind in run["costs"]][:3]
+    kinds = [kind for run in content["code"] for kind in bytes.fromhex(run["costs"])]
+    costs = [content["costs"][kind] for kind in kinds[:3]]
     known = (
         [[2, 2, 2, 3, 3, 1], [2, 1, 2, 2, 2, 0], [2, 1, 1, 1, 1, 0]]
         if m4f
