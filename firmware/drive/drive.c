@@ -180,7 +180,7 @@ static bool design_law(struct drive *drive, const struct drive_settings *setting
 
 /* Shares of the overcurrent trip: of a pulse on the hold, and on the hold under load. */
 static const double standstill_peak = 0.8;
-static const double standstill_max = 0.88;
+static const double standstill_max = 0.94;
 
 static bool design_finding(struct drive *drive, const struct drive_settings *settings,
                            double period_s, char error[DRIVE_ERROR_TEXT])

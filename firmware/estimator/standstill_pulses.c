@@ -8,6 +8,11 @@ static const double voltage_share = 0.8;
 /* The hold's current is in and the rotor has come to rest. */
 static const double rest_s = 0.020;
 
+/* Of the first pulses; and what the largest change of the current may be above the change that a
+   linear winding would show. */
+#define FIRST_STRENGTH NUM(0.7)
+static const double largest_share = 1.15;
+
 /* For the hold to answer to what has been found. */
 static const double pause_s = 0.004;
 
@@ -54,7 +59,9 @@ void standstill_pulses_design(struct standstill_pulses_params *params,
     params->signal = coef_from_double(share * share);
     params->per_response = coef_from_double(1.0 / pulse);
     params->pulse_periods = one ? 1u : 2u;
-    params->current_max = num_from_double(task->current_max_A / base->current_A - pulse);
+    params->largest_change = num_from_double(largest_share * pulse);
+    params->current_max =
+        num_from_double(task->current_max_A / base->current_A - largest_share * pulse);
     params->per_magnet = coef_from_double(base->current_A / magnet_A);
     params->per_period = coef_from_double(1.0 / (IMPULSES * (last_period(params) + 1u)));
     params->rest_periods = (uint32_t)((rest_s + task->hold_ramp_s) / task->period_s + 0.5);
@@ -63,7 +70,8 @@ void standstill_pulses_design(struct standstill_pulses_params *params,
 
 static const struct phases nothing = {NUM(0.0), NUM(0.0)};
 
-void standstill_pulses_stop(struct standstill_pulses *pulses)
+/* For the next sixteen. */
+static void rest(struct standstill_pulses *pulses)
 {
     pulses->at_rest = true;
     pulses->period = 0;
@@ -72,6 +80,13 @@ void standstill_pulses_stop(struct standstill_pulses *pulses)
     pulses->current = nothing;
     pulses->mean = nothing;
     pulses->response = NUM(0.0);
+    pulses->largest = NUM(0.0);
+}
+
+void standstill_pulses_stop(struct standstill_pulses *pulses)
+{
+    pulses->strength = FIRST_STRENGTH; /* what the iron does depends on the angle */
+    rest(pulses);
 }
 
 void standstill_pulses_reset(struct standstill_pulses *pulses,
@@ -103,7 +118,9 @@ void standstill_pulses_sample(struct standstill_pulses *pulses,
         pulses->sum.a += current.a - expected.a;
         change = current.a - pulses->start.a;
     }
-    pulses->response += num_mul_unit(num_abs(change), UNIT(1.0 / IMPULSES));
+    change = num_abs(change);
+    pulses->response += num_mul_unit(change, UNIT(1.0 / IMPULSES));
+    pulses->largest = change > pulses->largest ? change : pulses->largest;
 }
 
 /*
@@ -123,6 +140,23 @@ static struct phases behind(struct impulse impulse, struct phases hold, struct p
     return hold;
 }
 
+/* By a tenth, until the largest change is within 15 % below the one that is wanted. */
+static void adapt(struct standstill_pulses *pulses, const struct standstill_pulses_params *params)
+{
+    const num_t tenth = num_mul_unit(pulses->strength, UNIT(0.1));
+
+    if (pulses->largest > params->largest_change) {
+        pulses->strength -= tenth;
+    } else if (pulses->largest < num_mul_unit(params->largest_change, UNIT(0.85))) {
+        pulses->strength = num_limit(pulses->strength + tenth, NUM(1.0));
+    }
+}
+
+static bool leave_room(const struct standstill_pulses_params *params, struct phases current)
+{
+    return num_abs(current.a) < params->current_max && num_abs(current.b) < params->current_max;
+}
+
 /* Apart: a law that holds without pulses keeps its registers. */
 __attribute__((noinline)) bool standstill_pulses_add(struct standstill_pulses *pulses,
                                                      const struct standstill_pulses_params *params,
@@ -130,16 +164,20 @@ __attribute__((noinline)) bool standstill_pulses_add(struct standstill_pulses *p
                                                      struct phases *voltage)
 {
     const struct impulse impulse = impulse_of(pulses->number);
-    const struct phases pulse = impulse_phases(impulse, params->voltage);
+    const struct phases pulse = impulse_phases(impulse, num_mul(params->voltage, pulses->strength));
     const uint32_t n = params->pulse_periods;
     const uint32_t period = pulses->period++;
 
     if (pulses->at_rest) {
-        if (period >= params->rest_periods && num_abs(current.a) < params->current_max &&
-            num_abs(current.b) < params->current_max) {
+        if (period >= params->rest_periods && leave_room(params, current)) {
             pulses->at_rest = false;
             pulses->period = 0;
         }
+        return false;
+    }
+    if (period == 0u && !leave_room(params, current)) { /* the load has grown meanwhile */
+        adapt(pulses, params);
+        rest(pulses);
         return false;
     }
     pulses->mean.a += num_mul_coef(current.a, params->per_period);
@@ -206,7 +244,8 @@ struct standstill_angle standstill_pulses_result(struct standstill_pulses *pulse
     result.found = num_abs(difference) < num_mul_unit(signal, UNIT(0.4));
     result.angle = angle_of_vector(magnet.a, magnet.b);
     result.current = pulses->mean;
-    standstill_pulses_stop(pulses);
+    adapt(pulses, params);
+    rest(pulses);
     pulses->period = params->rest_periods - params->pause_periods;
     return result;
 }

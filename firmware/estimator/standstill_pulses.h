@@ -13,6 +13,10 @@
  * the angle phi, and with it the torque of the mean current, which at rest is the load. Where the
  * hold current of a phase passes zero under the pulses, the bridge takes more of those of one sign,
  * and this mean is not the hold current.
+ *
+ * How far a pulse carries the current depends on the iron and on an inductance that may be another
+ * than the motor's file says. So the first sixteen are smaller, and those that follow grow or
+ * shrink until the largest change of the current is the one that is wanted.
  */
 #ifndef STEADYSTEP_STANDSTILL_PULSES_H
 #define STEADYSTEP_STANDSTILL_PULSES_H
@@ -21,7 +25,8 @@
 #include "firmware/motor/motor_model.h"
 
 struct standstill_pulses_params {
-    num_t voltage;          /* of a pulse */
+    num_t voltage;          /* of a pulse at full strength */
+    num_t largest_change;   /* of the current by a pulse, that is wanted */
     uint32_t pulse_periods; /* one or two */
     num_t current_max;      /* of a phase, for a pulse to have room below the trip */
     coef_t signal;          /* m, in sums of eight, per asymmetry of the impulses */
@@ -34,6 +39,8 @@ struct standstill_pulses_params {
 
 struct standstill_pulses {
     num_t signal;    /* m; 0: nothing is known of the iron, no pulses */
+    num_t strength;  /* of the pulses, up to 1 */
+    num_t largest;   /* change of the current since the first of sixteen */
     uint32_t period; /* of the present pulse, or of the rest before the first */
     uint32_t number;
     bool at_rest;

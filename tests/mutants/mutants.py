@@ -435,4 +435,13 @@ MUTANTS = [
     Mutant(ESTIMATOR + "standstill_pulses.c", "standstill_pulses",
            "the_hold_behind_a_pulse_has_the_loss_of_the_current_it_left",
            "*voltage = behind(impulse, pulses->command, loss);", "*voltage = pulses->command;"),
+    Mutant(ESTIMATOR + "standstill_pulses.c", "standstill_pulses",
+           "pulses_adapt_to_another_inductance",
+           "pulses->largest > params->largest_change", "false"),
+    Mutant(ESTIMATOR + "standstill_pulses.c", "standstill_pulses",
+           "every_hold_begins_with_small_pulses",
+           "    pulses->strength = FIRST_STRENGTH; /* what the iron does depends on the angle */\n", ""),
+    Mutant(ESTIMATOR + "standstill_pulses.c", "standstill_pulses",
+           "a_load_that_grows_ends_the_pulses_before_the_next",
+           "period == 0u && !leave_room(params, current)", "false"),
 ]

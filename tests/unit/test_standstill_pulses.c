@@ -17,6 +17,8 @@ static struct motor_model_params model;
 static struct standstill_pulses_params params;
 static struct standstill_pulses pulses;
 static const struct phases no_loss = {NUM(0.0), NUM(0.0)};
+static double inductance_scale; /* of the winding, not of what the drive knows */
+static double peak_A;           /* of phase a, in the last look */
 
 /* Of one phase: flux linkage over L, A; the rotor stands. */
 struct winding_bench {
@@ -41,7 +43,7 @@ static void settle(struct winding_bench *w, double magnet_A, double current_A)
 static void drive(struct winding_bench *w, double voltage_V)
 {
     for (int step = 0; step < 100; step++) {
-        w->x += PERIOD_S / 100.0 / bench_params.inductance_H *
+        w->x += PERIOD_S / 100.0 / (inductance_scale * bench_params.inductance_H) *
                 (voltage_V - bench_params.resistance_ohm * current_of(w));
     }
 }
@@ -51,7 +53,7 @@ void setUp(void)
     const struct standstill_pulses_task task = {
         .period_s = PERIOD_S,
         .peak_A = 4.3,
-        .current_max_A = 4.75,
+        .current_max_A = 5.07,
         .hold_current_A = HOLD_A,
         .hold_ramp_s = 0.01,
         .impulse_peak_A = IMPULSE_A,
@@ -59,6 +61,7 @@ void setUp(void)
     /* What impulses of 3.78 A show of this motor: 3 b I_f i^2, eight times. */
     const double asymmetry_A = 8.0 * 3.0 * SATURATION * 3.45 * IMPULSE_A * IMPULSE_A;
 
+    inductance_scale = 1.0;
     base = per_unit_base(&bench_params, PERIOD_S);
     model = motor_model_design(&bench_params, &base, PERIOD_S, 0.0);
     standstill_pulses_design(&params, &model, &bench_params, &base, &task);
@@ -80,6 +83,7 @@ static struct standstill_angle look(double rotor_rad, uint32_t *periods)
     struct phases command = {num_from_double(hold_V / base.voltage_V), NUM(0.0)};
     struct phases in_force = command;
 
+    peak_A = 0.0;
     winding_set_resistance(&winding, &model, model.nominal_resistance);
     settle(&a, MAGNET_A * cos(rotor_rad), HOLD_A);
     settle(&b, MAGNET_A * sin(rotor_rad), 0.0);
@@ -103,6 +107,7 @@ static struct standstill_angle look(double rotor_rad, uint32_t *periods)
             return found;
         }
         in_force = command;
+        peak_A = fmax(peak_A, current_of(&a));
         drive(&a, num_to_double(command.a) * base.voltage_V);
         drive(&b, num_to_double(command.b) * base.voltage_V);
         command = wanted;
@@ -166,6 +171,48 @@ static void test_a_disturbance_of_another_size_shows_no_angle(void)
     TEST_ASSERT_FALSE(look(0.3, &periods).found);
 }
 
+static void test_pulses_adapt_to_another_inductance(void)
+{
+    static const double scales[] = {0.85, 1.0, 1.15};
+    const double wanted_A = num_to_double(params.largest_change) * base.current_A;
+
+    for (size_t i = 0; i < sizeof scales / sizeof scales[0]; i++) {
+        uint32_t periods;
+
+        setUp();
+        inductance_scale = scales[i];
+        (void)look(0.3, &periods);
+        TEST_ASSERT_TRUE(peak_A < HOLD_A + 0.97 * wanted_A);
+        for (int again = 0; again < 8; again++) {
+            (void)look(0.3, &periods);
+            TEST_ASSERT_TRUE(peak_A < HOLD_A + 1.07 * wanted_A);
+        }
+        /* the change is sampled a period later */
+        TEST_ASSERT_DOUBLE_WITHIN(0.1 * wanted_A, HOLD_A + 0.95 * wanted_A, peak_A);
+        inductance_scale = 0.8 * scales[i]; /* the iron answers otherwise than it did */
+        for (int again = 0; again < 8; again++) {
+            (void)look(0.3, &periods);
+        }
+        TEST_ASSERT_TRUE(peak_A < HOLD_A + 1.07 * wanted_A);
+    }
+}
+
+static void test_every_hold_begins_with_small_pulses(void)
+{
+    uint32_t periods;
+    double first_A;
+
+    (void)look(0.0, &periods);
+    first_A = peak_A;
+    for (int again = 0; again < 8; again++) {
+        (void)look(0.0, &periods);
+    }
+    TEST_ASSERT_TRUE(peak_A > first_A + 0.3);
+    standstill_pulses_stop(&pulses);
+    (void)look(0.0, &periods);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, first_A, peak_A);
+}
+
 static void test_a_hold_that_ends_begins_anew(void)
 {
     struct phases voltage = {NUM(0.0), NUM(0.0)};
@@ -189,6 +236,20 @@ static struct phases go_on(uint32_t periods, struct phases current, struct phase
         (void)standstill_pulses_add(&pulses, &params, current, loss, &voltage);
     }
     return voltage;
+}
+
+static void test_a_load_that_grows_ends_the_pulses_before_the_next(void)
+{
+    const struct phases hold = {NUM(0.05), NUM(0.05)};
+    const struct phases loaded = {NUM(0.05), params.current_max};
+    const uint32_t length = 2u * params.pulse_periods + 9u;
+
+    (void)go_on(301u + 2u * length, hold, no_loss);
+    TEST_ASSERT_FALSE(pulses.at_rest);
+    TEST_ASSERT_EQUAL_UINT32(2u, pulses.number);
+    TEST_ASSERT_NUM_WITHIN(1e-6, 0.05, go_on(1u, loaded, no_loss).a);
+    TEST_ASSERT_TRUE(pulses.at_rest);
+    TEST_ASSERT_EQUAL_UINT32(0u, pulses.number);
 }
 
 static void test_the_load_is_the_torque_of_all_current_pulses_included(void)
@@ -232,6 +293,9 @@ int main(void)
     RUN_TEST(test_the_first_pulse_waits_for_the_hold_to_settle);
     RUN_TEST(test_only_a_pulse_hides_samples);
     RUN_TEST(test_a_disturbance_of_another_size_shows_no_angle);
+    RUN_TEST(test_pulses_adapt_to_another_inductance);
+    RUN_TEST(test_every_hold_begins_with_small_pulses);
+    RUN_TEST(test_a_load_that_grows_ends_the_pulses_before_the_next);
     RUN_TEST(test_a_hold_that_ends_begins_anew);
     RUN_TEST(test_the_load_is_the_torque_of_all_current_pulses_included);
     RUN_TEST(test_the_hold_behind_a_pulse_has_the_loss_of_the_current_it_left);
