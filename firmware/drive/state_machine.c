@@ -1,46 +1,12 @@
 #include "firmware/drive/state_machine.h"
 
+#include "firmware/drive/block_reset.h"
 #include "firmware/drive/synchronism.h"
 
 static void enter(struct drive *drive, enum drive_state state)
 {
     drive->state = state;
     drive->state_since = drive->period;
-}
-
-/* The position the drive is told, has found, or its encoder shows. */
-static struct position initial_position(const struct drive *drive, struct position encoder_zero)
-{
-    const struct drive_params *params = &drive->params;
-
-    return params->encoder_zero_known ? encoder_position(&params->estimator.encoder.encoder,
-                                                         encoder_zero, drive->encoder_count)
-                                      : drive->start;
-}
-
-/* All blocks at rest at the initial position; a calibrated resistance is kept. */
-static void reset_blocks(struct drive *drive)
-{
-    const struct drive_params *params = &drive->params;
-    const struct estimator_start start = {
-        .position = initial_position(drive, params->encoder_zero_told),
-        .encoder_position = initial_position(drive, params->encoder_zero),
-        .load_torque = params->initial_load_torque,
-        .resistance = drive->estimator.estimate.winding.resistance,
-        .unloaded_periods = params->hold_on_enable_periods,
-        .encoder_count = drive->encoder_count,
-    };
-
-    estimator_reset(&drive->estimator, &params->estimator, &start);
-    reference_reset(&drive->reference, start.position);
-    standstill_hold_reset(&drive->hold);
-    position_law_reset(&drive->law);
-    detent_compensation_reset(&drive->detent);
-    current_control_reset(&drive->current_control);
-    synchronism_reset(drive);
-    drive->predicted_current = (struct phases){NUM(0.0), NUM(0.0)};
-    drive->demanded_voltage = drive->predicted_current;
-    drive->predicted_frame = (struct sincos){UNIT(1.0), UNIT(0.0)};
 }
 
 /* The rotor has been drawn into the d axis: where it is now is where it was told to be. */
@@ -76,7 +42,7 @@ static void align(struct drive *drive)
 
 static void power_up(struct drive *drive)
 {
-    reset_blocks(drive);
+    drive_reset_blocks(drive);
     if (drive->params.hold_on_enable_periods > 0u) {
         drive->aligns =
             estimator_has_encoder(&drive->params.estimator) && !drive->params.encoder_zero_known;
@@ -105,7 +71,7 @@ static void find_position_or_power_up(struct drive *drive)
     actuation_reset(&drive->actuation);
     drive->past_current = (struct phases){NUM(0.0), NUM(0.0)};
     if (drive->params.finds_position) {
-        reset_blocks(drive);
+        drive_reset_blocks(drive);
         initial_position_start(&drive->finding, &drive->finding_params, drive->start.fraction);
         enter(drive, DRIVE_FINDING_POSITION);
     } else {

@@ -71,7 +71,7 @@ void standstill_pulses_design(struct standstill_pulses_params *params,
 static const struct phases nothing = {NUM(0.0), NUM(0.0)};
 
 /* For the next sixteen. */
-static void rest(struct standstill_pulses *pulses)
+static void rest_from_pulses(struct standstill_pulses *pulses)
 {
     pulses->at_rest = true;
     pulses->period = 0;
@@ -86,7 +86,7 @@ static void rest(struct standstill_pulses *pulses)
 void standstill_pulses_stop(struct standstill_pulses *pulses)
 {
     pulses->strength = FIRST_STRENGTH; /* what the iron does depends on the angle */
-    rest(pulses);
+    rest_from_pulses(pulses);
 }
 
 void standstill_pulses_reset(struct standstill_pulses *pulses,
@@ -141,7 +141,8 @@ static struct phases behind(struct impulse impulse, struct phases hold, struct p
 }
 
 /* By a tenth, until the largest change is within 15 % below the one that is wanted. */
-static void adapt(struct standstill_pulses *pulses, const struct standstill_pulses_params *params)
+static void adapt_strength(struct standstill_pulses *pulses,
+                           const struct standstill_pulses_params *params)
 {
     const num_t tenth = num_mul_unit(pulses->strength, UNIT(0.1));
 
@@ -176,8 +177,8 @@ __attribute__((noinline)) bool standstill_pulses_add(struct standstill_pulses *p
         return false;
     }
     if (period == 0u && !leave_room(params, current)) { /* the load has grown meanwhile */
-        adapt(pulses, params);
-        rest(pulses);
+        adapt_strength(pulses, params);
+        rest_from_pulses(pulses);
         return false;
     }
     pulses->mean.a += num_mul_coef(current.a, params->per_period);
@@ -244,8 +245,8 @@ struct standstill_angle standstill_pulses_result(struct standstill_pulses *pulse
     result.found = num_abs(difference) < num_mul_unit(signal, UNIT(0.4));
     result.angle = angle_of_vector(magnet.a, magnet.b);
     result.current = pulses->mean;
-    adapt(pulses, params);
-    rest(pulses);
+    adapt_strength(pulses, params);
+    rest_from_pulses(pulses);
     pulses->period = params->rest_periods - params->pause_periods;
     return result;
 }

@@ -34,6 +34,7 @@ CLAIMED = {
 
 # File -> block.
 BLOCKS = [
+    ("firmware/drive/block_reset.*", "state machine"),
     ("firmware/drive/state_machine.*", "state machine"),
     ("firmware/drive/command_queue.*", "state machine"),
     ("firmware/estimator/*", "estimator"),

@@ -167,6 +167,9 @@ void AdvancedTimer::break_and_dead_time(std::uint32_t value)
 void AdvancedTimer::comparator(unsigned index, bool level)
 {
     const unsigned mask = 1u << index;
+    if (!level && (comparators_ & mask) == 0) {
+        return; /* stays low, as a rule */
+    }
     comparators_ = level ? comparators_ | mask : comparators_ & ~mask;
     take_flags();
     check_break();

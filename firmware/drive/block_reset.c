@@ -1,0 +1,37 @@
+#include "firmware/drive/block_reset.h"
+
+#include "firmware/drive/synchronism.h"
+
+/* The position the drive is told, has found, or its encoder shows. */
+static struct position initial_position(const struct drive *drive, struct position encoder_zero)
+{
+    const struct drive_params *params = &drive->params;
+
+    return params->encoder_zero_known ? encoder_position(&params->estimator.encoder.encoder,
+                                                         encoder_zero, drive->encoder_count)
+                                      : drive->start;
+}
+
+void drive_reset_blocks(struct drive *drive)
+{
+    const struct drive_params *params = &drive->params;
+    const struct estimator_start start = {
+        .position = initial_position(drive, params->encoder_zero_told),
+        .encoder_position = initial_position(drive, params->encoder_zero),
+        .load_torque = params->initial_load_torque,
+        .resistance = drive->estimator.estimate.winding.resistance,
+        .unloaded_periods = params->hold_on_enable_periods,
+        .encoder_count = drive->encoder_count,
+    };
+
+    estimator_reset(&drive->estimator, &params->estimator, &start);
+    reference_reset(&drive->reference, start.position);
+    standstill_hold_reset(&drive->hold);
+    position_law_reset(&drive->law);
+    detent_compensation_reset(&drive->detent);
+    current_control_reset(&drive->current_control);
+    synchronism_reset(drive);
+    drive->predicted_current = (struct phases){NUM(0.0), NUM(0.0)};
+    drive->demanded_voltage = drive->predicted_current;
+    drive->predicted_frame = (struct sincos){UNIT(1.0), UNIT(0.0)};
+}
