@@ -94,8 +94,11 @@ void read_run(const Json &run, const std::vector<InstructionCost> &kinds, ImageM
     std::size_t at = 0;
     for (const Json &stage : run.at("stages")) {
         const std::size_t named = stage.at(0), instructions = stage.at(1);
+        if (instructions > (costs.size() - at) / 2) {
+            throw std::invalid_argument("names stages of instructions that it does not describe");
+        }
         for (const std::size_t end = at + 2 * instructions; at < end; at += 2) {
-            const std::size_t kind = 16 * digit(costs.at(at)) + digit(costs.at(at + 1));
+            const std::size_t kind = 16 * digit(costs[at]) + digit(costs[at + 1]);
             if (kind >= kinds.size()) {
                 throw std::invalid_argument(
                     "names a kind of instruction that it does not describe");
@@ -157,7 +160,7 @@ ImageMap ImageMap::read(const std::string &file, const ElfImage &image)
         return map;
     } catch (const Json::exception &error) {
         throw std::invalid_argument(file + ": " + error.what());
-    } catch (const std::logic_error &error) { /* of parse, or a run that ends early */
+    } catch (const std::invalid_argument &error) {
         throw std::invalid_argument(file + ": " + error.what());
     }
 }

@@ -336,7 +336,12 @@ BoardReport VirtualBoard::report() const
 
 std::string VirtualBoard::numeric_of(const std::string &image_file)
 {
-    return read_image(image_file)->map.numeric;
+    const ImageMap &map = read_image(image_file)->map;
+    if (map.core != "m4f") {
+        throw std::invalid_argument(image_file + ": is for a core " + map.core +
+                                    "; the virtual board of scenarios is the STM32G474, m4f");
+    }
+    return map.numeric;
 }
 
 Machine &VirtualBoard::machine()
