@@ -58,8 +58,8 @@ class VirtualBoard : public sil::DriveBoard
     std::string take_output() override;
 
     BoardReport report() const;
-    /* Number format that an image was built for. Throws std::invalid_argument: it cannot be read, or
-       is for another core than this board's. */
+    /* Number format that an image was built for. Throws std::invalid_argument: it cannot be read,
+       or is for another core than this board's. */
     static std::string numeric_of(const std::string &image_file);
 
     /* For tests. */
