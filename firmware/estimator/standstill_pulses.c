@@ -140,16 +140,20 @@ static struct phases behind(struct impulse impulse, struct phases hold, struct p
     return hold;
 }
 
-/* By a tenth, until the largest change is within 15 % below the one that is wanted. */
-static void adapt_strength(struct standstill_pulses *pulses,
-                           const struct standstill_pulses_params *params)
+/* By a tenth, until the largest change is at most the one that is allowed, and not much below. */
+static void shrink(struct standstill_pulses *pulses, const struct standstill_pulses_params *params)
 {
-    const num_t tenth = num_mul_unit(pulses->strength, UNIT(0.1));
-
     if (pulses->largest > params->largest_change) {
-        pulses->strength -= tenth;
-    } else if (pulses->largest < num_mul_unit(params->largest_change, UNIT(0.85))) {
-        pulses->strength = num_limit(pulses->strength + tenth, NUM(1.0));
+        pulses->strength -= num_mul_unit(pulses->strength, UNIT(0.1));
+    }
+}
+
+/* Sixteen pulses in both phases have shown that there is room. */
+static void grow(struct standstill_pulses *pulses, const struct standstill_pulses_params *params)
+{
+    if (pulses->largest < num_mul_unit(params->largest_change, UNIT(0.85))) {
+        pulses->strength =
+            num_limit(pulses->strength + num_mul_unit(pulses->strength, UNIT(0.1)), NUM(1.0));
     }
 }
 
@@ -177,7 +181,7 @@ __attribute__((noinline)) bool standstill_pulses_add(struct standstill_pulses *p
         return false;
     }
     if (period == 0u && !leave_room(params, current)) { /* the load has grown meanwhile */
-        adapt_strength(pulses, params);
+        shrink(pulses, params);
         rest_from_pulses(pulses);
         return false;
     }
@@ -233,7 +237,7 @@ struct standstill_angle standstill_pulses_result(struct standstill_pulses *pulse
     const struct phases held = {num_mul_unit(pulses->current.a, UNIT(1.0 / IMPULSES)),
                                 num_mul_unit(pulses->current.b, UNIT(1.0 / IMPULSES))};
     /* A smaller pulse shows less, with its square. */
-    const num_t size = num_limit(num_mul_coef(pulses->response, params->per_response), NUM(1.5));
+    const num_t size = num_limit(num_mul_coef(pulses->response, params->per_response), NUM(1.4));
     const num_t signal = num_mul(pulses->signal, num_mul(size, size));
     const struct phases first = of_magnet(pulses, params, held, signal);
     const num_t difference = length_of(first) - signal;
@@ -245,7 +249,8 @@ struct standstill_angle standstill_pulses_result(struct standstill_pulses *pulse
     result.found = num_abs(difference) < num_mul_unit(signal, UNIT(0.4));
     result.angle = angle_of_vector(magnet.a, magnet.b);
     result.current = pulses->mean;
-    adapt_strength(pulses, params);
+    shrink(pulses, params);
+    grow(pulses, params);
     rest_from_pulses(pulses);
     pulses->period = params->rest_periods - params->pause_periods;
     return result;

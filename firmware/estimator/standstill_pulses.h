@@ -16,7 +16,7 @@
  *
  * How far a pulse carries the current depends on the iron and on an inductance that may be another
  * than the motor's file says. So the first sixteen are smaller, and those that follow grow or
- * shrink until the largest change of the current is the one that is wanted.
+ * shrink until the largest change of the current is 0.85 to 1 of what is allowed.
  */
 #ifndef STEADYSTEP_STANDSTILL_PULSES_H
 #define STEADYSTEP_STANDSTILL_PULSES_H
@@ -26,7 +26,7 @@
 
 struct standstill_pulses_params {
     num_t voltage;          /* of a pulse at full strength */
-    num_t largest_change;   /* of the current by a pulse, that is wanted */
+    num_t largest_change;   /* of the current by a pulse, that is allowed */
     uint32_t pulse_periods; /* one or two */
     num_t current_max;      /* of a phase, for a pulse to have room below the trip */
     coef_t signal;          /* m, in sums of eight, per asymmetry of the impulses */
@@ -70,7 +70,7 @@ void standstill_pulses_design(struct standstill_pulses_params *params,
 void standstill_pulses_reset(struct standstill_pulses *pulses,
                              const struct standstill_pulses_params *params, num_t asymmetry);
 
-/* No hold: the next one begins with its rest. */
+/* No hold: the next one begins with its rest, and with small pulses. */
 void standstill_pulses_stop(struct standstill_pulses *pulses);
 
 /*
@@ -86,10 +86,11 @@ void standstill_pulses_sample(struct standstill_pulses *pulses,
                               struct phases expected);
 
 /*
- * At S(k), after the control: adds to the voltage it wants, or takes the place of it. `current`: as
- * estimated at S(k). `loss`: what the bridge adds to a voltage in the hold (actuation.h), for which
- * what this returns is still compensated. true: the current in force is the pulse's, the control
- * must forget what it has made of it.
+ * At S(k), after the control: adds to the voltage it wants, or takes the place of it. Where the
+ * hold leaves no room before a pulse, the sixteen are given up and the rest begins anew. `current`:
+ * as estimated at S(k). `loss`: what the bridge adds to a voltage in the hold (actuation.h), for
+ * which what this returns is still compensated. true: the current in force is the pulse's, the
+ * control must forget what it has made of it.
  */
 bool standstill_pulses_add(struct standstill_pulses *pulses,
                            const struct standstill_pulses_params *params, struct phases current,

@@ -23,6 +23,8 @@ struct phase {
     uint32_t groups[2 * LEG_GROUPS]; /* leg + in the lower half word, - in the upper */
 };
 
+_Static_assert(LEG_OVERSAMPLING * 4095 <= INT16_MAX, "sums are added up as signed half words");
+
 #define ADC_A PERIPHERAL(ADC, LEGS_A_CONVERTER)
 #define ADC_B PERIPHERAL(ADC, LEGS_B_CONVERTER)
 

@@ -55,6 +55,9 @@ CostRules rules_of(const Json &json)
     rules.floating_point_frame = columns(json.at("exception").at("fpu"));
     rules.flash_wait = json.at("flash").at("wait");
     const unsigned line = json.at("flash").at("line_bytes");
+    if (line == 0 || line > 4096) {
+        throw std::invalid_argument("flash: line_bytes: expected 1...4096");
+    }
     rules.flash_line_shift = 0;
     while (1u << rules.flash_line_shift < line) {
         ++rules.flash_line_shift;

@@ -36,6 +36,7 @@ MAPS = [
     (lambda content: stages_of_first_run(content, 10**18), "that it does not describe"),
     (lambda content: stages_of_first_run(content, -1), "that it does not describe"),
     (lambda content: content.pop("costs"), "key 'costs' not found"),
+    (lambda content: content["flash"].update(line_bytes=-1), "expected 1...4096"),
 ]
 
 

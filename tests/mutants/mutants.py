@@ -444,4 +444,7 @@ MUTANTS = [
     Mutant(ESTIMATOR + "standstill_pulses.c", "standstill_pulses",
            "a_load_that_grows_ends_the_pulses_before_the_next",
            "period == 0u && !leave_room(params, current)", "false"),
+    Mutant(ESTIMATOR + "standstill_pulses.c", "standstill_pulses",
+           "a_load_that_grows_ends_the_pulses_before_the_next",
+           "        shrink(pulses, params);\n", "        grow(pulses, params);\n"),
 ]

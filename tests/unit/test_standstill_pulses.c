@@ -250,6 +250,7 @@ static void test_a_load_that_grows_ends_the_pulses_before_the_next(void)
     TEST_ASSERT_NUM_WITHIN(1e-6, 0.05, go_on(1u, loaded, no_loss).a);
     TEST_ASSERT_TRUE(pulses.at_rest);
     TEST_ASSERT_EQUAL_UINT32(0u, pulses.number);
+    TEST_ASSERT_NUM_WITHIN(1e-6, 0.7, pulses.strength); /* too few have been seen to grow */
 }
 
 static void test_the_load_is_the_torque_of_all_current_pulses_included(void)

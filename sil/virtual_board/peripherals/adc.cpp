@@ -199,12 +199,12 @@ void Adc::control(std::uint32_t value)
             start_injected();
         }
     }
+    if ((set & ADSTART) != 0 && deferred_.empty()) {
+        plan_.clear();
+    }
     if ((set & ADSTART) != 0 && field(at(CFGR), 10, 2) == 0) {
         start_regular();
         at(CR) &= ~ADSTART;
-    }
-    if ((set & ADSTART) != 0) {
-        plan_.clear();
     }
     choose_triggers();
 }

@@ -81,8 +81,8 @@ void Adc::put_off(Ticks trigger)
     deferred_until_ = trigger + plan_.back().end;
 }
 
-/* Whether each of such triggers would be put off. What changes that is a write that calls `look`.
- */
+/* Whether each of such triggers would be put off. What changes that is a write of the core, which
+   calls `look`; one by DMA would not. */
 bool Adc::patient(Ticks period)
 {
     if (!clocked() || !silent() || regular_.running || (at(CR) & JADSTART) != 0) {

@@ -88,6 +88,7 @@ void PowerStage::peak()
     if (!bridge_on()) {
         shorted_leg_ = -1;
     }
+    rewrite(); /* what the core has looked at, before what is younger */
     settling_ = true;
     for (Adc *const adc : converters_) {
         adc->settle(before);
@@ -96,7 +97,6 @@ void PowerStage::peak()
     last_peak_ = chip_.now();
     counters.groups = groups_;
     groups_ = 0;
-    rewrite();
     compare();
     if (on_sample) {
         on_sample(period());

@@ -82,7 +82,7 @@ void Timer::reset()
     reload_ = at(ARR);
     frozen_ = 0;
     updates_ = 0;
-    late_period_ = 0;
+    late_period_ = 0; /* those that are late are lost with what they would have started */
     triggers_.end_late(kind_.output);
     held_since_ = Event::never;
     compare_.fill(0);
@@ -257,7 +257,7 @@ void Timer::stop()
 namespace
 {
 
-constexpr unsigned most_late = 32; /* overflows; twice those of a PWM period */
+constexpr unsigned most_late = 32; /* overflows; nearly twice those of a PWM period */
 
 } // namespace
 

@@ -44,8 +44,8 @@ class Triggers
     struct Listener {
         std::function<void(Trigger, TriggerEdge)> act;
         unsigned sources = every_trigger; /* a bit each; it is called for these only; see choose */
-        /* Whether pulses with this period may come late; empty: never. If that ends, the listener
-           calls come_promptly before. */
+        /* Whether pulses with this period may come late; empty: never. If that ends, by a write of
+           the core, the listener calls come_promptly before. */
         std::function<bool(Ticks period)> patient = nullptr;
         std::function<void(Ticks first, Ticks period, unsigned count)> act_late = nullptr;
     };
