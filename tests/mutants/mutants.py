@@ -341,7 +341,7 @@ MUTANTS = [
            "modulator_track_bus(&drive->modulator, now->bus);", ""),
     Mutant(DRIVE + "control_cycle.c", "drive", "the_drive_knows_what_the_bridge_takes_away",
            "actuation_observe(&drive->actuation, winding.voltage);", ""),
-    Mutant(DRIVE + "state_machine.c", "state_machine",
+    Mutant(DRIVE + "block_reset.c", "state_machine",
            "enabling_begins_with_all_blocks_at_rest", "standstill_hold_reset(&drive->hold);", ""),
     Mutant(DRIVE + "state_machine.c", "state_machine", "a_fault_is_cleared_by_disabling_only",
            "drive->state == DRIVE_SWITCH_ON_DISABLED && command->kind", "command->kind"),
