@@ -336,7 +336,8 @@ BoardReport VirtualBoard::report() const
 
 std::string VirtualBoard::numeric_of(const std::string &image_file)
 {
-    const ImageMap &map = read_image(image_file)->map;
+    const std::shared_ptr<const ImageFiles> files = read_image(image_file);
+    const ImageMap &map = files->map;
     if (map.core != "m4f") {
         throw std::invalid_argument(image_file + ": is for a core " + map.core +
                                     "; the virtual board of scenarios is the STM32G474, m4f");

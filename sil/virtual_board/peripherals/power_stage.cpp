@@ -120,8 +120,9 @@ void PowerStage::injected_result_taken(unsigned adc)
 void PowerStage::rewrite()
 {
     const std::uint32_t codes[legs] = {leg_code(0), leg_code(1), leg_code(2), leg_code(3)};
-    for (const Group &group : open_) {
-        chip_.store(group.address, 2, scaled(codes[group.leg], group.factor, group.shift));
+    for (const StoredResult &result : open_) {
+        const std::uint32_t code = codes[leg_of(result.adc, result.channel)];
+        chip_.store(result.address, 2, scaled(code, result.factor, result.shift));
     }
     open_.clear();
 }
@@ -232,13 +233,12 @@ std::uint32_t PowerStage::code(const Conversion &conversion)
 
 void PowerStage::stored(const StoredResult &result)
 {
-    const int leg = leg_of(result.adc, result.channel);
-    if (leg < 0) {
+    if (leg_of(result.adc, result.channel) < 0) {
         return;
     }
     if (result.trigger >= last_peak_) {
         if (!settling_) {
-            open_.push_back({result.address, leg, result.factor, result.shift});
+            open_.push_back(result);
         }
         groups_++;
     } else {

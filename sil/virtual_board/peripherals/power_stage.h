@@ -87,12 +87,6 @@ class PowerStage : public AnalogInputs
     std::uint32_t leg_code(int leg) const;
     void require_analog(Pin pin) const;
 
-    struct Group {
-        std::uint32_t address;
-        int leg;
-        unsigned factor, shift;
-    };
-
     Chip &chip_;
     PowerStageConfig config_;
     plant::Plant plant_;
@@ -104,7 +98,7 @@ class PowerStage : public AnalogInputs
     std::int64_t period_ = 0;
     Ticks last_peak_ = 0;
     unsigned groups_ = 0;
-    std::vector<Group> open_; /* results of the present period, to be rewritten */
+    std::vector<StoredResult> open_; /* results of the present period, to be rewritten */
     std::vector<Adc *> converters_;
     bool settling_ = false; /* what is stored has the period's value */
     unsigned outputs_ = 0;  /* comparator outputs on their way */

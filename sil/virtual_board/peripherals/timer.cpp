@@ -56,6 +56,8 @@ std::vector<Register> registers(const TimerKind &kind)
 constexpr Trigger internal_triggers[4] = {Trigger::tim1, Trigger::tim2, Trigger::tim3,
                                           Trigger::tim4};
 
+constexpr unsigned most_late = 32; /* overflows; nearly twice those of a PWM period */
+
 } // namespace
 
 Timer::Timer(Chip &chip, const TimerKind &kind, Triggers &triggers, std::function<Ticks()> clock)
@@ -253,13 +255,6 @@ void Timer::stop()
         triggers_.edge(kind_.output, TriggerEdge::falling);
     }
 }
-
-namespace
-{
-
-constexpr unsigned most_late = 32; /* overflows; nearly twice those of a PWM period */
-
-} // namespace
 
 /* Whether nobody can tell when an overflow comes, but those that let it come late. */
 bool Timer::may_be_late(Ticks period) const
