@@ -10,5 +10,6 @@ extern uint32_t stack_bottom, stack_top;
 extern uint32_t interrupt_code_load, interrupt_code_start, interrupt_code_end;
 extern uint32_t data_load, data_start, data_end;
 extern uint32_t bss_start, bss_end;
+extern uint32_t dma_buffers_start, dma_buffers_end; /* of the STM32G474 */
 
 #endif

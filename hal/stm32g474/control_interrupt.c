@@ -40,12 +40,12 @@ void control_forbid_bridge(void)
     pwm_clear_break();
 }
 
-static inline void sample(struct hal_samples *samples)
+static inline void sample(struct hal_samples *samples, uint32_t since_peak)
 {
     if (!current_sampling_read(samples)) {
         board_fault(BOARD_FAULT_CURRENT_SAMPLES);
     }
-    if (!phase_voltage_sampling_read(samples)) {
+    if (!phase_voltage_sampling_read(samples, since_peak)) {
         board_fault(BOARD_FAULT_LEG_SAMPLES);
     }
     samples->encoder_count = encoder_count();
@@ -90,7 +90,7 @@ void control_interrupt(void)
     struct control_cycles_of_period cycles;
 
     period++;
-    sample(&samples);
+    sample(&samples, latency);
 
     const uint32_t sampled = cycle_counter_read();
     const struct hal_outputs outputs = application_control_interrupt(application, &samples);

@@ -8,6 +8,9 @@
 /* Channels counted from 0, as their multiplexer counts; the manual's channel 1 is 0. */
 enum { DMA_LEGS_A, DMA_LEGS_B, DMA_LINE_RECEIVE, DMA_LINE_TRANSMIT };
 
+/* Of what a channel reads or writes: a bank of memory by itself (memory.ld), zero at the start. */
+#define DMA_BUFFER __attribute__((section(".bss.dma_buffer")))
+
 /* Connects a channel with a request and enables it. `control` without the enable bit. */
 static inline void dma_start(uint32_t channel, uint32_t request,
                              const volatile uint32_t *peripheral, const volatile void *memory,

@@ -4,7 +4,6 @@
 #include "hal/stm32g474/board.h"
 #include "hal/stm32g474/deadline_guard.h"
 #include "hal/stm32g474/dma.h"
-#include "hal/stm32g474/pwm.h"
 
 enum {
     LEGS_OF_PHASE = 2,
@@ -28,7 +27,7 @@ _Static_assert(LEG_OVERSAMPLING * 4095 <= INT16_MAX, "sums are added up as signe
 #define ADC_A PERIPHERAL(ADC, LEGS_A_CONVERTER)
 #define ADC_B PERIPHERAL(ADC, LEGS_B_CONVERTER)
 
-static struct phase phase_a, phase_b;
+DMA_BUFFER static struct phase phase_a, phase_b;
 static uint32_t last_done = UINT32_MAX; /* half of the period before; none at first */
 
 static void start_converter(struct adc_registers *adc, uint32_t plus, uint32_t minus)
@@ -76,8 +75,7 @@ void phase_voltage_sampling_configure(void)
 }
 
 /* To the nearest code, ties upwards. A sum has 15 bits. */
-IN_CCM(mean)
-static int16_t mean(const uint32_t *groups)
+static inline int16_t mean(const uint32_t *groups)
 {
     const uint32_t once_each = 0x00010001;
     uint32_t difference = DIVISOR * OFFSET_CODES + DIVISOR / 2;
@@ -102,13 +100,12 @@ static inline bool in_step(uint32_t stored, uint32_t done, uint32_t since_peak)
 }
 
 IN_CCM(phase_voltage_sampling_read)
-bool phase_voltage_sampling_read(struct hal_samples *samples)
+bool phase_voltage_sampling_read(struct hal_samples *samples, uint32_t since_peak)
 {
     const uint32_t stored_a = 2 * HALF - dma_remaining(DMA_LEGS_A);
     const uint32_t stored_b = 2 * HALF - dma_remaining(DMA_LEGS_B);
     /* The half that is being filled, and with it the other, holds until the next peak. */
     const uint32_t done = stored_a < HALF ? HALF : 0;
-    const uint32_t since_peak = pwm_cycles_since_peak();
     /* A period without a control interrupt is told as a missed deadline. */
     const bool other_half = done != last_done || deadline_guard_has_missed();
 

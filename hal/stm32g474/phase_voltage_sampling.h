@@ -14,7 +14,8 @@
 /* All but the timer's start, which the first peak of the PWM timer brings. */
 void phase_voltage_sampling_configure(void);
 
-/* Of the period that ended at the last peak; false: conversions are out of step or lost. */
-bool phase_voltage_sampling_read(struct hal_samples *samples);
+/* Of the period that ended at the last peak, which was this many core cycles ago; false:
+   conversions are out of step or lost. */
+bool phase_voltage_sampling_read(struct hal_samples *samples, uint32_t since_peak);
 
 #endif

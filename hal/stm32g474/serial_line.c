@@ -27,7 +27,7 @@ struct line_end {
  * Positions count bytes since start-up; a buffer holds them modulo its size. The interrupt writes
  * what is stored and ended, the background what it has read: neither waits for the other.
  */
-static struct {
+DMA_BUFFER static struct {
     uint8_t bytes[RECEIVE_BYTES];
     struct line_end ends[LINES];
     volatile uint32_t stored; /* behind it no end of a line has been searched for */
@@ -40,7 +40,7 @@ static struct {
     unsigned telling; /* bytes that are left to tell of what was dropped: LOST, '\n' */
 } receive;
 
-static struct {
+DMA_BUFFER static struct {
     uint8_t bytes[TRANSMIT_BYTES];
     uint32_t written, sent, sending;
 } transmit;

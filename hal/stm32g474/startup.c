@@ -76,6 +76,7 @@ void reset_handler(void)
     copy(&interrupt_code_start, &interrupt_code_end, &interrupt_code_load);
     copy(&data_start, &data_end, &data_load);
     fill(&bss_start, &bss_end, 0);
+    fill(&dma_buffers_start, &dma_buffers_end, 0);
 
     SCB->VTOR = (uint32_t)&vectors;
     SCB->SHCSR |= SCB_SHCSR_MEMFAULTENA_Msk | SCB_SHCSR_BUSFAULTENA_Msk | SCB_SHCSR_USGFAULTENA_Msk;

@@ -300,7 +300,8 @@ def check_clocks(root, facts):
 
 def check_memory(root, facts):
     script = without_comments((root / PORT / "memory.ld").read_text(encoding="utf-8"))
-    for name, memory in (("FLASH", "BANK_1"), ("CCM", "CCMRAM_ICODE"), ("RAM", "SRAM1")):
+    places = {"FLASH": "BANK_1", "CCM": "CCMRAM_ICODE", "RAM": "SRAM1", "SRAM2": "SRAM2"}
+    for name, memory in places.items():
         pattern = rf"{name}\s+\(\w+\)\s*: ORIGIN = (0x\w+), LENGTH = (\d+)K"
         origin, length = re.search(pattern, script).groups()
         start, size = facts.memories[memory]

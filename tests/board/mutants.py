@@ -32,7 +32,7 @@ SAVE = ["board-busy-line"]
 PLANNED = [
     "reference-sine",
     "--set",
-    "event=[{time_s=0.0,command='sine',amplitude_rad=0.3,frequency_Hz=14.0,cycles=10,ramp_s=0.2}]",
+    "event=[{time_s=0.0,command='sine',amplitude_rad=0.2,frequency_Hz=17.0,cycles=40,ramp_s=0.2}]",
 ]
 
 

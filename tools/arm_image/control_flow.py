@@ -100,11 +100,17 @@ class Function:
         inside = [t for t in targets if self.start <= t < self.start + max(self.size, 2)]
         # A BL into the middle of its own function is a jump: no other reaches as far on ARMv6-M.
         if instruction.is_call and inside in ([], [self.start]):
-            returns = instruction.next in self._index  # behind a call without return is no code
-            return past + ([(instruction.next, True)] if returns else []), targets, False
+            returns = [(instruction.next, True)] if self._is_code(instruction.next) else []
+            return past + returns, targets, False
         if inside:
             return past + [(t, True) for t in inside], set(), False
         return past, targets, True
+
+    def _is_code(self, address):
+        """Behind a call without return stands none, or only what aligns the data behind it."""
+        while address in self._index and self.body[self._index[address]].base == "nop":
+            address = self.body[self._index[address]].next
+        return address in self._index
 
     def _table(self, instruction):
         """Targets of a jump by a table that stands behind the instruction."""

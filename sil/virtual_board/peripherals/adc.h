@@ -54,8 +54,10 @@ class AnalogInputs
   public:
     virtual ~AnalogInputs() = default;
     virtual std::uint32_t code(const Conversion &conversion) = 0;
-    /* The result of a regular conversion was stored by DMA. */
-    virtual void stored(const StoredResult &result) = 0;
+    /* Rises whenever regular conversions may give other codes than before. */
+    virtual unsigned changes() const = 0;
+    /* The results of regular conversions were stored by DMA. */
+    virtual void stored(const StoredResult *results, std::size_t count) = 0;
     /* The core has read JDR1 with the injected interrupt enabled. */
     virtual void injected_result_taken(unsigned adc) = 0;
 };
@@ -125,6 +127,8 @@ class Adc : public RegisterBlock
     void put_off(Ticks trigger);
     bool patient(Ticks period);
     void triggered_late(Ticks first, Ticks period, unsigned count);
+    std::uint32_t planned_result(std::size_t rank, Ticks trigger);
+    void forget_results();
     template <typename Take> void form(Ticks until, Ticks triggered_before, Take take);
     void deferred_due();
     std::uint32_t resolved(std::uint32_t code) const;
@@ -151,6 +155,12 @@ class Adc : public RegisterBlock
     Ticks due_ = Event::never, deferred_until_ = 0;
     std::vector<Rank> plan_;
     Ticks planned_half_clock_ = 0, planned_latency_ = 0;
+    /* what the ranks of the plan give while the inputs stand still, and those that are known */
+    std::array<std::uint32_t, 16> results_{};
+    std::uint32_t known_results_ = 0;
+    unsigned inputs_changes_ = 0;
+    int results_stuck_code_ = -1;
+    std::vector<StoredResult> stored_; /* of one settle */
     Dmamux::Route route_;
     unsigned route_changes_ = 0;
     bool moved_by_dma_ = false; /* the route is known to read DR */

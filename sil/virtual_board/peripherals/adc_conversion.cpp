@@ -276,8 +276,9 @@ void Adc::deliver(std::uint32_t data, const Conversion &conversion)
     const unsigned reads = read_by_dma_;
     moved_by_dma_ = dmamux_.request(dma_request(), &address) && read_by_dma_ != reads;
     if (moved_by_dma_ && stuck_code < 0) {
-        inputs_.stored({number_, conversion.channel, conversion.trigger, address, oversampling(),
-                        oversampling_shift()});
+        const StoredResult result = {number_, conversion.channel, conversion.trigger,
+                                     address, oversampling(),     oversampling_shift()};
+        inputs_.stored(&result, 1);
     }
 }
 

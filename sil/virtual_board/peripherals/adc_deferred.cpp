@@ -32,6 +32,7 @@ void Adc::plan()
     planned_half_clock_ = half_clock;
     planned_latency_ = latency;
     plan_.clear();
+    known_results_ = 0;
     Ticks start = latency;
     Sequence sequence;
     sequence.ranks = field(at(SQR1), 0, 4) + 1;
@@ -100,30 +101,46 @@ void Adc::triggered_late(Ticks first, Ticks period, unsigned count)
     }
 }
 
-/* Forms the results that settle is to form; `take` gets each with its channel and trigger. */
+/* Of a rank; the same for all sequences while the inputs stand still. */
+inline std::uint32_t Adc::planned_result(std::size_t rank, Ticks trigger)
+{
+    if ((known_results_ >> rank & 1) == 0) {
+        known_results_ |= 1u << rank;
+        const Rank &planned = plan_[rank];
+        results_[rank] =
+            regular_result({number_, planned.channel, false, trigger, trigger + planned.sampled});
+    }
+    return results_[rank];
+}
+
+void Adc::forget_results()
+{
+    known_results_ = 0;
+    inputs_changes_ = inputs_.changes();
+    results_stuck_code_ = stuck_code;
+}
+
+/* Forms the results that settle is to form; `take` gets each with its rank and trigger. */
 template <typename Take> void Adc::form(Ticks until, Ticks triggered_before, Take take)
 {
+    if (inputs_changes_ != inputs_.changes() || results_stuck_code_ != stuck_code) {
+        forget_results();
+    }
     const std::size_t ranks = plan_.size(), sequences = deferred_.size();
-    std::array<std::uint32_t, 16> results{}; /* between two peaks their inputs stand still */
-    std::size_t known = 0;                   /* of them */
     std::size_t done = 0, at_rank = deferred_rank_;
     unsigned formed = 0;
     while (done < sequences && deferred_[done] < triggered_before) {
         const Ticks trigger = deferred_[done];
         for (; at_rank < ranks && trigger + plan_[at_rank].end <= until; ++at_rank, ++formed) {
-            const Rank &rank = plan_[at_rank];
-            if ((known >> at_rank & 1) == 0) {
-                known |= std::size_t{1} << at_rank;
-                results[at_rank] =
-                    regular_result({number_, rank.channel, false, trigger, trigger + rank.sampled});
-            }
-            take(results[at_rank], rank, trigger);
+            take(planned_result(at_rank, trigger), plan_[at_rank], trigger);
         }
         if (at_rank < ranks) {
             break;
         }
         at_rank = 0;
         done++;
+    }
+    if (done > 0) {
         flag(EOS);
     }
     due_ = done < sequences ? deferred_[done] + plan_[at_rank].end : Event::never;
@@ -144,18 +161,20 @@ void Adc::settle(Ticks until, Ticks triggered_before)
         });
         return;
     }
-    StoredResult stored = {number_, 0, 0, 0, oversampling(), oversampling_shift()};
-    const bool wired = stuck_code < 0;
-    Dma::Ring ring(*route_.dma, route_.channel); /* which never ends: it stays silent */
-    form(until, triggered_before, [&](std::uint32_t data, const Rank &rank, Ticks trigger) {
-        at(DR) = data;
-        stored.channel = rank.channel;
-        stored.trigger = trigger;
-        stored.address = ring.put(data);
-        if (wired) {
-            inputs_.stored(stored);
-        }
-    });
+    const unsigned factor = oversampling(), shift = oversampling_shift();
+    stored_.clear();
+    {
+        Dma::Ring ring(*route_.dma, route_.channel); /* which never ends: it stays silent */
+        std::uint32_t last = at(DR);
+        form(until, triggered_before, [&](std::uint32_t data, const Rank &rank, Ticks trigger) {
+            last = data;
+            stored_.push_back({number_, rank.channel, trigger, ring.put(data), factor, shift});
+        });
+        at(DR) = last;
+    }
+    if (stuck_code < 0) {
+        inputs_.stored(stored_.data(), stored_.size());
+    }
 }
 
 /* Up to now; behind a write what is still to come does so by an event, since it may be told by more

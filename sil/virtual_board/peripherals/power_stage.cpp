@@ -85,6 +85,7 @@ void PowerStage::peak()
         plant_.step(duties);
         period_++;
     }
+    changes_++;
     if (!bridge_on()) {
         shorted_leg_ = -1;
     }
@@ -231,18 +232,20 @@ std::uint32_t PowerStage::code(const Conversion &conversion)
     return leg_code(leg);
 }
 
-void PowerStage::stored(const StoredResult &result)
+void PowerStage::stored(const StoredResult *results, std::size_t count)
 {
-    if (leg_of(result.adc, result.channel) < 0) {
-        return;
-    }
-    if (result.trigger >= last_peak_) {
-        if (!settling_) {
-            open_.push_back(result);
+    for (const StoredResult *result = results; result < results + count; ++result) {
+        if (leg_of(result->adc, result->channel) < 0) {
+            continue;
         }
-        groups_++;
-    } else {
-        counters.groups++; /* began before the peak */
+        if (result->trigger >= last_peak_) {
+            if (!settling_) {
+                open_.push_back(*result);
+            }
+            groups_++;
+        } else {
+            counters.groups++; /* began before the peak */
+        }
     }
 }
 

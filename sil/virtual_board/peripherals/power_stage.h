@@ -74,7 +74,11 @@ class PowerStage : public AnalogInputs
     Counters counters;
 
     std::uint32_t code(const Conversion &conversion) override;
-    void stored(const StoredResult &result) override;
+    unsigned changes() const override
+    {
+        return changes_;
+    }
+    void stored(const StoredResult *results, std::size_t count) override;
     void injected_result_taken(unsigned adc) override;
 
   private:
@@ -98,6 +102,7 @@ class PowerStage : public AnalogInputs
     std::int64_t period_ = 0;
     Ticks last_peak_ = 0;
     unsigned groups_ = 0;
+    unsigned changes_ = 0;           /* of what the converters see */
     std::vector<StoredResult> open_; /* results of the present period, to be rewritten */
     std::vector<Adc *> converters_;
     bool settling_ = false; /* what is stored has the period's value */

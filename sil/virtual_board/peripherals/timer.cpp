@@ -263,6 +263,14 @@ bool Timer::may_be_late(Ticks period) const
            field(at(SMCR), 0, 3) != 4 && triggers_.all_patient(kind_.output, period);
 }
 
+void Timer::overflow_late(Ticks time)
+{
+    take_flags(time);
+    origin_ = time;
+    flags_until_ = origin_ - 1; /* a compare of 0 matches now */
+    take_flags(time);
+}
+
 /* What as many overflows would have done one by one; UIF is set since the last that was an event.
  */
 void Timer::catch_up(Ticks until)
@@ -271,12 +279,12 @@ void Timer::catch_up(Ticks until)
     if (late_period_ == 0 || first > until) {
         return;
     }
-    unsigned count = 0;
-    for (Ticks time = first; time <= until; time += late_period_, ++count) {
-        take_flags(time);
-        origin_ = time;
-        flags_until_ = origin_ - 1;
-        take_flags(time);
+    const auto count = static_cast<unsigned>((until - first) / late_period_ + 1);
+    overflow_late(first);
+    if (count > 1) { /* a whole period: all that match have done so, and do so no more */
+        overflow_late(first + late_period_);
+        origin_ = first + (count - 1) * late_period_;
+        flags_until_ = origin_;
     }
     updates_ += count;
     triggers_.hand_on_late(kind_.output, first, late_period_, count);

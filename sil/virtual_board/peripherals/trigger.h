@@ -122,11 +122,10 @@ class Triggers
   private:
     template <typename Call> void each_late(unsigned sources, Call call)
     {
-        for (std::size_t i = 0; late(sources) && i < late_.size(); ++i) {
-            if ((late_sources_ & sources) >> i & 1u) {
-                call(*late_[i]);
-                sources &= ~(1u << i);
-            }
+        while ((sources & late_sources_) != 0) {
+            const auto first = static_cast<unsigned>(__builtin_ctz(sources & late_sources_));
+            sources &= ~(1u << first);
+            call(*late_[first]);
         }
     }
     void sort()
