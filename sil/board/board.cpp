@@ -57,7 +57,8 @@ struct Board::Impl {
     hal_sil hal;
     hal_samples samples = {};
     hal_outputs outputs = {};
-    std::string typed; /* arrives in the coming control() */
+    std::int32_t encoder_origin = 0; /* where the board was powered up: its counter begins at 0 */
+    std::string typed;               /* arrives in the coming control() */
     bool shorted = false, stalled = false, deadline_missed = false; /* in the present period */
     std::string output;
     drive_signals signals = {};
@@ -93,6 +94,7 @@ void Board::power_cycle()
         throw std::invalid_argument(error);
     }
     board.outputs = {};
+    board.encoder_origin = board.plant.samples().encoder_count;
     sample();
 }
 
@@ -114,7 +116,7 @@ void Board::sample()
     board.samples.bus_voltage = codes.bus_voltage;
     board.samples.phase_voltage_a = codes.phase_voltage_a;
     board.samples.phase_voltage_b = codes.phase_voltage_b;
-    board.samples.encoder_count = codes.encoder_count;
+    board.samples.encoder_count = codes.encoder_count - board.encoder_origin;
     if (board.hardware_trip_A > 0.0) {
         const plant::State &state = board.plant.state();
         const double limit = board.hardware_trip_A;

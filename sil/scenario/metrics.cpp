@@ -193,24 +193,29 @@ double current_ripple(const Record &record, RowRange rows)
     return half > 0 && ripple.count > 0 ? ripple.rms() : Metrics::none;
 }
 
-/* Two passes: the ripple is small against the mean. */
-void ripple(const Record &record, RowRange rows, Metrics &metrics)
+/* Root mean square about the mean. Two passes: it is small against the mean. */
+template <typename Signal> double deviation(RowRange rows, Signal signal)
 {
     double sum = 0, squares = 0;
-    double least = record.at(rows.first, U_Q), most = least;
     for (std::size_t row = rows.first; row < rows.last; ++row) {
-        const double value = record.at(row, U_Q);
-        sum += value;
-        least = std::min(least, value);
-        most = std::max(most, value);
+        sum += signal(row);
     }
     const double count = static_cast<double>(rows.last - rows.first), mean = sum / count;
     for (std::size_t row = rows.first; row < rows.last; ++row) {
-        const double difference = record.at(row, U_Q) - mean;
+        const double difference = signal(row) - mean;
         squares += difference * difference;
     }
-    metrics.voltage_q_peak_to_peak_V = most - least;
-    metrics.voltage_q_ripple_V = std::sqrt(squares / count);
+    return std::sqrt(squares / count);
+}
+
+double peak_to_peak(const Record &record, RowRange rows, Column column)
+{
+    double least = record.at(rows.first, column), most = least;
+    for (std::size_t row = rows.first; row < rows.last; ++row) {
+        least = std::min(least, record.at(row, column));
+        most = std::max(most, record.at(row, column));
+    }
+    return most - least;
 }
 
 } // namespace
@@ -255,6 +260,7 @@ const std::vector<MetricField> &metric_fields()
         {"position_error_final_rad", &Metrics::position_error_final_rad},
         {"position_error_steady_rad", &Metrics::position_error_steady_rad},
         {"lag_s", &Metrics::lag_s},
+        {"position_ripple_rms_rad", &Metrics::position_ripple_rms_rad},
         {"estimate_error_max_rad", &Metrics::estimate_error_max_rad},
         {"estimate_error_rms_rad", &Metrics::estimate_error_rms_rad},
         {"estimate_error_final_rad", &Metrics::estimate_error_final_rad},
@@ -335,7 +341,11 @@ Metrics evaluate(const Record &record, RowRange rows, const MetricSettings &sett
     metrics.voltage_peak_V = std::max(u_a.max, u_b.max);
     metrics.voltage_rms_V =
         std::sqrt((u_a.sum_of_squares + u_b.sum_of_squares) / (2 * static_cast<double>(u_a.count)));
-    ripple(record, rows, metrics);
+    metrics.voltage_q_peak_to_peak_V = peak_to_peak(record, rows, U_Q);
+    metrics.voltage_q_ripple_V =
+        deviation(rows, [&](std::size_t row) { return record.at(row, U_Q); });
+    metrics.position_ripple_rms_rad = deviation(
+        rows, [&](std::size_t row) { return record.at(row, THETA_REF) - record.at(row, THETA); });
     metrics.slip_full_steps = std::floor(slip.max + 0.5);
     metrics.resistance_estimate_error_ratio =
         std::fabs(last[RESISTANCE_EST] - last[RESISTANCE]) / last[RESISTANCE];

@@ -63,6 +63,7 @@ struct Metrics {
     double position_error_final_rad = none;
     double position_error_steady_rad = none; /* mean over the later half of the cruise, signed */
     double lag_s = none;                     /* that by the reference's cruise speed */
+    double position_ripple_rms_rad = none;   /* of the error about its mean */
     double estimate_error_max_rad = none;
     double estimate_error_rms_rad = none;
     double estimate_error_final_rad = none;
@@ -88,7 +89,7 @@ struct Metrics {
                                       in full steps (90 degrees electrical), rounded */
     double resistance_estimate_error_ratio = none; /* |R^ - R| / R in the last row */
     double synchronism_worst = none;       /* 0 sure, 1 doubtful, 2 stalled, 3 lost; the drive's */
-    double enabling_time_s = none;         /* first interrupt to the drive ready */
+    double enabling_time_s = none;         /* of the command, as it acts, to the drive ready */
     double enabling_motion_max_rad = none; /* of the true rotor from where it stood, until then */
     double enabling_displacement_rad = none; /* what is left of it then */
 

@@ -93,7 +93,7 @@ Result execute(const Scenario &scenario, const firmware_image &image, std::uint6
     result.seed = seed;
 
     const double start_s = cpu_seconds();
-    Run run{Record(1), 0, 0, 0, 0, "", ""};
+    Run run{Record(1), 0, 0, 0, 0, 0, "", ""};
     if (scenario.given.image.empty()) {
         run = scenario::run(scenario, image, seed);
     } else {
@@ -109,7 +109,7 @@ Result execute(const Scenario &scenario, const firmware_image &image, std::uint6
     result.trace_hash = record.hash();
     result.drive_hash = run.drive_hash;
     result.simulated_s =
-        run.enabling_time_s +
+        run.time_zero_s +
         static_cast<double>(record.rows() - record.time_zero_row()) * record.period_s();
 
     const MetricSettings settings{scenario.motor.params.rotor_teeth, scenario.settling_band_rad,

@@ -58,7 +58,7 @@ class Runner
         : scenario_(scenario), board_(board), direct_(direct),
           period_s_(scenario.plant.bridge.period_s), values_(values_of(scenario)),
           motor_(scaled(scenario.motor.params, scenario.scales)),
-          result_{Record(period_s_ * scenario.record_every), 0, 0, 0, 0, "", ""}, line_(board),
+          result_{Record(period_s_ * scenario.record_every), 0, 0, 0, 0, 0, "", ""}, line_(board),
           tape_(scenario.events, period_s_)
     {
     }
@@ -105,10 +105,15 @@ class Runner
         ask_for_enabling();
         stood_at_rad_ = board_.plant().state().theta_rad;
         const std::uint32_t last = periods(longest_enabling_s, period_s_);
+        std::uint32_t begin = 0; /* of enabling: a typed command takes some periods to act */
         for (std::uint32_t k = 0;; ++k) {
             control();
             const drive_state state = board_.signals().state;
+            if (state == DRIVE_SWITCH_ON_DISABLED) {
+                begin = k + 1;
+            }
             if (state == DRIVE_OPERATION_ENABLED) {
+                result_.enabling_time_s = (k - begin) * period_s_;
                 return wait_for_time_zero(k);
             }
             if (state == DRIVE_FAULT || k == last) {
@@ -145,7 +150,7 @@ class Runner
                 control();
             }
         }
-        result_.enabling_time_s = (k + shift) * period_s_;
+        result_.time_zero_s = (k + shift) * period_s_;
         return true;
     }
 

@@ -22,7 +22,8 @@ void check(const Scenario &scenario, const firmware_image &image);
 
 struct Run {
     Record record;
-    double enabling_time_s = 0;
+    double time_zero_s = 0;     /* simulated before the timeline begins */
+    double enabling_time_s = 0; /* as metrics.h has it */
     double enabling_motion_max_rad = 0, enabling_displacement_rad = 0; /* magnitudes */
     std::uint64_t drive_hash = 0;
     std::string failure; /* why the run ended early; "" if it did not */

@@ -376,6 +376,16 @@ void the_ripple_of_the_q_voltage_is_about_its_mean()
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 3, loud.voltage_q_ripple_V);
 }
 
+void the_ripple_of_the_position_is_its_error_about_its_mean()
+{
+    const Record record = make_record(0.1, [](Row &row, std::size_t n) {
+        row[THETA_REF] = 0.5;
+        row[THETA] = 0.499 + (n % 2 == 0 ? 2e-5 : -2e-5);
+    });
+    const Metrics metrics = over(record, {Window::Kind::times, 0, 0.0999});
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 2e-5, metrics.position_ripple_rms_rad);
+}
+
 } // namespace
 
 void setUp(void)
@@ -391,6 +401,7 @@ int main()
     UNITY_BEGIN();
     RUN_TEST(move_ends_with_the_profile_and_rest_follows);
     RUN_TEST(the_ripple_of_the_q_voltage_is_about_its_mean);
+    RUN_TEST(the_ripple_of_the_position_is_its_error_about_its_mean);
     RUN_TEST(a_step_counts_as_motion_until_the_rotor_rests);
     RUN_TEST(without_motion_everything_is_rest);
     RUN_TEST(enabling_before_time_zero_is_in_no_window);
