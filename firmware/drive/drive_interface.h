@@ -118,7 +118,7 @@ struct drive_settings {
     bool bridge_loss_compensation;     /* dead time and diodes; true */
     bool resistance_adaptation;        /* track the series resistance while holding; true */
     double law_bandwidth_rad_s;        /* w0 of the position law, pole pair; 200, of the default law
-                                          with an encoder 900 */
+                                          300, with an encoder 900 */
     double current_bandwidth_rad_s;    /* of the loop inside it; 1500, with that law 2000 */
     double law_gains[DRIVE_LAW_GAINS]; /* given to the law instead of what the bandwidths make of
                                           them and not checked against their limits, in the order

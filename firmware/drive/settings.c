@@ -11,7 +11,7 @@ CALLED_FROM_OUTSIDE void drive_settings_default(struct drive_settings *settings,
         .motor = *motor,
         .law = POSITION_LAW_STATE_FEEDBACK,
         .estimator = DRIVE_ESTIMATOR_INVARIANT_EKF,
-        .law_bandwidth_rad_s = 200.0,
+        .law_bandwidth_rad_s = 300.0,
         .feed_forward = true,
         .current_bandwidth_rad_s = 1500.0,
         .observer_bandwidth_rad_s = 1000.0,
@@ -52,9 +52,10 @@ CALLED_FROM_OUTSIDE void drive_settings_select_law(struct drive_settings *settin
 {
     const bool linearised = law == POSITION_LAW_FEEDBACK_LINEARISATION;
     const bool fast = linearised && settings->feedback == DRIVE_FEEDBACK_ENCODER;
+    const bool stiff = linearised || law == POSITION_LAW_STATE_FEEDBACK;
 
     settings->law = law;
-    settings->law_bandwidth_rad_s = fast ? 900.0 : linearised ? 300.0 : 200.0;
+    settings->law_bandwidth_rad_s = fast ? 900.0 : stiff ? 300.0 : 200.0;
     settings->current_bandwidth_rad_s = fast ? 2000.0 : 1500.0;
     settings->observer_bandwidth_rad_s = fast ? 1400.0 : 1000.0;
     settings->detent_learning = fast;

@@ -217,8 +217,9 @@ static void test_without_feed_forward_the_rotor_lags_by_twice_the_speed_over_the
     enable();
     move(1.5, 0.12);
     run(700);
-    TEST_ASSERT_DOUBLE_WITHIN(0.1 * 2.0 / 200.0 * signals().omega_ref_rad_s,
-                              2.0 / 200.0 * signals().omega_ref_rad_s, following_error_rad());
+    const double lag_s = 2.0 / settings.law_bandwidth_rad_s;
+    TEST_ASSERT_DOUBLE_WITHIN(0.1 * lag_s * signals().omega_ref_rad_s,
+                              lag_s * signals().omega_ref_rad_s, following_error_rad());
 }
 
 static void test_a_load_is_estimated_and_carried_while_turning(void)

@@ -24,7 +24,7 @@ static void test_the_defaults_are_those_of_the_interface(void)
     TEST_ASSERT_EQUAL_MEMORY(&bench_params, &settings.motor, sizeof bench_params);
     TEST_ASSERT_EQUAL(POSITION_LAW_STATE_FEEDBACK, settings.law);
     TEST_ASSERT_EQUAL(DRIVE_ESTIMATOR_INVARIANT_EKF, settings.estimator);
-    TEST_ASSERT_DOUBLE_WITHIN(0.0, 200.0, settings.law_bandwidth_rad_s);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 300.0, settings.law_bandwidth_rad_s);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 1500.0, settings.current_bandwidth_rad_s);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 1000.0, settings.observer_bandwidth_rad_s);
     TEST_ASSERT_TRUE(settings.hold_at_rest);
