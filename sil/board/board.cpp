@@ -57,7 +57,7 @@ struct Board::Impl {
     hal_sil hal;
     hal_samples samples = {};
     hal_outputs outputs = {};
-    std::int32_t encoder_origin = 0; /* where the board was powered up: its counter begins at 0 */
+    std::int32_t encoder_origin = 0; /* 0 until a power cycle, from which the counter begins anew */
     std::string typed;               /* arrives in the coming control() */
     bool shorted = false, stalled = false, deadline_missed = false; /* in the present period */
     std::string output;
@@ -116,7 +116,9 @@ void Board::sample()
     board.samples.bus_voltage = codes.bus_voltage;
     board.samples.phase_voltage_a = codes.phase_voltage_a;
     board.samples.phase_voltage_b = codes.phase_voltage_b;
-    board.samples.encoder_count = codes.encoder_count - board.encoder_origin;
+    board.samples.encoder_count =
+        static_cast<std::int32_t>(static_cast<std::uint32_t>(codes.encoder_count) -
+                                  static_cast<std::uint32_t>(board.encoder_origin)); /* may wrap */
     if (board.hardware_trip_A > 0.0) {
         const plant::State &state = board.plant.state();
         const double limit = board.hardware_trip_A;

@@ -126,11 +126,16 @@ class Runner
         }
     }
 
-    void pass_enabling(std::uint32_t k)
+    void record_enabling(std::uint32_t k)
     {
         if (scenario_.record_enabling) {
             record(k);
         }
+    }
+
+    void pass_enabling(std::uint32_t k)
+    {
+        record_enabling(k);
         board_.advance();
         result_.enabling_displacement_rad =
             std::fabs(board_.plant().state().theta_rad - stood_at_rad_);
@@ -144,7 +149,8 @@ class Runner
         const std::uint32_t shift = direct_ != nullptr ? 0 : typed_shift(period_s_);
         time_zero_ = board_.signals().period + shift;
         for (std::uint32_t n = 1; n <= shift; ++n) {
-            pass_enabling(k + n - 1);
+            record_enabling(k + n - 1);
+            board_.advance();
             tape_.type(std::int64_t{n} - shift, time_zero_, line_);
             if (n < shift) {
                 control();

@@ -13,9 +13,9 @@ namespace
 {
 
 /* Numbers of libunicorn's hook for what the core itself calls exceptions. */
-constexpr int pairs = 8; /* of single-precision registers: S0...S15 */
-
 enum : std::uint32_t { core_supervisor_call = 2, core_breakpoint = 7, core_exception_return = 8 };
+
+constexpr int pairs = 8; /* of single-precision registers: S0...S15 */
 
 int number_of(CoreRegister name)
 {

@@ -16,8 +16,10 @@ sys.path.insert(0, str(ROOT / "tools"))
 from arm_image import memory  # noqa: E402
 from arm_image.image import Image  # noqa: E402
 
-LIMITS_B = {"flash": 128 * 1024, "ccm": 32 * 1024, "ram": 80 * 1024}
+LIMITS_B = {"flash": 128 * 1024, "ccm": 32 * 1024, "ram": 48 * 1024}  # ram: SRAM1's parity, SRAM2
 RAM = 0x20000000
+SRAM2 = range(0x20014000, 0x20018000)
+DMA_BUFFERS = ("phase_a", "phase_b", "receive", "transmit")
 VECTORS = 0x10000000  # aligned to more than the table takes
 
 
@@ -38,6 +40,9 @@ def violations(image, limits):
             yield f"{name}: {size} B, at most {limits[name]}"
     if image.symbols["stack_bottom"] != RAM:
         yield "stack: not at the bottom of SRAM, an overflow would not fault"
+    for name in DMA_BUFFERS:
+        if image.symbols[name] not in SRAM2:
+            yield f"{name}: DMA works on it, it belongs into SRAM2 (DMA_BUFFER)"
     if image.symbols["vectors"] != VECTORS:
         yield f"vector table at {image.symbols['vectors']:#x}, expected {VECTORS:#x}"
 

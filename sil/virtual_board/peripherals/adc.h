@@ -54,7 +54,8 @@ class AnalogInputs
   public:
     virtual ~AnalogInputs() = default;
     virtual std::uint32_t code(const Conversion &conversion) = 0;
-    /* Rises whenever regular conversions may give other codes than before. */
+    /* Rises whenever regular conversions of legs may give other codes than before, but by a write
+       of the core. */
     virtual unsigned changes() const = 0;
     /* The results of regular conversions were stored by DMA. */
     virtual void stored(const StoredResult *results, std::size_t count) = 0;

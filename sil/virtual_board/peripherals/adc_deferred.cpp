@@ -181,6 +181,9 @@ void Adc::settle(Ticks until, Ticks triggered_before)
    than registers from now on. */
 void Adc::look(Access access)
 {
+    if (access == Access::write) { /* of a pin's mode, for instance */
+        known_results_ = 0;
+    }
     if (due_ == Event::never && !triggers_.late(regular_sources_)) {
         return;
     }
