@@ -1,6 +1,7 @@
 #include "sil/virtual_board/unicorn_core.h"
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -253,43 +254,37 @@ void UnicornCore::set(const CoreRegister *names, std::size_t count, const std::u
     set(numbers, count, values);
 }
 
-/* By pairs, which the emulator finds quicker: D0...D7. */
+/* By pairs, D0...D7, which the emulator finds quicker. */
 void UnicornCore::get_floating_point(std::uint32_t s0_to_s15[most]) const
 {
     int numbers[pairs];
-    void *places[pairs];
-    for (std::size_t i = 0; i < pairs; ++i) {
-        numbers[i] = static_cast<int>(UC_ARM_REG_D0 + i);
-        places[i] = &s0_to_s15[2 * i];
-    }
-    check(uc_reg_read_batch(engine_, numbers, places, pairs), "registers");
+    std::iota(numbers, numbers + pairs, static_cast<int>(UC_ARM_REG_D0));
+    get(numbers, pairs, s0_to_s15, 2);
 }
 
 void UnicornCore::set_floating_point(const std::uint32_t s0_to_s15[most])
 {
     int numbers[pairs];
-    void *places[pairs]; /* only read */
-    for (std::size_t i = 0; i < pairs; ++i) {
-        numbers[i] = static_cast<int>(UC_ARM_REG_D0 + i);
-        places[i] = const_cast<std::uint32_t *>(&s0_to_s15[2 * i]);
-    }
-    check(uc_reg_write_batch(engine_, numbers, places, pairs), "registers");
+    std::iota(numbers, numbers + pairs, static_cast<int>(UC_ARM_REG_D0));
+    set(numbers, pairs, s0_to_s15, 2);
 }
 
-void UnicornCore::get(int *numbers, std::size_t count, std::uint32_t *values) const
+void UnicornCore::get(int *numbers, std::size_t count, std::uint32_t *values,
+                      std::size_t words) const
 {
     void *places[most];
     for (std::size_t i = 0; i < count; ++i) {
-        places[i] = &values[i];
+        places[i] = &values[words * i];
     }
     check(uc_reg_read_batch(engine_, numbers, places, static_cast<int>(count)), "registers");
 }
 
-void UnicornCore::set(int *numbers, std::size_t count, const std::uint32_t *values)
+void UnicornCore::set(int *numbers, std::size_t count, const std::uint32_t *values,
+                      std::size_t words)
 {
     void *places[most]; /* only read */
     for (std::size_t i = 0; i < count; ++i) {
-        places[i] = const_cast<std::uint32_t *>(&values[i]);
+        places[i] = const_cast<std::uint32_t *>(&values[words * i]);
     }
     check(uc_reg_write_batch(engine_, numbers, places, static_cast<int>(count)), "registers");
 }

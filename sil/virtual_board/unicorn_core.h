@@ -121,9 +121,9 @@ class UnicornCore
     void check(int error, const char *what) const;
     void get(const CoreRegister *names, std::size_t count, std::uint32_t *values) const;
     void set(const CoreRegister *names, std::size_t count, const std::uint32_t *values);
-    /* By libunicorn's numbers, which it does not change. */
-    void get(int *numbers, std::size_t count, std::uint32_t *values) const;
-    void set(int *numbers, std::size_t count, const std::uint32_t *values);
+    /* By libunicorn's numbers, which it does not change; each of so many words. */
+    void get(int *numbers, std::size_t count, std::uint32_t *values, std::size_t words = 1) const;
+    void set(int *numbers, std::size_t count, const std::uint32_t *values, std::size_t words = 1);
     void stop();
     void watch_instructions(std::uint64_t first, std::uint64_t last);
 

@@ -9,29 +9,24 @@ they are counted, no more. Expectations that are not held are told; whether that
 the scenario's own test. OPTION: of `steadystep-sil run`.
 """
 
-import json
 import os
-import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from same_as_simulator import Refused, complaints, run
+
 AT_LEAST = 105  # scenarios
-REFUSED = 2  # exit status
 ALIKE = ("drive_hash", "trace_hash", "failure")
 
 
-def summary(simulator, *options):
-    """None if the simulator refuses the scenario."""
-    done = subprocess.run(
-        [simulator, "run", "--json", *options], capture_output=True, text=True, check=False
-    )
-    return None if done.returncode == REFUSED else json.loads(done.stdout)[0]
-
-
 def both(simulator, image, scenario, options):
-    executed = summary(simulator, "--image", image, scenario, *options)
-    return executed, executed and summary(simulator, "--typed", scenario, *options)
+    """The summaries of both boards; None if the image's refuses the scenario."""
+    try:
+        executed = run(simulator, "--image", image, scenario, *options)
+    except Refused:
+        return None
+    return executed, run(simulator, "--typed", scenario, *options)
 
 
 def main():
@@ -42,18 +37,18 @@ def main():
     refused, different = 0, []
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         runs = pool.map(lambda name: both(simulator, image, name, options), names)
-        for number, (name, (executed, simulated)) in enumerate(zip(names, runs), 1):
+        for number, (name, pair) in enumerate(zip(names, runs), 1):
             if number % 25 == 0:
                 print(f"{number} of {len(names)}", file=sys.stderr)
-            if executed is None:
+            if pair is None:
                 refused += 1
                 continue
+            executed, simulated = pair
             if any(executed[key] != simulated[key] for key in ALIKE):
                 different.append(name)
-                print(f"{name}: the boards differ; the image's run: {executed['failure'] or 'ended'}")
-            for bound in executed["expectations"]:
-                if not bound["passed"]:
-                    print(f"{name}: not held: {json.dumps(bound)}")
+                print(f"{name}: the boards differ")
+            for complaint in complaints(name, executed):
+                print(complaint)
     taken = len(names) - refused
     print(f"{taken} scenarios on both boards, {len(different)} differ; {refused} want another board")
     return 1 if different or taken < AT_LEAST else 0

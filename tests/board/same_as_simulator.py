@@ -14,11 +14,20 @@ import sys
 from pathlib import Path
 
 
+REFUSED = 2  # exit status
+
+
+class Refused(Exception):
+    """The simulator refuses the scenario or an option; the text says why."""
+
+
 def run(simulator, *options):
     """The summary of a run, also of one that has failed."""
     done = subprocess.run(
         [simulator, "run", "--json", *options], capture_output=True, text=True, check=False
     )
+    if done.returncode == REFUSED:
+        raise Refused(done.stderr)
     try:
         return json.loads(done.stdout)[0]
     except (ValueError, LookupError):
@@ -40,8 +49,11 @@ def main():
         sys.exit(__doc__)
     simulator, image, numeric, folder, scenario, *options = sys.argv[1:]
     asked = [scenario, "--numeric", numeric, *options]
-    simulated = run(simulator, "--typed", *asked)
-    executed = run(simulator, "--image", image, *asked)
+    try:
+        simulated = run(simulator, "--typed", *asked)
+        executed = run(simulator, "--image", image, *asked)
+    except Refused as refusal:
+        sys.exit(str(refusal))
     file = Path(folder) / f"{scenario}.json"
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(json.dumps([executed], indent=1), encoding="utf-8")
