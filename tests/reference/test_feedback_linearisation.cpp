@@ -10,7 +10,9 @@
 #include <unity.h>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
+
+#include "tests/reference/matrix_functions.h"
 
 extern "C" {
 #include "firmware/design/feedback_linearisation_design.h"
@@ -108,9 +110,7 @@ std::vector<std::complex<double>> poles(const Loop &loop, const Mismatch &motor)
     for (int i = 0; i < STATES; ++i) {
         a.col(i) = step(State::Unit(i), loop, motor);
     }
-    const Eigen::EigenSolver<Matrix> solver(a, false);
-    const auto values = solver.eigenvalues();
-    return {values.data(), values.data() + STATES};
+    return reference::eigenvalues(a);
 }
 
 double slowest(const Loop &loop, const Mismatch &motor)
@@ -168,9 +168,7 @@ void test_the_poles_of_the_chain_of_integrators_are_the_placed_ones()
         const Eigen::RowVector3d gain(k.k_position_s2 * period_s * period_s, k.k_speed_s * period_s,
                                       k.k_acceleration);
         const Eigen::Matrix3d closed = a - b * gain;
-        const Eigen::EigenSolver<Eigen::Matrix3d> solver(closed, false);
-        const auto values = solver.eigenvalues();
-        const std::vector<std::complex<double>> found(values.data(), values.data() + 3);
+        const std::vector<std::complex<double>> found = reference::eigenvalues(closed);
         const std::complex<double> pair(-damping * 900, 900 * std::sqrt(1 - damping * damping));
 
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, distance(found, std::exp(pair * period_s)));

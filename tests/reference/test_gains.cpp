@@ -6,8 +6,8 @@
 #include <unity.h>
 
 #include <Eigen/Dense>
-#include <unsupported/Eigen/MatrixFunctions>
 
+#include "tests/reference/matrix_functions.h"
 #include "tests/reference/motors.h"
 
 extern "C" {
@@ -40,7 +40,7 @@ SampledMechanics sampled(const motor_params &motor)
     model.row(0) << -motor.viscous_friction_Nms_rad, 0.0, motor.torque_constant_Nm_A, -1.0;
     model.row(0) /= motor.inertia_kgm2;
     model(1, 0) = 1.0;
-    const Matrix4d step = (model * period_s).exp();
+    const Matrix4d step = reference::exponential(model * period_s);
     return {step.topLeftCorner<2, 2>(), step.block<2, 1>(0, 2), step.block<2, 1>(0, 3)};
 }
 
@@ -71,7 +71,7 @@ void assert_relative(double tolerance, double expected, double actual)
 
 template <class Matrix> void assert_poles(double tolerance, double pole, const Matrix &loop)
 {
-    for (const std::complex<double> &eigenvalue : Eigen::MatrixXd(loop).eigenvalues()) {
+    for (const std::complex<double> &eigenvalue : reference::eigenvalues(loop)) {
         TEST_ASSERT_DOUBLE_WITHIN(tolerance, 0.0, std::abs(eigenvalue - pole));
     }
 }

@@ -10,8 +10,8 @@
 #include <unity.h>
 
 #include <Eigen/Dense>
-#include <unsupported/Eigen/MatrixFunctions>
 
+#include "tests/reference/matrix_functions.h"
 #include "tests/reference/motors.h"
 
 extern "C" {
@@ -85,8 +85,7 @@ MatrixXd transition(const motor_params &m, OperatingPoint at, int states, double
         const VectorXd e = VectorXd::Unit(STATES, j) * size[j];
         jacobian.col(j) = (error_rate(m, at, e) - error_rate(m, at, -e)) / (2.0 * size[j]);
     }
-    const MatrixXd model = jacobian.topLeftCorner(states, states) * period;
-    return model.exp();
+    return reference::exponential(jacobian.topLeftCorner(states, states) * period);
 }
 
 /* (9), (10), (12), period by period from P = Q. */
@@ -146,7 +145,11 @@ double spectral_radius(const motor_params &motor, const invariant_ekf_gains &k, 
     correction.row(LOAD) *= 1.0 - k.load_return;
     const MatrixXd step =
         transition(motor, at, states, period) * correction.topLeftCorner(states, states);
-    return step.eigenvalues().cwiseAbs().maxCoeff();
+    double radius = 0.0;
+    for (const std::complex<double> &eigenvalue : reference::eigenvalues(step)) {
+        radius = std::max(radius, std::abs(eigenvalue));
+    }
+    return radius;
 }
 
 double top_speed(const motor_params &motor, double period)
