@@ -110,6 +110,18 @@ def check_failure():
         )
 
 
+def check_typed():
+    """Enabling is timed from when its command acts, not from its first character."""
+    times = [
+        json.loads(run("run", "initial-position", "--json", *how).stdout)[0]["metrics"]["all"][
+            "enabling_time_s"
+        ]
+        for how in ([], ["--typed"])
+    ]
+    CHECKS.that(times[0] == times[1], f"enabling takes {times[0]} s, typed {times[1]} s")
+
+
 check_table()
 check_failure()
+check_typed()
 CHECKS.end()

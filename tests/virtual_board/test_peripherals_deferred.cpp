@@ -1,4 +1,6 @@
 /* Results that a converter puts off until somebody looks: nobody can tell. */
+#include <cstring>
+
 #include "tests/virtual_board/device_bench.h"
 
 void setUp()
@@ -180,6 +182,25 @@ void test_a_channel_that_reads_another_register_stores_what_that_holds()
     TEST_ASSERT_EQUAL_UINT(0, bench.sum(0));
 }
 
+/* The voltage of a leg is asked for once in a period; its pin may change in between. */
+void test_a_pin_that_is_not_analog_any_more_is_refused_at_the_next_conversion()
+{
+    constexpr std::uint32_t modes_of_b = 0x48000400;
+    for (const std::uint32_t interrupts : {6u, 0u}) {
+        LegBench bench(interrupts);
+        bench.chip.run_for(4 * half + 4000 * cycle);
+        (void)bench.chip.read(left); /* results of this period have been formed */
+        bench.chip.write(modes_of_b, bench.chip.read(modes_of_b) & ~(3u << 2)); /* PB1: input */
+        try {
+            bench.chip.run_for(2000 * cycle);
+            (void)bench.chip.read(left);
+            TEST_FAIL_MESSAGE("measured from an input");
+        } catch (const Refusal &refusal) {
+            TEST_ASSERT_NOT_NULL(std::strstr(refusal.what(), "PB1"));
+        }
+    }
+}
+
 } // namespace
 
 int main()
@@ -192,5 +213,6 @@ int main()
     RUN_TEST(test_an_interrupt_that_is_enabled_on_the_way_comes_at_its_time);
     RUN_TEST(test_a_channel_switched_off_on_the_way_leads_to_an_overrun);
     RUN_TEST(test_a_channel_that_reads_another_register_stores_what_that_holds);
+    RUN_TEST(test_a_pin_that_is_not_analog_any_more_is_refused_at_the_next_conversion);
     return UNITY_END();
 }

@@ -207,6 +207,21 @@ void test_a_general_timer_compares_over_its_overflow()
     TEST_ASSERT_FALSE(bench.chip.lines[28]);
 }
 
+void test_a_compare_above_the_reload_never_matches()
+{
+    constexpr std::uint32_t tim2 = 0x40000000, ccr1 = tim2 + 0x34, ccr2 = tim2 + 0x38;
+    Bench bench;
+    bench.start_clocks();
+    bench.chip.write(tim2 + 0x2c, 999);
+    bench.chip.write(tim2 + 0x14, 1);
+    bench.chip.write(ccr1, 1000);
+    bench.chip.write(ccr2, 999);
+    bench.chip.write(tim2 + 0x10, 0);
+    bench.chip.write(tim2, 1);
+    bench.chip.run_for(2500 * cycle);
+    TEST_ASSERT_EQUAL_HEX32(4 | 1, bench.chip.read(tim2 + 0x10) & 7);
+}
+
 void test_a_prescaler_acts_from_the_update_on()
 {
     Bench bench;
@@ -253,6 +268,7 @@ int main()
     RUN_TEST(test_break_polarity_low_is_active_at_rest);
     RUN_TEST(test_a_slave_starts_with_the_trigger_and_updates_each_period);
     RUN_TEST(test_a_general_timer_compares_over_its_overflow);
+    RUN_TEST(test_a_compare_above_the_reload_never_matches);
     RUN_TEST(test_a_prescaler_acts_from_the_update_on);
     RUN_TEST(test_rcr_written_behind_the_start_loads_at_peaks_by_either_reading_of_the_manual);
     return UNITY_END();

@@ -263,16 +263,8 @@ bool Timer::may_be_late(Ticks period) const
            field(at(SMCR), 0, 3) != 4 && triggers_.all_patient(kind_.output, period);
 }
 
-void Timer::overflow_late(Ticks time)
-{
-    take_flags(time);
-    origin_ = time;
-    flags_until_ = origin_ - 1; /* a compare of 0 matches now */
-    take_flags(time);
-}
-
-/* What as many overflows would have done one by one; UIF is set since the last that was an event.
- */
+/* What as many overflows would have done one by one. UIF is set since the last that was an event,
+   and the compares that match do so in the whole period behind it. */
 void Timer::catch_up(Ticks until)
 {
     const Ticks first = origin_ + late_period_;
@@ -280,12 +272,9 @@ void Timer::catch_up(Ticks until)
         return;
     }
     const auto count = static_cast<unsigned>((until - first) / late_period_ + 1);
-    overflow_late(first);
-    if (count > 1) { /* a whole period: all that match have done so, and do so no more */
-        overflow_late(first + late_period_);
-        origin_ = first + (count - 1) * late_period_;
-        flags_until_ = origin_;
-    }
+    take_flags(first);
+    origin_ = first + (count - 1) * late_period_;
+    flags_until_ = origin_;
     updates_ += count;
     triggers_.hand_on_late(kind_.output, first, late_period_, count);
 }

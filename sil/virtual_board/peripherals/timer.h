@@ -59,7 +59,6 @@ class Timer : public RegisterBlock, private LatePulses
     void stop();
     void overflow();
     bool may_be_late(Ticks period) const;
-    void overflow_late(Ticks time);
     void catch_up(Ticks until) override;
     void come_promptly() override;
     void update(bool by_software);

@@ -31,8 +31,9 @@ void Timer::take_flags(Ticks until)
     }
     const Ticks count_time = count_ticks();
     for (int channel = 0; channel < 4; channel++) {
-        const Ticks match = origin_ + compare_[static_cast<std::size_t>(channel)] * count_time;
-        if (output(channel) && match > flags_until_ && match <= until) {
+        const std::uint32_t compare = compare_[static_cast<std::size_t>(channel)];
+        const Ticks match = origin_ + compare * count_time;
+        if (output(channel) && compare <= top() && match > flags_until_ && match <= until) {
             at(SR) |= 2u << channel;
         }
     }
