@@ -277,10 +277,7 @@ __attribute__((noinline)) static void prepare_input(struct drive *drive, struct 
     drive->prepared.voltage = voltage;
     drive->prepared.current = current;
     if (standstill_pulses_hides_sample(&drive->pulses, &drive->pulses_params)) {
-        drive->prepared.current =
-            estimator_expected_current(&drive->estimator, &drive->params.estimator, voltage);
-        standstill_pulses_sample(&drive->pulses, &drive->pulses_params, current,
-                                 drive->prepared.current);
+        standstill_angle_hide_sample(drive, &drive->prepared);
     }
 }
 

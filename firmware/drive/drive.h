@@ -80,6 +80,7 @@ struct drive {
     /* the blocks that the default does without */
     union position_law_state law;
     struct detent_compensation detent;
+    struct phases bias_of_motion; /* offset of the measured voltage before the hold */
 
     /* supervision */
     enum drive_state state;

@@ -3,9 +3,11 @@
 /*
  * Half of the way each time: 1.5 degrees of noise in a measurement leave 0.9, and a load is known
  * in some five of them, 0.15 s. The load is the torque that holds the rotor there: with any other
- * the estimator's model would turn away from the angle that it is told.
+ * the estimator's model would turn away from the angle that it is told. The estimator corrects its
+ * voltage offset across the rotor's frame, which moves with what it is told: without a hold on what
+ * this adds along the current, offset and resistance would drift away together.
  */
-static void tell(struct drive *drive, const struct standstill_angle *shown)
+static void tell_estimator(struct drive *drive, const struct standstill_angle *shown)
 {
     const struct estimate *x = &drive->estimator.estimate;
     const int32_t difference = (int32_t)(shown->angle - x->rotor.position.fraction);
@@ -15,6 +17,26 @@ static void tell(struct drive *drive, const struct standstill_angle *shown)
     rotor.speed = NUM(0.0);
     rotor.load_torque = park(shown->current, sincos_of(rotor.position.fraction)).q;
     estimator_tell_rotor(&drive->estimator, &drive->params.estimator, &rotor);
+    estimator_tell_bias_along(&drive->estimator, &drive->params.estimator, drive->bias_of_motion,
+                              drive->hold.frame);
+}
+
+/* Apart: compiled once. */
+__attribute__((noinline)) static struct phases expected_current(const struct drive *drive,
+                                                                struct phases voltage)
+{
+    return estimator_expected_current(&drive->estimator, &drive->params.estimator, voltage);
+}
+
+void standstill_angle_hide_sample(struct drive *drive, struct channels *winding)
+{
+    const num_t resistance = drive->estimator.estimate.winding.resistance;
+    const struct phases expected = expected_current(drive, winding->voltage);
+
+    standstill_pulses_sample(&drive->pulses, &drive->pulses_params, winding->current, expected);
+    winding->voltage.a -= num_mul(resistance, winding->current.a - expected.a);
+    winding->voltage.b -= num_mul(resistance, winding->current.b - expected.b);
+    winding->current = expected_current(drive, winding->voltage);
 }
 
 void standstill_angle_begin(struct drive *drive)
@@ -35,6 +57,7 @@ void standstill_angle_step(struct drive *drive, const struct estimate *estimate,
     if (!drive->hold.active || drive->state != DRIVE_OPERATION_ENABLED ||
         pulses->signal == NUM(0.0)) {
         standstill_pulses_stop(pulses);
+        drive->bias_of_motion = estimator_bias(&drive->estimator, &drive->params.estimator);
         return;
     }
     if (standstill_pulses_add(pulses, &drive->pulses_params, estimate->current,
@@ -43,6 +66,6 @@ void standstill_angle_step(struct drive *drive, const struct estimate *estimate,
     }
     shown = standstill_pulses_result(pulses, &drive->pulses_params);
     if (shown.found) {
-        tell(drive, &shown);
+        tell_estimator(drive, &shown);
     }
 }

@@ -4,6 +4,14 @@
 
 #include "firmware/drive/drive.h"
 
+/*
+ * In a period that the pulses hide from the estimator: `winding` becomes what its model expects.
+ * The current that the iron adds to a pulse is not of the model; the voltage that it takes at the
+ * resistance is left out of the driving one. Else each pulse, of either sign, would leave a current
+ * along the flux that the estimator takes for a resistance.
+ */
+void standstill_angle_hide_sample(struct drive *drive, struct channels *winding);
+
 /* Before the control: what the bridge was found to take of the voltage before a pulse holds. */
 void standstill_angle_begin(struct drive *drive);
 

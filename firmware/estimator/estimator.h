@@ -112,6 +112,32 @@ static inline void estimator_tell_rotor(struct estimator *estimator,
     }
 }
 
+/* Offset that is taken from the measured voltage. */
+static inline struct phases estimator_bias(const struct estimator *estimator,
+                                           const struct estimator_params *params)
+{
+    return params->kind == ESTIMATOR_INVARIANT_EKF ? estimator->invariant.bias
+                                                   : (struct phases){NUM(0.0), NUM(0.0)};
+}
+
+/*
+ * Held: of that offset the part along the hold current, the d axis of `frame`, becomes that of
+ * `known`. At rest it looks like the drop at the resistance.
+ */
+static inline void estimator_tell_bias_along(struct estimator *estimator,
+                                             const struct estimator_params *params,
+                                             struct phases known, struct sincos frame)
+{
+    if (params->kind == ESTIMATOR_INVARIANT_EKF) {
+        struct phases *bias = &estimator->invariant.bias;
+        const num_t along =
+            num_mul_unit(known.a - bias->a, frame.cos) + num_mul_unit(known.b - bias->b, frame.sin);
+
+        bias->a += num_mul_unit(along, frame.cos);
+        bias->b += num_mul_unit(along, frame.sin);
+    }
+}
+
 static inline bool estimator_has_encoder(const struct estimator_params *params)
 {
     return params->kind == ESTIMATOR_ENCODER_OBSERVER ||
