@@ -1,32 +1,29 @@
 #!/usr/bin/env python3
-"""Runs clang-tidy (.clang-tidy) over the portable firmware, as float and as fixed point.
+"""Runs clang-tidy (.clang-tidy) over the portable firmware in one number format.
 
-usage: tidy.py ROOT BUILD    BUILD holds compile_commands.json; exit 1 with the findings, 77
-                             (skipped) without clang-tidy
+usage: tidy.py ROOT BUILD NUMERIC    BUILD holds compile_commands.json; exit 1 with the findings,
+                                     77 (skipped) without clang-tidy
 """
 import concurrent.futures
 import json
 import os
 import pathlib
-import re
 import shutil
 import subprocess
 import sys
 
 SKIPPED = 77
-# Two of three: double is the same source as float.
-FORMAT = re.compile(r"-DSTEADYSTEP_NUM=(NUM_FLOAT|NUM_FIXED)\b")
 
 
-def jobs(root, build):
-    """(source, compiler arguments), once per source and number format."""
+def jobs(root, build, numeric):
+    """(source, compiler arguments) of each source."""
+    definition = f"-DSTEADYSTEP_NUM=NUM_{numeric.upper()}"
     commands = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
     for entry in commands:
         source = pathlib.Path(entry["file"])
-        number_format = FORMAT.search(entry["command"])
-        if number_format and (root / "firmware") in source.parents:
+        if definition in entry["command"].split() and (root / "firmware") in source.parents:
             yield str(source), ["-std=c11", "-ffp-contract=off", "-Wall", "-Wextra",
-                                "-Wconversion", f"-I{root}", number_format.group()]
+                                "-Wconversion", f"-I{root}", definition]
 
 
 def check(tool, job):
@@ -37,17 +34,17 @@ def check(tool, job):
 
 
 def main(arguments):
-    if len(arguments) != 2:
+    if len(arguments) != 3:
         print(__doc__, file=sys.stderr)
         return 2
-    root, build = (pathlib.Path(argument).resolve() for argument in arguments)
+    root, build = (pathlib.Path(argument).resolve() for argument in arguments[:2])
     tool = shutil.which("clang-tidy-14") or shutil.which("clang-tidy")
     if tool is None:
         print("clang-tidy is not installed")
         return SKIPPED
-    work = sorted(jobs(root, build))
+    work = sorted(jobs(root, build, arguments[2]))
     if not work:
-        print(f"no firmware in {build}/compile_commands.json")
+        print(f"no firmware in {arguments[2]} in {build}/compile_commands.json")
         return 1
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         findings = list(filter(None, pool.map(lambda job: check(tool, job), work)))
