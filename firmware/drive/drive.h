@@ -80,7 +80,6 @@ struct drive {
     /* the blocks that the default does without */
     union position_law_state law;
     struct detent_compensation detent;
-    struct phases bias_of_motion; /* offset of the measured voltage before the hold */
 
     /* supervision */
     enum drive_state state;
@@ -100,10 +99,11 @@ struct drive {
     enum drive_synchronism synchronism;
     struct synchronism_monitor synchronism_monitor;
     struct synchronism_monitor_params synchronism_monitor_params;
-    uint32_t synchronism_step;  /* the monitor's next */
-    uint32_t synchronism_block; /* period in which its block began */
-    struct phases past_current; /* of S(k-1), where the phase voltages are inferred from it */
-    struct channels prepared;   /* of this S(k), what the estimator gets instead of samples */
+    uint32_t synchronism_step;    /* the monitor's next */
+    uint32_t synchronism_block;   /* period in which its block began */
+    struct phases past_current;   /* of S(k-1), where the phase voltages are inferred from it */
+    struct channels prepared;     /* of this S(k), what the estimator gets instead of samples */
+    struct phases bias_of_motion; /* offset of the measured voltage before the hold */
 
     struct command_queue commands; /* supervision too; large, so behind what is used more */
 

@@ -130,8 +130,8 @@ static inline void estimator_tell_bias_along(struct estimator *estimator,
 {
     if (params->kind == ESTIMATOR_INVARIANT_EKF) {
         struct phases *bias = &estimator->invariant.bias;
-        const num_t along =
-            num_mul_unit(known.a - bias->a, frame.cos) + num_mul_unit(known.b - bias->b, frame.sin);
+        const struct phases change = {known.a - bias->a, known.b - bias->b};
+        const num_t along = park(change, frame).d;
 
         bias->a += num_mul_unit(along, frame.cos);
         bias->b += num_mul_unit(along, frame.sin);

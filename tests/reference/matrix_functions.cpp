@@ -12,6 +12,11 @@ std::vector<std::complex<double>> eigenvalues(const Eigen::MatrixXd &matrix)
     return {values.data(), values.data() + values.size()};
 }
 
+double spectral_radius(const Eigen::MatrixXd &matrix)
+{
+    return matrix.eigenvalues().cwiseAbs().maxCoeff();
+}
+
 Eigen::MatrixXd exponential(const Eigen::MatrixXd &matrix)
 {
     return matrix.exp();

@@ -12,6 +12,9 @@ namespace reference
 /** The eigenvalues of a square matrix, in no order. */
 std::vector<std::complex<double>> eigenvalues(const Eigen::MatrixXd &matrix);
 
+/** The largest magnitude of its eigenvalues. */
+double spectral_radius(const Eigen::MatrixXd &matrix);
+
 /** e to the power of a square matrix. */
 Eigen::MatrixXd exponential(const Eigen::MatrixXd &matrix);
 

@@ -104,22 +104,18 @@ State step(const State &x, const Loop &loop, const Mismatch &motor)
     return y;
 }
 
-std::vector<std::complex<double>> poles(const Loop &loop, const Mismatch &motor)
+Matrix transition(const Loop &loop, const Mismatch &motor)
 {
     Matrix a;
     for (int i = 0; i < STATES; ++i) {
         a.col(i) = step(State::Unit(i), loop, motor);
     }
-    return reference::eigenvalues(a);
+    return a;
 }
 
 double slowest(const Loop &loop, const Mismatch &motor)
 {
-    double radius = 0;
-    for (const std::complex<double> &pole : poles(loop, motor)) {
-        radius = std::max(radius, std::abs(pole));
-    }
-    return radius;
+    return reference::spectral_radius(transition(loop, motor));
 }
 
 /* The worst over all corners of `share` of mismatch in inductance, torque constant and inertia. */
@@ -183,7 +179,8 @@ void test_the_poles_of_the_closed_loop_are_the_placed_ones()
     for (const double damping : {0.3, 0.7, 0.95}) {
         const double law = 900, current = 2000;
         const Loop loop = designed(law, damping, current, 1400, 1000);
-        const std::vector<std::complex<double>> found = poles(loop, {});
+        const std::vector<std::complex<double>> found =
+            reference::eigenvalues(transition(loop, {}));
         const std::complex<double> pair(-damping * law, law * std::sqrt(1 - damping * damping));
 
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, distance(found, std::exp(pair * period_s)));

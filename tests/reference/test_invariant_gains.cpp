@@ -145,11 +145,7 @@ double spectral_radius(const motor_params &motor, const invariant_ekf_gains &k, 
     correction.row(LOAD) *= 1.0 - k.load_return;
     const MatrixXd step =
         transition(motor, at, states, period) * correction.topLeftCorner(states, states);
-    double radius = 0.0;
-    for (const std::complex<double> &eigenvalue : reference::eigenvalues(step)) {
-        radius = std::max(radius, std::abs(eigenvalue));
-    }
-    return radius;
+    return reference::spectral_radius(step);
 }
 
 double top_speed(const motor_params &motor, double period)

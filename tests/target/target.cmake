@@ -28,9 +28,9 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
   list(FILTER unit_tests EXCLUDE REGEX "test_(detent_compensation|motion_plan)\\.c$")
   # An application, its test's board and the stack of the design take more than 16 KB.
   set(large_tests application console)
-  # In fixed point each test runs on one core: the M4F has those of half a minute and more, which
-  # the replays stand for unless in full; the M0+ all others. Arithmetic, which knows the core, runs
-  # on both.
+  # In fixed point each test runs on one core: the M4F has the long ones, the M0+ all others.
+  # Arithmetic, which knows the core, runs on both. The replays run the code of some of the long ones:
+  # those are left to tools/test --full.
   set(long_tests "application|console|initial_position|invariant_ekf|motion|sliding_mode")
   if(STEADYSTEP_CORE STREQUAL m0plus)
     list(FILTER unit_tests EXCLUDE REGEX "test_(${long_tests})\\.c$")
@@ -51,7 +51,7 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
     target_link_options(${target} PRIVATE -fno-lto)
     add_test(NAME target.unit.${name}.${numeric} COMMAND ${target})
     set(labels target)
-    if(name MATCHES "^(${long_tests})$" AND numeric STREQUAL fixed)
+    if(name MATCHES "^(invariant_ekf|motion|sliding_mode)$" AND numeric STREQUAL fixed)
       list(APPEND labels full)
     endif()
     set_tests_properties(target.unit.${name}.${numeric}

@@ -6,6 +6,7 @@
 
 #include "firmware/estimator/initial_position.h"
 #include "tests/unit/bench.h"
+#include "tests/unit/emulated.h"
 #include "tests/unit/num_assert.h"
 
 enum { STEPS = 40 }; /* of a period */
@@ -18,12 +19,7 @@ enum { STEPS = 40 }; /* of a period */
 #define OFFSET_A 0.009
 #define OFFSET_V 0.005
 
-/* Of the angles all around: the motor's doubles are slow on an emulated core. */
-#ifdef __arm__
-enum { EVERY = 7 };
-#else
-enum { EVERY = 1 };
-#endif
+enum { EVERY = EMULATED ? 7 : 1 }; /* of the angles all around */
 
 /* Flux linkages over L0, A: x of i = x + b x^3 - I_f m. */
 struct saturable {

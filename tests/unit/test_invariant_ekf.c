@@ -1,16 +1,12 @@
 /* The default estimator on the simulated motor: no noise, what remains is the estimator's own. */
 #include "firmware/estimator/invariant_ekf.h"
 #include "tests/unit/bench.h"
+#include "tests/unit/emulated.h"
 #include "tests/unit/num_assert.h"
 
 #define HOLD_A 1.5
 
-/* Of the speeds: the motor's doubles are slow on an emulated core. */
-#ifdef __arm__
-enum { EVERY = 3 };
-#else
-enum { EVERY = 1 };
-#endif
+enum { EVERY = EMULATED ? 3 : 1 }; /* of the speeds at which an offset is found */
 
 static struct per_unit base;
 static struct motor_model_params model;

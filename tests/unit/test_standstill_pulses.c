@@ -4,6 +4,7 @@
  */
 #include "firmware/estimator/standstill_pulses.h"
 #include "tests/unit/bench.h"
+#include "tests/unit/emulated.h"
 #include "tests/unit/num_assert.h"
 
 #define DEGREE     (TWO_PI / 360.0)
@@ -12,12 +13,7 @@
 #define HOLD_A     1.5
 #define IMPULSE_A  3.78
 
-/* Of a period; doubles are slow on an emulated core. */
-#ifdef __arm__
-enum { STEPS = 20 };
-#else
-enum { STEPS = 100 };
-#endif
+enum { STEPS = EMULATED ? 20 : 100 }; /* of a period */
 
 static struct per_unit base;
 static struct motor_model_params model;

@@ -3,19 +3,13 @@
 #include <unity.h>
 
 #include "firmware/numeric/trig.h"
+#include "tests/unit/emulated.h"
 
 static const double two_pi = 6.283185307179586476925;
 
 #define QUARTER_TURN 0x40000000u
-/* Between angles, prime: visits every phase of every eighth of a turn. The reference is slow in the
-   software double of an emulated core. */
-#ifdef __arm__
-#define STRIDE 100003u
-#define ANGLES 30000u
-#else
-#define STRIDE 10007u
-#define ANGLES 300000u
-#endif
+#define STRIDE       (EMULATED ? 100003u : 10007u) /* prime: every phase of every eighth of a turn */
+#define ANGLES       (EMULATED ? 30000u : 300000u)
 
 void setUp(void)
 {
