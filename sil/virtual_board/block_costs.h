@@ -15,27 +15,10 @@
 namespace virtual_board
 {
 
-/* Of a few instructions. */
-struct BlockCycles {
-    std::uint32_t nominal = 0, worst = 0, flash = 0;
-
-    BlockCycles &operator+=(const BlockCycles &more)
-    {
-        nominal += more.nominal;
-        worst += more.worst;
-        flash += more.flash;
-        return *this;
-    }
-    operator Cycles() const
-    {
-        return {nominal, worst, flash};
-    }
-};
-
 /* Instructions of the same stage. */
 struct BlockPart {
     std::uint8_t stage; /* inherited_stage: that of what comes before */
-    BlockCycles cycles;
+    Cycles cycles;
 };
 
 /* An access of a block's to a register. */
@@ -52,19 +35,20 @@ enum class CodePlace : std::uint8_t { as_wanted, flash, elsewhere };
 /* One line of the host's cache: this is looked up at every block. */
 struct alignas(64) BlockCost {
     std::uint32_t address = no_code;
-    std::uint32_t bytes = 0; /* 0: an empty place */
-    /* Of its first part: its first instruction comes from the one before, or not. */
-    BlockCycles head_after, head;
-    std::uint32_t nominal_after = 0, nominal = 0; /* of all of it, likewise */
-    std::uint32_t instructions = 0;
-    std::uint32_t first_part = 0; /* of the others */
-    std::uint16_t parts = 0;
-    std::uint8_t stage = 0;      /* of its first part */
+    std::uint16_t bytes = 0; /* 0: an empty place */
+    std::uint16_t instructions = 0;
+    std::uint16_t nominal_after = 0, nominal = 0; /* of all of it, likewise */
+    std::uint16_t first_part = 0;                 /* of those behind its head */
+    std::uint8_t parts = 0;
+    std::uint8_t stage = 0; /* of its head */
+    /* Of its head: its first instruction comes from the one before, or not. */
+    Cycles head_after, head;
     bool by_instruction = false; /* it is charged by the instruction: nothing of the above */
     CodePlace place = CodePlace::as_wanted;
-    std::uint8_t accesses = 0; /* to registers, as far as they are known */
+    std::uint8_t accesses = 0;          /* to registers, as far as they are known */
+    std::uint8_t conditional_bytes = 0; /* of the instructions of its last IT block */
     std::uint16_t first_access = 0;
-    AddressRange conditional = {0, 0}; /* instructions of its last IT block */
+    std::uint16_t conditional_from = 0; /* where they begin in it */
 
     static constexpr std::uint32_t no_code = 1; /* instructions have even addresses */
 };
@@ -77,8 +61,11 @@ class BlockCosts
     /* The block at an address with this many bytes, or nullptr. Until the next `set`. */
     const BlockCost *find(std::uint32_t address, std::uint32_t bytes) const
     {
-        const BlockCost &block = table_[place(address)];
-        return block.bytes == bytes ? &block : nullptr;
+        const BlockCost *block = &table_[first_place(address)];
+        if (block->address != address) {
+            block = &table_[place(address)];
+        }
+        return block->bytes == bytes ? block : nullptr;
     }
     const BlockPart *parts(const BlockCost &block) const
     {
@@ -88,21 +75,27 @@ class BlockCosts
     {
         return accesses_.data() + block.first_access;
     }
-    /* Throws std::length_error if they are too many: 255 of a block, some 65,000 in all. */
+    /* These two throw std::length_error above 255 accesses or changes of stage in a block, some
+       65,000 in all. */
     void set_accesses(BlockCost &block, const std::vector<TimedAccess> &accesses);
-    /* In the place of what was known of that address. */
-    const BlockCost &set(const BlockCost &block);
-    /* The sums over some instructions from this address on; their parts are kept here. */
+    /* The sums over some instructions, one at least, from this address on; their parts are kept
+       here. */
     BlockCost sum(std::uint32_t address, const std::vector<InstructionCost> &instructions,
                   const CostRules &rules, CodePlace place);
+    /* In the place of what was known of that address. */
+    const BlockCost &set(const BlockCost &block);
     /* Nothing is known any more. */
     void forget();
 
   private:
+    std::size_t first_place(std::uint32_t address) const
+    {
+        return (address * scatter) >> places_shift_;
+    }
     /* Where the block at an address lies, or is to lie. */
     std::size_t place(std::uint32_t address) const
     {
-        std::size_t at = (address * scatter) >> (32 - size_log2_);
+        std::size_t at = first_place(address);
         while (table_[at].address != address && table_[at].address != BlockCost::no_code) {
             at = (at + 1) & (table_.size() - 1);
         }
@@ -113,8 +106,8 @@ class BlockCosts
     /* 2^32 over the golden ratio: code lies close together, in the table it must not. */
     static constexpr std::uint32_t scatter = 0x9e3779b1;
 
-    unsigned size_log2_ = 12;
-    std::vector<BlockCost> table_ = std::vector<BlockCost>(std::size_t{1} << size_log2_);
+    unsigned places_shift_ = 20; /* 32 less log2 of their number */
+    std::vector<BlockCost> table_ = std::vector<BlockCost>(std::size_t{1} << (32 - places_shift_));
     std::size_t blocks_ = 0;
     std::vector<BlockPart> parts_;
     std::vector<TimedAccess> accesses_;

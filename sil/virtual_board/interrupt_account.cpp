@@ -83,7 +83,7 @@ InterruptAccount::Summary InterruptAccount::summary() const
     }
     summary.latency = latency_.figures();
     summary.preemptions = preemptions_;
-    summary.preempting_cycles = preempting_.nominal;
+    summary.preempting_cycles = preempting_cycles_;
     summary.outside_fast_code = outside_fast_code_;
     return summary;
 }

@@ -46,10 +46,10 @@ class InterruptAccount
     {
         present_[stage] += cycles;
     }
-    /* Cycles of an exception that has interrupted it. */
-    void add_preempting(const Cycles &cycles)
+    /* Nominal cycles of an exception that has interrupted it. */
+    void add_preempting(std::uint32_t cycles)
     {
-        preempting_ += cycles;
+        preempting_cycles_ += cycles;
     }
     void count_preemption()
     {
@@ -89,8 +89,8 @@ class InterruptAccount
     Column total_;
     std::vector<Column> stages_;
     Distribution latency_;
-    std::uint64_t interrupts_ = 0, preemptions_ = 0, outside_fast_code_ = 0;
-    Cycles preempting_;
+    std::uint64_t interrupts_ = 0, preemptions_ = 0, preempting_cycles_ = 0;
+    std::uint64_t outside_fast_code_ = 0;
 };
 
 } // namespace virtual_board

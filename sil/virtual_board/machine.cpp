@@ -139,21 +139,25 @@ void Machine::schedule(Event &event, Ticks at)
         fail("an event is scheduled for the past");
     }
     events_.schedule(event, at);
+    calm_until_ = std::min(calm_until_, events_.next());
 }
 
 void Machine::interrupt(unsigned line, bool level)
 {
     interrupts_.set_line(line, level);
+    calm_until_ = 0;
 }
 
 void Machine::non_maskable_interrupt()
 {
     interrupts_.set_pending(exception::nmi);
+    calm_until_ = 0;
 }
 
 void Machine::reset(const std::string &cause)
 {
     reset_wanted_ = true;
+    calm_until_ = 0;
     reset_cause_ = cause;
 }
 
@@ -223,6 +227,7 @@ void Machine::run()
             change_watch();
         }
         lessons_.abandon(); /* whatever has stopped the core */
+        calm_until_ = 0;
         act_on(core_.run(core_.get(CoreRegister::pc)));
     }
 }
@@ -262,6 +267,9 @@ void Machine::act_on(Stopped stopped)
         return;
     case Stopped::read_only:
         fault("write into the flash that the program runs from", fault_bus_precise);
+        return;
+    case Stopped::unaligned:
+        fault("unaligned access", fault_unaligned);
         return;
     case Stopped::undefined_instruction:
         fault("undefined instruction", fault_undefined_instruction);

@@ -54,6 +54,7 @@ class Machine final : private CoreObserver, public Chip
     void stop()
     {
         stop_wanted_ = true;
+        calm_until_ = 0;
     }
     /* Between two calls of run(): halts the core, as a debugger does, for so long; all else goes
      * on.
@@ -136,11 +137,11 @@ class Machine final : private CoreObserver, public Chip
     bool before_unusual_block(std::uint32_t address, unsigned bytes);
     unsigned conditional_bytes(std::uint32_t address);
     const InstructionCost &visit(std::uint32_t address, unsigned bytes);
-    void refill_behind_branch(bool straight);
     const BlockCost &instruction(std::uint32_t address, unsigned bytes);
     const BlockCost &visit_instruction(std::uint32_t address, unsigned bytes);
     CodePlace place_of(std::uint32_t address) const;
     bool quiet() const;
+    Ticks calm_until() const;
     void begin(const BlockCost &block);
     void begin_block(const BlockCost &block);
     const BlockCost &visit_block(std::uint32_t address, unsigned bytes);
@@ -159,17 +160,14 @@ class Machine final : private CoreObserver, public Chip
                costs_.find(next_address_)->bytes > 0;
     }
     void charge(const BlockCost &block);
+    void charge_control(const BlockCost &block, bool straight, bool behind_branch);
     void add_time(const Cycles &cycles, unsigned stage);
     void add_time(const Cycles &cycles)
     {
         add_time(cycles, stage_);
     }
     void account(const Cycles &cycles, unsigned stage);
-    void account(const Cycles &cycles)
-    {
-        account(cycles, stage_);
-    }
-    void inject(const BlockCost &block);
+    void look_after_control();
     void serve_events();
     void finish_instruction()
     {
@@ -215,6 +213,9 @@ class Machine final : private CoreObserver, public Chip
 
     /* time */
     Ticks now_ = 0, instruction_end_ = 0, core_cycle_ = 1;
+    /* Before that, blocks only have to be charged: no event comes, nothing is wanted of the core.
+       0 as soon as that may have changed; the next block finds out. */
+    Ticks calm_until_ = 0;
     Ticks sampled_at_ = 0;
 
     /* the present instruction, and what the next one has to know of it */

@@ -63,8 +63,7 @@ std::uint32_t Machine::read(std::uint32_t address, unsigned bytes)
     if (description_.flash.contains(address)) {
         const Ticks free = flash_->busy_until(address);
         if (free > now_) { /* the bus waits for the end of the operation */
-            const std::uint64_t cycles = (free - now_ + core_cycle_ - 1) / core_cycle_;
-            add_time({cycles, cycles, cycles});
+            add_time(in_every_column((free - now_ + core_cycle_ - 1) / core_cycle_));
         }
         flash_->core_reads(address, bytes);
         return little_endian(memory(address, bytes), bytes);
@@ -89,6 +88,7 @@ void Machine::write(std::uint32_t address, unsigned bytes, std::uint32_t value)
     if (own && address < 0xe0040000) {
         const bool allowed = system_.floating_point_allowed();
         system_.write(address - SystemControl::base, bytes, value, Master::core);
+        calm_until_ = 0;
         if (system_.floating_point_allowed() != allowed) {
             allow_floating_point();
         }

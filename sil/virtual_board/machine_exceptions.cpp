@@ -218,7 +218,6 @@ void Machine::leave(std::uint32_t exception_return)
         --above_control_;
     }
     if (next != 0) { /* tail-chaining: the frame stays, another handler takes over */
-        const std::uint64_t tail = description_.core.tail_chain_cycles;
         if (next == control_exception_) {
             above_control_ = 1;
             first_of_control_ = true;
@@ -228,7 +227,7 @@ void Machine::leave(std::uint32_t exception_return)
         } else if (above_control_ > 0) {
             ++above_control_;
         }
-        add_time({tail, tail, tail});
+        add_time(in_every_column(description_.core.tail_chain_cycles));
         enter_handler(next, exception_return);
     } else {
         pop_frame(exception_return);

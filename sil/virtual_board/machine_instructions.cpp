@@ -14,6 +14,7 @@ void Machine::serve_events()
         events_.take().happen();
     }
     now_ = present;
+    calm_until_ = 0;
 }
 
 /* Cycles of the present instruction or exception, on the control interrupt's bill if it is its. */
@@ -22,7 +23,7 @@ inline void Machine::account(const Cycles &cycles, unsigned stage)
     if (above_control_ == 1) {
         account_.add(stage, cycles);
     } else if (above_control_ > 1) {
-        account_.add_preempting(cycles);
+        account_.add_preempting(cycles.nominal);
     }
 }
 
@@ -64,67 +65,70 @@ const InstructionCost &Machine::visit(std::uint32_t address, unsigned bytes)
     return *cost;
 }
 
-inline void Machine::refill_behind_branch(bool straight)
-{
-    if (!straight && next_address_ != 0) {
-        account(costs_.rules.refill); /* belongs to the branch */
-        now_ += costs_.rules.refill.nominal * core_cycle_;
-    }
-}
-
 /* What instructions that are executed behind one another cost. */
 inline void Machine::charge(const BlockCost &block)
 {
     const bool straight = block.address == next_address_;
-    refill_behind_branch(straight);
+    const bool behind_branch = !straight && next_address_ != 0;
     next_address_ = block.address + block.bytes;
-    if (block.conditional.bytes > 0) {
-        conditional_ = block.conditional;
+    if (block.conditional_bytes > 0) {
+        conditional_ = {block.address + block.conditional_from, block.conditional_bytes};
     }
-    instruction_end_ = now_ + (straight ? block.nominal_after : block.nominal) * core_cycle_;
-    if (above_control_ == 0) {
-        return;
+    if (above_control_ == 1) {
+        charge_control(block, straight, behind_branch);
+    }
+    const unsigned refill = behind_branch ? costs_.rules.refill.nominal : 0;
+    const unsigned nominal = straight ? block.nominal_after : block.nominal;
+    now_ += refill * core_cycle_;
+    instruction_end_ = now_ + nominal * core_cycle_;
+    if (above_control_ > 1) {
+        account_.add_preempting(refill + nominal);
+    }
+}
+
+inline void Machine::charge_control(const BlockCost &block, bool straight, bool behind_branch)
+{
+    if (behind_branch) {
+        account_.add(stage_, costs_.rules.refill); /* belongs to the branch */
     }
     stage_ = block.stage != inherited_stage ? block.stage : stage_;
-    account(straight ? block.head_after : block.head);
+    account_.add(stage_, straight ? block.head_after : block.head);
     if (block.parts > 0) {
         const BlockPart *const parts = blocks_.parts(block);
         for (unsigned i = 0; i < block.parts; ++i) {
             stage_ = parts[i].stage; /* known, or it would be the part's before */
-            account(parts[i].cycles);
+            account_.add(stage_, parts[i].cycles);
         }
+    }
+    control_instructions_ += block.instructions;
+    if (block.place != CodePlace::as_wanted) {
+        account_.count_outside_fast_code();
     }
 }
 
-/* In the control interrupt: its first instruction, code out of place, and what a test injects. */
-void Machine::inject(const BlockCost &block)
+/* In the control interrupt: its first instruction, and what a test injects. */
+void Machine::look_after_control()
 {
+    if (above_control_ != 1) {
+        return;
+    }
     if (first_of_control_) {
         first_of_control_ = false;
         account_.latency((now_ - sampled_at_) / core_cycle_);
     }
-    if (block.place != CodePlace::as_wanted) {
-        account_.count_outside_fast_code();
-    }
     if (stall_cycles_ > 0 && control_instructions_ > stall_at_) {
-        const Cycles stall = {stall_cycles_, stall_cycles_, stall_cycles_};
+        const Cycles stall = in_every_column(stall_cycles_);
         stall_cycles_ = 0;
         add_time(stall);
     }
 }
 
 /* This and what it calls run before every block and every instruction that is watched by itself:
- * most of the simulation's time. */
+ * much of the simulation's time. */
 inline void Machine::begin(const BlockCost &block)
 {
     pc_ = block.address;
     charge(block);
-    if (above_control_ == 1) {
-        control_instructions_ += block.instructions;
-        if (first_of_control_ || block.place != CodePlace::as_wanted || stall_cycles_ > 0) {
-            inject(block);
-        }
-    }
 }
 
 inline void Machine::begin_block(const BlockCost &block)
@@ -139,6 +143,13 @@ inline bool Machine::quiet() const
 {
     return now_ < events_.next() && !stop_wanted_ && !reset_wanted_ && !watch_changes_ &&
            !interrupts_.may_preempt();
+}
+
+/* Until when blocks need no more than to be charged, unless something is wanted before. */
+inline Ticks Machine::calm_until() const
+{
+    const bool calm = quiet() && !lessons_.running() && !first_of_control_ && stall_cycles_ == 0;
+    return calm ? events_.next() : 0;
 }
 
 /* The events that are due; and whether the instruction at this address is the next, all the same.
@@ -172,6 +183,7 @@ bool Machine::before_instruction(std::uint32_t address, unsigned bytes)
         finish_instruction();
     }
     begin(instruction(address, bytes));
+    look_after_control();
     return true;
 }
 
@@ -186,7 +198,7 @@ bool Machine::before_block(std::uint32_t address, unsigned bytes)
 {
     finish_instruction();
     const BlockCost *const block = blocks_.find(address, bytes);
-    if (block == nullptr || block->by_instruction || lessons_.running() || !quiet()) {
+    if (block == nullptr || block->by_instruction || now_ >= calm_until_) {
         return before_unusual_block(address, bytes);
     }
     begin_block(*block);
@@ -196,6 +208,7 @@ bool Machine::before_block(std::uint32_t address, unsigned bytes)
 bool Machine::before_unusual_block(std::uint32_t address, unsigned bytes)
 {
     block_ = nullptr;
+    calm_until_ = 0;
     end_lesson();
     const BlockCost *block = blocks_.find(address, bytes);
     if (block == nullptr) {
@@ -209,6 +222,8 @@ bool Machine::before_unusual_block(std::uint32_t address, unsigned bytes)
         return false;
     }
     begin_block(*block);
+    look_after_control();
+    calm_until_ = calm_until();
     return true;
 }
 

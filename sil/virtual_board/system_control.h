@@ -18,6 +18,7 @@ enum : std::uint32_t {
     fault_bus_address_valid = 1u << 15,
     fault_bus_fetch = 1u << 8,
     fault_undefined_instruction = 1u << 16,
+    fault_unaligned = 1u << 24,
     fault_forced = 1u << 30
 };
 

@@ -14,9 +14,15 @@ namespace
 {
 
 /* Numbers of libunicorn's hook for what the core itself calls exceptions. */
-enum : std::uint32_t { core_supervisor_call = 2, core_breakpoint = 7, core_exception_return = 8 };
+enum : std::uint32_t {
+    core_supervisor_call = 2,
+    core_data_abort = 4, /* left for what is not aligned: what is not mapped ends the run itself */
+    core_breakpoint = 7,
+    core_exception_return = 8
+};
 
-constexpr int pairs = 8; /* of single-precision registers: S0...S15 */
+constexpr std::uint32_t page_bytes = 2048; /* of its tables; least work of 1, 2, 4 and 16 KB */
+constexpr int pairs = 8;                   /* of single-precision registers: S0...S15 */
 
 int number_of(CoreRegister name)
 {
@@ -110,6 +116,9 @@ struct UnicornCore::Callbacks {
         case core_supervisor_call:
             core.reason_ = Stopped::supervisor_call;
             return;
+        case core_data_abort:
+            core.reason_ = Stopped::unaligned;
+            return;
         case core_breakpoint:
             core.reason_ = Stopped::breakpoint;
             return;
@@ -142,11 +151,12 @@ struct UnicornCore::Callbacks {
 
 UnicornCore::UnicornCore(const CoreModel &model, CoreObserver &observer) : observer_(observer)
 {
-    check(uc_open(UC_ARCH_ARM, static_cast<uc_mode>(UC_MODE_THUMB | UC_MODE_MCLASS), &engine_),
-          "open");
+    /* Without UC_MODE_MCLASS, which is a Cortex-M33 whatever model is asked for. */
+    check(uc_open(UC_ARCH_ARM, UC_MODE_THUMB, &engine_), "open");
     const int cpu =
         model.architecture == Architecture::armv7em ? UC_CPU_ARM_CORTEX_M4 : UC_CPU_ARM_CORTEX_M0;
     check(uc_ctl_set_cpu_model(engine_, cpu), "model of the core");
+    check(uc_ctl_set_page_size(engine_, page_bytes), "page size");
     watch_instructions(1, 0); /* everywhere */
     uc_hook hook = 0;
     check(uc_hook_add(engine_, &hook, UC_HOOK_INTR, reinterpret_cast<void *>(&Callbacks::interrupt),
@@ -238,6 +248,16 @@ std::uint32_t UnicornCore::get(CoreRegister name) const
 void UnicornCore::set(CoreRegister name, std::uint32_t value)
 {
     check(uc_reg_write(engine_, number_of(name), &value), "register");
+    if (name == CoreRegister::xpsr) {
+        renew_mode(value);
+    }
+}
+
+/* The emulator translates code by the mode (thread, handler) that it has noted; the write of xPSR
+   does not renew that note, the one of its flags does. */
+void UnicornCore::renew_mode(std::uint32_t status)
+{
+    check(uc_reg_write(engine_, UC_ARM_REG_APSR_NZCV, &status), "flags");
 }
 
 void UnicornCore::get(const CoreRegister *names, std::size_t count, std::uint32_t *values) const
@@ -252,6 +272,10 @@ void UnicornCore::set(const CoreRegister *names, std::size_t count, const std::u
     int numbers[most];
     std::transform(names, names + count, numbers, number_of);
     set(numbers, count, values);
+    const CoreRegister *const status = std::find(names, names + count, CoreRegister::xpsr);
+    if (status != names + count) {
+        renew_mode(values[status - names]);
+    }
 }
 
 /* By pairs, D0...D7, which the emulator finds quicker. */
@@ -282,7 +306,7 @@ void UnicornCore::get(int *numbers, std::size_t count, std::uint32_t *values,
 void UnicornCore::set(int *numbers, std::size_t count, const std::uint32_t *values,
                       std::size_t words)
 {
-    void *places[most]; /* only read */
+    void *places[most] = {}; /* only read */
     for (std::size_t i = 0; i < count; ++i) {
         places[i] = const_cast<std::uint32_t *>(&values[words * i]);
     }

@@ -60,6 +60,7 @@ enum class Stopped {
     unmapped_write,
     unmapped_fetch,
     read_only,
+    unaligned,
     undefined_instruction
 };
 
@@ -124,6 +125,7 @@ class UnicornCore
     /* By libunicorn's numbers, which it does not change; each of so many words. */
     void get(int *numbers, std::size_t count, std::uint32_t *values, std::size_t words = 1) const;
     void set(int *numbers, std::size_t count, const std::uint32_t *values, std::size_t words = 1);
+    void renew_mode(std::uint32_t status);
     void stop();
     void watch_instructions(std::uint64_t first, std::uint64_t last);
 

@@ -44,7 +44,7 @@ PULLS = {"NONE": 0, "UP": 1, "DOWN": 2}
 
 class Chip:
     def __init__(self, elf):
-        self.core = unicorn.Uc(unicorn.UC_ARCH_ARM, unicorn.UC_MODE_THUMB | unicorn.UC_MODE_MCLASS)
+        self.core = unicorn.Uc(unicorn.UC_ARCH_ARM, unicorn.UC_MODE_THUMB)
         self.core.ctl_set_cpu_model(arm_const.UC_CPU_ARM_CORTEX_M4)
         for start, size in MEMORY + REGISTERS + CORE:
             self.core.mem_map(start, size)

@@ -15,8 +15,9 @@ class ProbeDevice : public virtual_board::Device,
                     private virtual_board::FlashMemory
 {
   public:
-    explicit ProbeDevice(virtual_board::Machine &machine)
-        : machine_(machine), flash_(512 * 1024, 0xff)
+    explicit ProbeDevice(virtual_board::Machine &machine,
+                         const virtual_board::ChipDescription &chip = virtual_board::stm32g474())
+        : machine_(machine), flash_(chip.flash.bytes, 0xff)
     {
         for (unsigned line = 0; line < lines; ++line) {
             events_.emplace_back([this, line] { machine_.interrupt(line, true); });

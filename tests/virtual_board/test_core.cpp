@@ -1,4 +1,5 @@
-/* The virtual board's core executes exceptions, sleep, faults and time as a Cortex-M4F does. */
+/* The virtual board's core executes exceptions, sleep, faults and time as a Cortex-M4F does, and
+   the instructions of the core that it is. */
 #include <string>
 #include <vector>
 
@@ -16,10 +17,13 @@ namespace
 
 /* A program that has run to its end, or to what stopped it. */
 struct Run {
-    explicit Run(const std::string &program) : machine(virtual_board::stm32g474()), probe(machine)
+    explicit Run(const std::string &program,
+                 const virtual_board::ChipDescription &chip = virtual_board::stm32g474())
+        : image(ElfImage::read(PROGRAMS "/" + program + ".elf")), machine(chip),
+          probe(machine, chip)
     {
         machine.attach(probe);
-        machine.load(ElfImage::read(PROGRAMS "/" + program + ".elf"));
+        machine.load(image);
         machine.power_on();
         try {
             while (!probe.ended) {
@@ -30,10 +34,15 @@ struct Run {
         }
     }
 
+    ElfImage image;
     Machine machine;
     ProbeDevice probe;
     std::string failure;
 
+    std::string place(std::size_t entry) const
+    {
+        return image.place(probe.log.at(entry).value);
+    }
     std::uint64_t cycle(std::size_t entry) const
     {
         return probe.log.at(entry).at / machine.core_cycle();
@@ -111,14 +120,45 @@ void access_to_nothing_is_a_hard_fault_at_its_instruction()
     TEST_ASSERT_EQUAL_STRING("", run.failure.c_str());
     TEST_ASSERT_EQUAL_UINT32(7, run.probe.result);
     assert_contains("reads_nothing+0x0", run.machine.fault());
-    assert_contains(virtual_board::ElfImage::read(PROGRAMS "/bad_access.elf")
-                        .place(run.probe.log.at(0).value)
-                        .c_str(),
-                    run.machine.fault());
+    assert_contains(run.place(0).c_str(), run.machine.fault());
     TEST_ASSERT_EQUAL_HEX32(virtual_board::fault_bus_precise |
                                 virtual_board::fault_bus_address_valid,
                             run.probe.log.at(1).value);
     TEST_ASSERT_EQUAL_HEX32(virtual_board::fault_forced, run.probe.log.at(2).value);
+}
+
+void assert_faults_are_at(const Run &run, const std::vector<std::string> &places)
+{
+    TEST_ASSERT_EQUAL_STRING("", run.failure.c_str());
+    TEST_ASSERT_EQUAL_size_t(places.size(), run.probe.log.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        assert_contains((places[i] + "+0x0").c_str(), run.place(i));
+    }
+    assert_contains("undefined instruction", run.machine.fault());
+}
+
+/* An image that runs here but not on the chip would be worse than none. */
+void instructions_of_other_cores_are_undefined()
+{
+    assert_faults_are_at(Run("other_cores"),
+                         {"armv8m_test_target", "armv8m_load_acquire", "double_precision"});
+    assert_faults_are_at(Run("other_cores_m0plus", virtual_board::stm32g071()),
+                         {"armv7m_divide", "armv7m_move", "armv7m_float"});
+}
+
+/* The Cortex-M4 reads it in two; the M0+ has a HardFault. */
+void word_across_a_boundary_is_read_or_a_fault()
+{
+    const Run in_two("unaligned");
+    TEST_ASSERT_EQUAL_size_t(0, in_two.probe.log.size());
+    TEST_ASSERT_EQUAL_HEX32(0x44332211, in_two.probe.result);
+
+    const Run refused("unaligned_m0plus", virtual_board::stm32g071());
+    TEST_ASSERT_EQUAL_STRING("", refused.failure.c_str());
+    TEST_ASSERT_EQUAL_size_t(1, refused.probe.log.size());
+    assert_contains("reads_across+0x0", refused.place(0));
+    assert_contains("unaligned", refused.machine.fault());
+    TEST_ASSERT_EQUAL_HEX32(0, refused.probe.result);
 }
 
 void stack_below_its_limit_is_told()
@@ -187,6 +227,8 @@ int main()
     RUN_TEST(sleep_ends_with_its_interrupt);
     RUN_TEST(cycle_counter_counts_the_time);
     RUN_TEST(access_to_nothing_is_a_hard_fault_at_its_instruction);
+    RUN_TEST(instructions_of_other_cores_are_undefined);
+    RUN_TEST(word_across_a_boundary_is_read_or_a_fault);
     RUN_TEST(stack_below_its_limit_is_told);
     RUN_TEST(stops_between_instructions_change_nothing);
     RUN_TEST(reset_starts_anew_and_keeps_memory);
