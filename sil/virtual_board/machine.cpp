@@ -97,7 +97,7 @@ void Machine::power_on()
 /* The core leaves reset. */
 void Machine::start()
 {
-    reset_wanted_ = false;
+    reset_wanted_ = asleep_ = false;
     core_cycle_ = description_.waking_core_cycle;
     system_.reset();
     device_->reset(reset_cause_);
@@ -228,7 +228,11 @@ void Machine::run()
         }
         lessons_.abandon(); /* whatever has stopped the core */
         calm_until_ = 0;
-        act_on(core_.run(core_.get(CoreRegister::pc)));
+        if (asleep_) {
+            sleep();
+        } else {
+            act_on(core_.run(core_.get(CoreRegister::pc)));
+        }
     }
 }
 
@@ -243,7 +247,7 @@ void Machine::act_on(Stopped stopped)
         return;
     case Stopped::by_itself:
         end_lesson();
-        sleep();
+        fall_asleep();
         return;
     case Stopped::exception_return:
         end_lesson(); /* the handler's last block */
@@ -287,8 +291,8 @@ void Machine::halt(Ticks duration)
     now_ = instruction_end_ = end;
 }
 
-/* WFI: time jumps from event to event until something wakes the core. */
-void Machine::sleep()
+/* The core has stopped by itself, which is WFI. */
+void Machine::fall_asleep()
 {
     pc_ = next_address_ - 2; /* of a block the last instruction */
     const std::uint8_t *const code = memory(pc_, 2);
@@ -299,6 +303,13 @@ void Machine::sleep()
         fail("WFI with SCR.SLEEPDEEP, which is not modelled");
     }
     next_address_ = 0;
+    sleep();
+}
+
+/* Time jumps from event to event until something wakes the core, or whoever runs it wants it to
+   stop: then it sleeps on when it is run again. */
+void Machine::sleep()
+{
     const Masks present = masks();
     while (!interrupts_.wakes(present) && !stop_wanted_ && !reset_wanted_) {
         if (events_.next() == Event::never) {
@@ -308,9 +319,8 @@ void Machine::sleep()
         serve_events();
     }
     instruction_end_ = now_;
-    if (!interrupts_.wakes(present)) {
-        core_.set(CoreRegister::pc, pc_); /* sleeps on when it is run again */
-    } else if (!reset_wanted_ && interrupts_.to_enter(present) != 0) {
+    asleep_ = !interrupts_.wakes(present);
+    if (!asleep_ && !reset_wanted_ && interrupts_.to_enter(present) != 0) {
         enter(interrupts_.to_enter(present));
     }
 }

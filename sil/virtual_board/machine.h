@@ -182,6 +182,7 @@ class Machine final : private CoreObserver, public Chip
 
     Masks masks() const;
     void act_on(Stopped stopped);
+    void fall_asleep();
     void sleep();
     void start();
     void enter(unsigned exception);
@@ -237,6 +238,7 @@ class Machine final : private CoreObserver, public Chip
     /* what the core is to do before the next instruction */
     unsigned to_enter_ = 0;
     bool stop_wanted_ = false, reset_wanted_ = false;
+    bool asleep_ = false; /* by WFI */
     std::string reset_cause_;
 
     /* control interrupt: 0 not active, 1 it runs, 2 and more: others above it */

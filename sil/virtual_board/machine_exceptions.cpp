@@ -29,13 +29,13 @@ Cycles plus(Cycles a, const Cycles &b)
 
 Masks Machine::masks() const
 {
-    Masks masks;
-    masks.primask = (core_.get(CoreRegister::primask) & 1) != 0;
-    if (description_.core.architecture == Architecture::armv7em) {
-        masks.faultmask = (core_.get(CoreRegister::faultmask) & 1) != 0;
-        masks.base_priority = core_.get(CoreRegister::base_priority) & 0xff;
+    if (description_.core.architecture == Architecture::armv6m) {
+        return {(core_.get(CoreRegister::primask) & 1) != 0, false, 0};
     }
-    return masks;
+    std::uint32_t values[3];
+    core_.get({CoreRegister::primask, CoreRegister::faultmask, CoreRegister::base_priority},
+              values);
+    return {(values[0] & 1) != 0, (values[1] & 1) != 0, values[2] & 0xff};
 }
 
 void Machine::check_stack(std::uint32_t stack_pointer) const
@@ -136,17 +136,16 @@ void Machine::enter(unsigned exception)
 void Machine::enter_handler(unsigned exception, std::uint32_t link)
 {
     interrupts_.enter(exception);
-    const std::uint32_t status = core_.get(CoreRegister::xpsr);
-    core_.set(CoreRegister::xpsr, (status & 0xf80f0000) | 1u << 24 | exception);
     if (description_.core.floating_point) {
         core_.set(CoreRegister::control, core_.get(CoreRegister::control) & ~floating_point_in_use);
     }
-    core_.set(CoreRegister::lr, link);
     const std::uint32_t vector = load(system_.vector_table() + 4 * exception, 4);
     if ((vector & 1) == 0) {
         fail("the vector of exception " + std::to_string(exception) + " has no Thumb bit");
     }
-    core_.set(CoreRegister::pc, vector);
+    const std::uint32_t status = core_.get(CoreRegister::xpsr);
+    const std::uint32_t values[] = {(status & 0xf80f0000) | 1u << 24 | exception, link, vector};
+    core_.set({CoreRegister::xpsr, CoreRegister::lr, CoreRegister::pc}, values);
     next_address_ = 0;
     conditional_ = {0, 0};
 }
