@@ -37,12 +37,12 @@ struct alignas(64) BlockCost {
     std::uint32_t address = no_code;
     std::uint16_t bytes = 0; /* 0: an empty place */
     std::uint16_t instructions = 0;
-    std::uint16_t nominal_after = 0, nominal = 0; /* of all of it, likewise */
-    std::uint16_t first_part = 0;                 /* of those behind its head */
+    /* Of all of it: its first instruction comes from the one before, or not. */
+    std::uint16_t nominal_after = 0, nominal = 0;
+    std::uint16_t first_part = 0; /* of those behind its head */
     std::uint8_t parts = 0;
-    std::uint8_t stage = 0; /* of its head */
-    /* Of its head: its first instruction comes from the one before, or not. */
-    Cycles head_after, head;
+    std::uint8_t stage = 0;      /* of its head */
+    Cycles head_after, head;     /* likewise */
     bool by_instruction = false; /* it is charged by the instruction: nothing of the above */
     CodePlace place = CodePlace::as_wanted;
     std::uint8_t accesses = 0;          /* to registers, as far as they are known */
@@ -75,8 +75,8 @@ class BlockCosts
     {
         return accesses_.data() + block.first_access;
     }
-    /* These two throw std::length_error above 255 accesses or changes of stage in a block, some
-       65,000 in all. */
+    /* These two throw std::length_error above 255 accesses or changes of stage in a block, 65,535
+       of them in all, and as many bytes or cycles of a block. */
     void set_accesses(BlockCost &block, const std::vector<TimedAccess> &accesses);
     /* The sums over some instructions, one at least, from this address on; their parts are kept
        here. */

@@ -20,7 +20,7 @@
 namespace virtual_board
 {
 
-/* Of a few instructions, or of one control interrupt: half a minute at most. */
+/* Of a few instructions, or of one control interrupt: 25 s at most. */
 struct alignas(16) Cycles {
     std::uint32_t nominal = 0, worst = 0, flash = 0;
     std::uint32_t fourth = 0; /* none: with it, the host adds all of them at once */

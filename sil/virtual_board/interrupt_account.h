@@ -72,7 +72,7 @@ class InterruptAccount
         std::vector<CycleFigures> stages;
         Figures latency; /* core cycles from S(k) to the first instruction */
         std::uint64_t preemptions = 0, preempting_cycles = 0;
-        std::uint64_t outside_fast_code = 0; /* its instructions executed from slower memory */
+        std::uint64_t outside_fast_code = 0; /* its blocks executed from slower memory */
     };
     Summary summary() const;
 

@@ -90,7 +90,7 @@ class InterruptController
         return static_cast<unsigned>(stack_.size());
     }
 
-    /* Without regard of the masks: quick, asked before every instruction. */
+    /* Without regard of the masks: quick, asked again and again. */
     bool may_preempt() const
     {
         return next_priority_ < running_priority_;

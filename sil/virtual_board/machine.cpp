@@ -101,6 +101,7 @@ void Machine::start()
     core_cycle_ = description_.waking_core_cycle;
     system_.reset();
     device_->reset(reset_cause_);
+    core_.set(CoreRegister::xpsr, 1u << 24 | exception::hard_fault); /* may write the others */
     for (const CoreRegister name :
          {CoreRegister::control, CoreRegister::primask, CoreRegister::faultmask,
           CoreRegister::base_priority, CoreRegister::fpscr}) {
@@ -303,6 +304,7 @@ void Machine::fall_asleep()
         fail("WFI with SCR.SLEEPDEEP, which is not modelled");
     }
     next_address_ = 0;
+    asleep_ = true;
     sleep();
 }
 

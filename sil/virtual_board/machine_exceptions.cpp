@@ -12,6 +12,7 @@ namespace
 
 constexpr std::uint32_t floating_point_in_use = 1u << 2; /* CONTROL.FPCA */
 constexpr std::uint32_t process_stack = 1u << 1;         /* CONTROL.SPSEL */
+constexpr std::uint32_t unprivileged = 1u << 0;          /* CONTROL.nPRIV */
 constexpr std::uint32_t basic_words = 8, extended_words = 26;
 
 /* The basic frame in its order, and behind it, no part of it, where it goes. */
@@ -57,10 +58,11 @@ void Machine::check_floating_point() const
 }
 
 /*
- * From the moment that the FPU is allowed on, CONTROL.FPCA stays set: the emulator begins a new
- * floating-point context, FPSCR included, by a flag that it keeps with the code it has translated,
- * and behind a conditional instruction that flag is not always right. So every exception from then
- * on stacks the long frame; silicon spares that where nothing of floating point was done before.
+ * From the moment that the FPU is allowed on, CONTROL.FPCA is set, but for handlers that have done
+ * nothing of floating point: the emulator begins a new floating-point context, FPSCR included, by a
+ * flag that it keeps with the code it has translated, and behind a conditional instruction that
+ * flag is not always right. So every exception from then on stacks the long frame; silicon spares
+ * that where nothing of floating point was done before.
  */
 void Machine::allow_floating_point()
 {
@@ -78,10 +80,12 @@ void Machine::allow_floating_point()
 /* Returns the EXC_RETURN for what was running. */
 std::uint32_t Machine::push_frame()
 {
-    const std::uint32_t control =
-        description_.core.floating_point ? core_.get(CoreRegister::control) : 0;
+    const std::uint32_t control = core_.get(CoreRegister::control);
     if ((control & process_stack) != 0) {
         fail("the process stack (CONTROL.SPSEL) is not modelled");
+    }
+    if ((control & unprivileged) != 0) {
+        fail("unprivileged code (CONTROL.nPRIV) is not modelled");
     }
     if ((control & floating_point_in_use) != 0) {
         check_floating_point();
@@ -164,6 +168,7 @@ void Machine::pop_frame(std::uint32_t exception_return)
     if (extended) {
         core_.set_floating_point(&frame[8]);
         core_.set(CoreRegister::fpscr, frame[24]);
+        core_.set(CoreRegister::control, core_.get(CoreRegister::control) | floating_point_in_use);
     }
     const std::uint32_t padding = (frame[7] >> 9 & 1) != 0 ? 4 : 0;
     const std::uint32_t back[] = {frame[0],
@@ -253,7 +258,8 @@ void Machine::fault(const std::string &what, std::uint32_t status)
             throw Failure(std::string("lockup by a ") + failure.what());
         }
     }
-    core_.set(CoreRegister::pc, pc_ | 1);
+    const bool fetch = (status & fault_bus_fetch) != 0; /* it is told where the jump is */
+    core_.set(CoreRegister::pc, (fetch ? core_.get(CoreRegister::pc) : pc_) | 1);
     const unsigned own = (status & 0xffff0000) != 0 ? exception::usage_fault : exception::bus_fault;
     unsigned taken = exception::hard_fault;
     if (interrupts_.enabled(own) && status != 0) {

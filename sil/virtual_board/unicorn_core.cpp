@@ -16,13 +16,15 @@ namespace
 /* Numbers of libunicorn's hook for what the core itself calls exceptions. */
 enum : std::uint32_t {
     core_supervisor_call = 2,
+    core_prefetch_abort = 3,
     core_data_abort = 4, /* left for what is not aligned: what is not mapped ends the run itself */
     core_breakpoint = 7,
     core_exception_return = 8
 };
 
-constexpr std::uint32_t page_bytes = 2048; /* of its tables; least work of 1, 2, 4 and 16 KB */
-constexpr int pairs = 8;                   /* of single-precision registers: S0...S15 */
+/* Of its tables: least work of 1, 2, 4, 8 and 32 KB. Blocks end where a page does. */
+constexpr std::uint32_t page_bytes = 4096;
+constexpr int pairs = 8; /* of single-precision registers: S0...S15 */
 
 int number_of(CoreRegister name)
 {
@@ -116,6 +118,9 @@ struct UnicornCore::Callbacks {
         case core_supervisor_call:
             core.reason_ = Stopped::supervisor_call;
             return;
+        case core_prefetch_abort:
+            core.reason_ = Stopped::unmapped_fetch;
+            return;
         case core_data_abort:
             core.reason_ = Stopped::unaligned;
             return;
@@ -156,12 +161,24 @@ UnicornCore::UnicornCore(const CoreModel &model, CoreObserver &observer) : obser
     const int cpu =
         model.architecture == Architecture::armv7em ? UC_CPU_ARM_CORTEX_M4 : UC_CPU_ARM_CORTEX_M0;
     check(uc_ctl_set_cpu_model(engine_, cpu), "model of the core");
-    check(uc_ctl_set_page_size(engine_, page_bytes), "page size");
+    set_page_size();
     watch_instructions(1, 0); /* everywhere */
     uc_hook hook = 0;
     check(uc_hook_add(engine_, &hook, UC_HOOK_INTR, reinterpret_cast<void *>(&Callbacks::interrupt),
                       this, 1, 0),
           "hook");
+}
+
+/* It takes twice what it is asked for. */
+void UnicornCore::set_page_size()
+{
+    std::uint32_t taken = 0;
+    check(uc_ctl_set_page_size(engine_, page_bytes / 2), "page size");
+    check(uc_ctl_get_page_size(engine_, &taken), "page size");
+    if (taken != page_bytes) {
+        throw std::runtime_error("libunicorn: pages of " + std::to_string(taken) + " bytes, not " +
+                                 std::to_string(page_bytes));
+    }
 }
 
 UnicornCore::~UnicornCore()
@@ -247,10 +264,7 @@ std::uint32_t UnicornCore::get(CoreRegister name) const
 
 void UnicornCore::set(CoreRegister name, std::uint32_t value)
 {
-    check(uc_reg_write(engine_, number_of(name), &value), "register");
-    if (name == CoreRegister::xpsr) {
-        renew_mode(value);
-    }
+    set(&name, 1, &value);
 }
 
 /* The emulator translates code by the mode (thread, handler) that it has noted; the write of xPSR
@@ -271,6 +285,8 @@ void UnicornCore::set(const CoreRegister *names, std::size_t count, const std::u
 {
     int numbers[most];
     std::transform(names, names + count, numbers, number_of);
+    std::replace(numbers, numbers + count, static_cast<int>(UC_ARM_REG_XPSR),
+                 static_cast<int>(UC_ARM_REG_XPSR_NZCVQG)); /* the other does not write GE */
     set(numbers, count, values);
     const CoreRegister *const status = std::find(names, names + count, CoreRegister::xpsr);
     if (status != names + count) {

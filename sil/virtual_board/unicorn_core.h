@@ -71,9 +71,6 @@ enum class MemoryUse {
     both
 };
 
-/* A word that code jumps to in order to return from an exception, and above. */
-constexpr std::uint32_t first_exception_return = 0xffffffe0;
-
 class UnicornCore
 {
   public:
@@ -82,7 +79,7 @@ class UnicornCore
     UnicornCore(const UnicornCore &) = delete;
     UnicornCore &operator=(const UnicornCore &) = delete;
 
-    /* `host`: the memory's contents; they stay the caller's. Whole kilobytes times 4. */
+    /* `host`: the memory's contents; they stay the caller's. Whole pages of 4 KB. */
     void map_memory(AddressRange range, std::uint8_t *host, MemoryUse use);
     void map_registers(AddressRange range);
     /* Every instruction is watched by itself, until this is called: from then on all blocks are,
@@ -125,6 +122,7 @@ class UnicornCore
     /* By libunicorn's numbers, which it does not change; each of so many words. */
     void get(int *numbers, std::size_t count, std::uint32_t *values, std::size_t words = 1) const;
     void set(int *numbers, std::size_t count, const std::uint32_t *values, std::size_t words = 1);
+    void set_page_size();
     void renew_mode(std::uint32_t status);
     void stop();
     void watch_instructions(std::uint64_t first, std::uint64_t last);
