@@ -142,7 +142,6 @@ class Machine final : private CoreObserver, public Chip
     CodePlace place_of(std::uint32_t address) const;
     bool quiet() const;
     Ticks calm_until() const;
-    void begin(const BlockCost &block);
     void begin_block(const BlockCost &block);
     const BlockCost &visit_block(std::uint32_t address, unsigned bytes);
     std::vector<TimedAccess> timed(const std::vector<RegisterAccess> &accesses,

@@ -65,7 +65,8 @@ const InstructionCost &Machine::visit(std::uint32_t address, unsigned bytes)
     return *cost;
 }
 
-/* What instructions that are executed behind one another cost. */
+/* What instructions that are executed behind one another cost. This and what it calls run before
+   every block and every instruction that is watched by itself: much of the simulation's time. */
 inline void Machine::charge(const BlockCost &block)
 {
     const bool straight = block.address == next_address_;
@@ -123,19 +124,12 @@ void Machine::look_after_control()
     }
 }
 
-/* This and what it calls run before every block and every instruction that is watched by itself:
- * much of the simulation's time. */
-inline void Machine::begin(const BlockCost &block)
-{
-    pc_ = block.address;
-    charge(block);
-}
-
 inline void Machine::begin_block(const BlockCost &block)
 {
     block_ = &block;
     accesses_ = 0;
-    begin(block);
+    pc_ = block.address;
+    charge(block);
 }
 
 /* Whether nothing comes before the next instruction: no event, and nothing wanted of the core. */
@@ -182,7 +176,8 @@ bool Machine::before_instruction(std::uint32_t address, unsigned bytes)
         charge(instruction(next_address_, costs_.find(next_address_)->bytes));
         finish_instruction();
     }
-    begin(instruction(address, bytes));
+    pc_ = address;
+    charge(instruction(address, bytes));
     look_after_control();
     return true;
 }
@@ -193,7 +188,7 @@ void Machine::add_time(const Cycles &cycles, unsigned stage)
     instruction_end_ += cycles.nominal * core_cycle_;
 }
 
-/* The usual case by itself, short: it comes 170 times a period. */
+/* The usual case by itself, short: it comes 130 times a period. */
 bool Machine::before_block(std::uint32_t address, unsigned bytes)
 {
     finish_instruction();
