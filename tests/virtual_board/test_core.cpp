@@ -209,6 +209,13 @@ void jump_astray_is_a_bus_fault()
     TEST_ASSERT_EQUAL_UINT32(1, run.probe.result);
 }
 
+void unprivileged_code_is_refused()
+{
+    const Run run("unprivileged");
+    assert_contains("unprivileged code (CONTROL.nPRIV) is not modelled", run.failure);
+    TEST_ASSERT_EQUAL_size_t(1, run.probe.log.size());
+}
+
 void stack_below_its_limit_is_told()
 {
     const Run run("deep_stack");
@@ -273,6 +280,7 @@ int main()
     RUN_TEST(instructions_of_other_cores_are_undefined);
     RUN_TEST(word_across_a_boundary_is_read_or_a_fault);
     RUN_TEST(jump_astray_is_a_bus_fault);
+    RUN_TEST(unprivileged_code_is_refused);
     RUN_TEST(stack_below_its_limit_is_told);
     RUN_TEST(stops_between_instructions_change_nothing);
     RUN_TEST(reset_starts_anew_and_keeps_memory);
