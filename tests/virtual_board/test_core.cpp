@@ -61,7 +61,7 @@ struct Run {
         machine.costs().stand_in = false;
         for (const virtual_board::Segment &segment : image.segments()) {
             for (std::uint32_t i = 0; i + 1 < segment.bytes.size(); i += 2) {
-                const unsigned half = segment.bytes[i] | segment.bytes[i + 1] << 8;
+                const unsigned half = segment.bytes[i] | unsigned{segment.bytes[i + 1]} << 8;
                 const std::uint32_t address = segment.address + i;
                 *machine.costs().find(address) =
                     virtual_board::stand_in_cost(address, half >= 0xe800 ? 4 : 2);
