@@ -140,25 +140,21 @@ void Machine::schedule(Event &event, Ticks at)
         fail("an event is scheduled for the past");
     }
     events_.schedule(event, at);
-    calm_until_ = std::min(calm_until_, events_.next());
 }
 
 void Machine::interrupt(unsigned line, bool level)
 {
     interrupts_.set_line(line, level);
-    calm_until_ = 0;
 }
 
 void Machine::non_maskable_interrupt()
 {
     interrupts_.set_pending(exception::nmi);
-    calm_until_ = 0;
 }
 
 void Machine::reset(const std::string &cause)
 {
     reset_wanted_ = true;
-    calm_until_ = 0;
     reset_cause_ = cause;
 }
 

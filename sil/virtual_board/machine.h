@@ -54,7 +54,6 @@ class Machine final : private CoreObserver, public Chip
     void stop()
     {
         stop_wanted_ = true;
-        calm_until_ = 0;
     }
     /* Between two calls of run(): halts the core, as a debugger does, for so long; all else goes
      * on.
@@ -184,6 +183,7 @@ class Machine final : private CoreObserver, public Chip
     void fall_asleep();
     void sleep();
     void start();
+    void begin_control();
     void enter(unsigned exception);
     void enter_handler(unsigned exception, std::uint32_t link);
     std::uint32_t push_frame();
@@ -214,7 +214,8 @@ class Machine final : private CoreObserver, public Chip
     /* time */
     Ticks now_ = 0, instruction_end_ = 0, core_cycle_ = 1;
     /* Before that, blocks only have to be charged: no event comes, nothing is wanted of the core.
-       0 as soon as that may have changed; the next block finds out. */
+       0 behind what may have changed that, an access of the core's that is not to plain memory or
+       anything while it stood; the next block finds out. */
     Ticks calm_until_ = 0;
     Ticks sampled_at_ = 0;
 

@@ -60,6 +60,7 @@ std::uint32_t little_endian(const std::uint8_t *from, unsigned bytes)
 /* The core's accesses that are not to plain memory. */
 std::uint32_t Machine::read(std::uint32_t address, unsigned bytes)
 {
+    calm_until_ = 0;
     if (description_.flash.contains(address)) {
         const Ticks free = flash_->busy_until(address);
         if (free > now_) { /* the bus waits for the end of the operation */
@@ -79,6 +80,7 @@ std::uint32_t Machine::read(std::uint32_t address, unsigned bytes)
 
 void Machine::write(std::uint32_t address, unsigned bytes, std::uint32_t value)
 {
+    calm_until_ = 0;
     if (description_.flash.contains(address)) {
         flash_->store(address, bytes, value);
         return;
@@ -88,7 +90,6 @@ void Machine::write(std::uint32_t address, unsigned bytes, std::uint32_t value)
     if (own && address < 0xe0040000) {
         const bool allowed = system_.floating_point_allowed();
         system_.write(address - SystemControl::base, bytes, value, Master::core);
-        calm_until_ = 0;
         if (system_.floating_point_allowed() != allowed) {
             allow_floating_point();
         }

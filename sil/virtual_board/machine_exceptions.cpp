@@ -115,6 +115,15 @@ std::uint32_t Machine::push_frame()
     return extended ? mode & ~0x10u : mode;
 }
 
+void Machine::begin_control()
+{
+    above_control_ = 1;
+    first_of_control_ = true;
+    control_instructions_ = 0;
+    stage_ = entry_stage_;
+    account_.begin();
+}
+
 void Machine::enter(unsigned exception)
 {
     const std::uint32_t link = push_frame();
@@ -122,11 +131,7 @@ void Machine::enter(unsigned exception)
     const CostRules &rules = costs_.rules;
     const Cycles cycles = extended ? plus(rules.enter, rules.floating_point_frame) : rules.enter;
     if (exception == control_exception_) {
-        above_control_ = 1;
-        first_of_control_ = true;
-        control_instructions_ = 0;
-        stage_ = entry_stage_;
-        account_.begin();
+        begin_control();
     } else if (above_control_ > 0) {
         if (above_control_++ == 1) {
             account_.count_preemption();
@@ -223,11 +228,7 @@ void Machine::leave(std::uint32_t exception_return)
     }
     if (next != 0) { /* tail-chaining: the frame stays, another handler takes over */
         if (next == control_exception_) {
-            above_control_ = 1;
-            first_of_control_ = true;
-            control_instructions_ = 0;
-            stage_ = entry_stage_;
-            account_.begin();
+            begin_control();
         } else if (above_control_ > 0) {
             ++above_control_;
         }

@@ -14,7 +14,6 @@ void Machine::serve_events()
         events_.take().happen();
     }
     now_ = present;
-    calm_until_ = 0;
 }
 
 /* Cycles of the present instruction or exception, on the control interrupt's bill if it is its. */

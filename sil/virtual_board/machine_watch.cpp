@@ -90,7 +90,6 @@ void Machine::watch_by_instruction(AddressRange block)
 {
     to_be_watched_ = block;
     watch_changes_ = true;
-    calm_until_ = 0;
 }
 
 void Machine::end_lesson()

@@ -107,29 +107,29 @@ struct UnicornCore::Callbacks {
         }
     }
 
+    static Stopped stopped_by(std::uint32_t exception)
+    {
+        switch (exception) {
+        case core_exception_return:
+            return Stopped::exception_return;
+        case core_supervisor_call:
+            return Stopped::supervisor_call;
+        case core_prefetch_abort:
+            return Stopped::unmapped_fetch;
+        case core_data_abort:
+            return Stopped::unaligned;
+        case core_breakpoint:
+            return Stopped::breakpoint;
+        default:
+            return Stopped::undefined_instruction;
+        }
+    }
+
     static void interrupt(uc_engine *, std::uint32_t number, void *user)
     {
         UnicornCore &core = *static_cast<UnicornCore *>(user);
         core.stop();
-        switch (number) {
-        case core_exception_return:
-            core.reason_ = Stopped::exception_return;
-            return;
-        case core_supervisor_call:
-            core.reason_ = Stopped::supervisor_call;
-            return;
-        case core_prefetch_abort:
-            core.reason_ = Stopped::unmapped_fetch;
-            return;
-        case core_data_abort:
-            core.reason_ = Stopped::unaligned;
-            return;
-        case core_breakpoint:
-            core.reason_ = Stopped::breakpoint;
-            return;
-        default:
-            core.reason_ = Stopped::undefined_instruction;
-        }
+        core.reason_ = stopped_by(number);
     }
 
     static std::uint64_t read(uc_engine *, std::uint64_t offset, unsigned bytes, void *user)

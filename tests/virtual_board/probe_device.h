@@ -52,6 +52,10 @@ class ProbeDevice : public virtual_board::Device,
 
     std::uint32_t read(std::uint32_t offset, unsigned, virtual_board::Master) override
     {
+        if (offset == 12) {
+            machine_.interrupt(0, true);
+            return 0;
+        }
         if (offset != 8) {
             machine_.fail("probe: no such register");
         }

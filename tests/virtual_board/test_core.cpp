@@ -116,8 +116,9 @@ void floating_point_registers_are_lost_without_aspen()
 
 void exceptions_nest_and_follow_by_priority()
 {
-    const std::vector<std::uint32_t> round = {1, 0x110, 0x100, 0x111, 0x120, 0x130, 2,     3, 0x100,
-                                              4, 0x100, 5,     0x120, 6,     0x1e0, 0x1b0, 7};
+    const std::vector<std::uint32_t> round = {1,     0x110, 0x100, 0x111, 0x120, 0x130,
+                                              2,     3,     0x100, 4,     0x100, 5,
+                                              0x120, 0x100, 6,     0x1e0, 0x1b0, 7};
     std::vector<std::uint32_t> expected;
     for (int i = 0; i < 4; ++i) {
         expected.insert(expected.end(), round.begin(), round.end());

@@ -4,19 +4,12 @@
 __attribute__((used)) static void tell(uint32_t *frame)
 {
     PROBE->log = frame[6];
-#if __ARM_ARCH == 7
     PROBE->log = CFSR;
     CFSR = ~0u;
-#endif
     frame[6] = frame[5] & ~1u; /* behind the call */
 }
 
-__attribute__((naked)) void hard_fault(void)
-{
-    __asm volatile("mov r0, sp \n"
-                   "ldr r1, =tell \n"
-                   "bx r1");
-}
+HARD_FAULT_CALLS(tell)
 
 static void jump(uint32_t address)
 {

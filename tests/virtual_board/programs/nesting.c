@@ -61,6 +61,8 @@ static void raise_all(void)
     PROBE->log = 5; /* 0 has come, 2 has not */
     __asm volatile("msr basepri, %0" ::"r"(0));
     PAUSE();
+    (void)PROBE->raise_0;
+    PAUSE();
     PROBE->log = 6;
     ICSR = 1u << 28;
     PAUSE();

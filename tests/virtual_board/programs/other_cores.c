@@ -13,12 +13,7 @@ __attribute__((used)) static void tell(uint32_t *frame)
     frame[6] = address + (first_half >= 0xe800u ? 4u : 2u);
 }
 
-__attribute__((naked)) void hard_fault(void)
-{
-    __asm volatile("mov r0, sp \n"
-                   "ldr r1, =tell \n"
-                   "bx r1");
-}
+HARD_FAULT_CALLS(tell)
 
 /* `name` begins at the instruction. */
 #define INSTRUCTION(name, code)                                                                    \

@@ -9,10 +9,10 @@
 
 /* The probe: probe_device.h. */
 struct probe {
-    volatile uint32_t end;    /* written: the program ends with this result */
-    volatile uint32_t log;    /* written: kept, with the time */
-    volatile uint32_t random; /* read: the next of a fixed sequence, 0...255 */
-    volatile uint32_t reserved;
+    volatile uint32_t end;      /* written: the program ends with this result */
+    volatile uint32_t log;      /* written: kept, with the time */
+    volatile uint32_t random;   /* read: the next of a fixed sequence, 0...255 */
+    volatile uint32_t raise_0;  /* read: interrupt line 0 becomes high at once */
     volatile uint32_t raise[8]; /* written: interrupt line n becomes high after so many cycles */
     volatile uint32_t lower[8]; /* written: line n becomes low */
 };
@@ -34,6 +34,14 @@ struct probe {
 #define DWT_CTRL          REGISTER(0xe0001000)
 #define DWT_CYCCNT        REGISTER(0xe0001004)
 #define FPCCR             REGISTER(0xe000ef34)
+
+/* A HardFault's handler: calls `function` with the frame, in which [5] is LR and [6] the program
+   counter, and returns to what that leaves there. */
+#define HARD_FAULT_CALLS(function)                                                                 \
+    __attribute__((naked)) void hard_fault(void)                                                   \
+    {                                                                                              \
+        __asm volatile("mov r0, sp \n ldr r1, =" #function " \n bx r1");                           \
+    }
 
 void program(void); /* the reset handler */
 void interrupt_0(void);

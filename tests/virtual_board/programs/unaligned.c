@@ -7,12 +7,7 @@ __attribute__((used)) static void tell(uint32_t *frame)
     frame[6] += 2u;
 }
 
-__attribute__((naked)) void hard_fault(void)
-{
-    __asm volatile("mov r0, sp \n"
-                   "ldr r1, =tell \n"
-                   "bx r1");
-}
+HARD_FAULT_CALLS(tell)
 
 static volatile uint32_t words[2];
 
