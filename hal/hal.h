@@ -59,8 +59,12 @@ struct hal_facts {
     double control_period_s;
     uint32_t pwm_half_period_counts; /* timer counts from valley to peak; 8500 at 170 MHz, 10 kHz */
     double dead_time_s;
-    double current_A_per_code; /* both phases, 12-bit codes 0...4095 */
+    double leg_delay_s;       /* largest difference between the delays of the two legs of a phase */
+    uint32_t converter_codes; /* codes of currents and bus are 0...converter_codes - 1 */
+    double current_A_per_code; /* both phases */
     uint16_t current_zero_code;
+    double current_offset_codes; /* largest offset that calibration leaves: drift since, and what
+                                    the converter's steps are uneven by */
     double bus_V_per_code;
     double phase_voltage_V_per_code;
     bool has_phase_voltages;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the C file that tells an image its version and its default motor.
 
-usage: board_image.py --root ROOT --motor NAME --version V --board NAME --pin-map FILE
+usage: board_image.py --root ROOT --motor FILE --version V --board NAME --pin-map FILE
                       --numeric FORMAT --flags FLAGS OUTPUT.c
 
 The hash is of the sources that the image is made of, motor, pin map and the compiler's flags, so
@@ -12,47 +12,51 @@ alone if nothing has changed.
 import argparse
 import hashlib
 import sys
-import tomllib
 from pathlib import Path
 
-KEYS = (
-    "resistance_ohm",
-    "inductance_H",
-    "torque_constant_Nm_A",
-    "viscous_friction_Nms_rad",
-    "inertia_kgm2",
-    "rated_current_A",
-    "supply_V",
-    "rotor_teeth",
-)
-
-
-def motor_file(root, name):
-    motors = {path.stem: path for path in sorted((root / "sil" / "motors").glob("*.toml"))}
-    if name not in motors:
-        sys.exit(f"STEADYSTEP_MOTOR is '{name}'; expected one of {', '.join(motors)}")
-    return motors[name]
+from motor_parameters import NotAMotor, parameters_of
 
 
 def source_hash(root, board, motor, pin_map, flags):
-    """Of the pin maps the one that is used counts, by its name, as it may lie anywhere."""
+    """Motor and pin map count by their name, as they may lie anywhere."""
     digest = hashlib.sha256(flags.encode())
-    files = [root / "hal" / "hal.h", motor]
+    files = [root / "hal" / "hal.h"]
     for folder in ("firmware", "hal/cortex_m", f"hal/{board}"):
         files += [p for p in (root / folder).rglob("*") if p.suffix in {".c", ".h", ".ld"}]
     for path in sorted(p for p in files if p.parent.name != "pin_maps"):
         digest.update(path.relative_to(root).as_posix().encode() + b"\0")
         digest.update(path.read_bytes())
-    digest.update(pin_map.name.encode() + b"\0" + pin_map.read_bytes())
+    for path in (motor, pin_map):
+        digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:12]
 
 
-def motor_text(path):
-    values = tomllib.loads(path.read_text(encoding="utf-8"))
-    for key in KEYS:
-        if key not in values:
-            sys.exit(f"{path}: {key} is missing")
-    return "".join(f"    .{key} = {values[key]!r},\n" for key in KEYS)
+def board_checks(motor, values, board):
+    """What the compiler refuses of this motor on this pin map."""
+    checks = (
+        (
+            f"{values['supply_V']!r} <= BOARD_SUPPLY_LIMIT_V(CONVERTER_CODES, BUS_V_PER_CODE)",
+            f"its over-voltage, 1.29 x supply_V = {values['supply_V']}, is beyond what the pin map's"
+            " BUS_V_PER_CODE measures",
+        ),
+        (
+            f"{values['rated_current_A']!r} <= RATED_CURRENT_SHARE * "
+            "BOARD_CURRENT_RANGE_A(CONVERTER_CODES, CURRENT_ZERO_CODE, CURRENT_A_PER_CODE)",
+            f"rated_current_A = {values['rated_current_A']} is beyond 0.8 of what the pin map's"
+            " CURRENT_A_PER_CODE measures",
+        ),
+    )
+    return f'#include "firmware/drive/board_limits.h"\n#include "hal/{board}/board.h"\n\n' + "".join(
+        f'__extension__ _Static_assert({true},\n    "STEADYSTEP_MOTOR {motor}: {text}");\n'
+        for true, text in checks
+    )
+
+
+def motor_values(path):
+    try:
+        return parameters_of(path)
+    except NotAMotor as error:
+        sys.exit(str(error))
 
 
 def main():
@@ -62,12 +66,15 @@ def main():
     parser.add_argument("output", type=Path)
     given = parser.parse_args()
     root = Path(given.root)
-    motor = motor_file(root, given.motor)
+    motor = Path(given.motor)
     pin_map = Path(given.pin_map)
     digest = source_hash(root, given.board, motor, pin_map, f"{given.flags} {given.numeric}")
+    values = motor_values(motor)
+    numbers = "".join(f"    .{key} = {value!r},\n" for key, value in values.items())
     text = (
         '#include "hal/cortex_m/image.h"\n\n'
-        f"const struct motor_params motor_default = {{\n{motor_text(motor)}}};\n\n"
+        f"{board_checks(motor.stem, values, given.board)}\n"
+        f"const struct motor_params motor_default = {{\n{numbers}}};\n\n"
         "const char image_version[] =\n"
         f'    "steadystep {given.version} {digest} {given.board} {pin_map.stem} {given.numeric}'
         f' {motor.stem}";\n'

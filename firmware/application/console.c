@@ -82,6 +82,20 @@ static bool announce_synchronism(const struct application *application,
     return true;
 }
 
+/* Commands that had been accepted. */
+static bool announce_dropped(const struct application *application,
+                             struct console_announced *announced, struct text *text)
+{
+    const uint32_t dropped = *(const volatile uint32_t *)&application->drive.commands.dropped;
+
+    if (dropped == announced->dropped) {
+        return false;
+    }
+    report_dropped(text, dropped - announced->dropped);
+    announced->dropped = dropped;
+    return true;
+}
+
 static bool announce(struct application *application)
 {
     struct console *console = &application->console;
@@ -98,6 +112,7 @@ static bool announce(struct application *application)
         announced->underruns = application->drive.planner.underruns;
         text_put(&text, "warning: the reference came to rest: what continues it came too late");
     } else if (!announce_state(application, announced, &text) &&
+               !announce_dropped(application, announced, &text) &&
                !announce_synchronism(application, announced, &text)) {
         return false;
     }
@@ -110,73 +125,6 @@ static bool announce(struct application *application)
 static bool is_planned(const struct drive_command *command)
 {
     return command->kind >= DRIVE_COMMAND_SINE && command->kind <= DRIVE_COMMAND_RETARGET;
-}
-
-static bool needs_operation(const struct drive_command *command)
-{
-    return command->kind != DRIVE_COMMAND_ENABLE && command->kind != DRIVE_COMMAND_DISABLE &&
-           command->kind != DRIVE_COMMAND_SAVE;
-}
-
-/* It got ready only after the line had arrived: with a fast background the line would have been
-   read before. */
-static bool got_ready_since(const struct application *application, uint32_t line_period)
-{
-    const uint32_t since = *(const volatile uint32_t *)&application->drive.state_since;
-    const uint32_t now = period_now(application);
-
-    return now - since < now - line_period;
-}
-
-/* Whether a command finds the drive ready; if not, why, and what to do. */
-static bool finds_operation(const struct application *application, const struct command_line *line,
-                            uint32_t line_period, struct text *answer)
-{
-    const struct drive *drive = &application->drive;
-    const enum drive_state state = drive_state_by(drive, line->command.at_period);
-
-    if (state == DRIVE_OPERATION_ENABLED && !got_ready_since(application, line_period)) {
-        return true;
-    }
-    text_put(answer, line->form->name);
-    text_put(answer, " refused: ");
-    if (state == DRIVE_FAULT) {
-        text_put(answer, "the drive is fault, disable clears it");
-    } else if (state != DRIVE_SWITCH_ON_DISABLED || command_queue_enable_waits(&drive->commands)) {
-        text_put(answer, "the drive is being enabled, wait until it is ready");
-    } else if (drive->commands.disable.posted) {
-        text_put(answer, "a disable acts in period ");
-        text_unsigned(answer, drive->commands.disable.at_period);
-        text_put(answer, ", enable the drive behind it");
-    } else {
-        text_put(answer, "the drive is switch-on-disabled, enable it first");
-    }
-    return false;
-}
-
-/* What the drive would drop without a word. */
-static bool fits_state(const struct application *application, const struct command_line *line,
-                       uint32_t line_period, struct text *answer)
-{
-    const struct drive *drive = &application->drive;
-
-    if (line->command.kind == DRIVE_COMMAND_ENABLE &&
-        drive_state_by(drive, line->command.at_period) == DRIVE_FAULT) {
-        text_put(answer, "enable refused: fault ");
-        report_fault_reason(answer, application);
-        text_put(answer, "; disable clears it");
-        return false;
-    }
-    if (needs_operation(&line->command) &&
-        !finds_operation(application, line, line_period, answer)) {
-        return false;
-    }
-    if (line->command.kind == DRIVE_COMMAND_SAVE && drive->planner.motion != PLANNER_IDLE) {
-        text_put(answer, "save refused: writing takes longer than sine and set-points can wait for "
-                         "their continuation; stop first");
-        return false;
-    }
-    return true;
 }
 
 /* The period a line that came in `line_period` acts in. */
@@ -248,14 +196,13 @@ static bool obey_command(struct application *application, struct command_line *l
 {
     char refusal[DRIVE_ERROR_TEXT];
 
-    if (!address(application, line, line_period, answer) ||
-        !fits_state(application, line, line_period, answer)) {
+    if (!address(application, line, line_period, answer)) {
         return false;
     }
     if (line->form->action == LINE_MOVE) {
         choose_times(application, line);
     }
-    if (!drive_command(&application->drive, &line->command, refusal)) {
+    if (!drive_command_asked_in(&application->drive, &line->command, line_period, refusal)) {
         text_put(answer, refusal);
         return false;
     }

@@ -14,8 +14,9 @@
  * period in which it is read. A tape that is to do the same every time ends its lines with '\n'
  * alone.
  *
- * A command is refused by the state that it will find: a disable or enable that waits counts, and
- * what arrived before the drive was ready is refused even if it is read afterwards.
+ * What is legal when, is the drive's to say (drive/command_rules.h), of a command as it was when
+ * its line arrived: one that came before the drive was ready is refused even if it is read
+ * afterwards.
  */
 #ifndef STEADYSTEP_CONSOLE_H
 #define STEADYSTEP_CONSOLE_H
@@ -36,6 +37,7 @@ struct console_announced {
     enum drive_state state;
     uint32_t state_since;
     uint32_t underruns;
+    uint32_t dropped; /* commands */
     enum drive_synchronism synchronism;
 };
 

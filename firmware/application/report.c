@@ -4,6 +4,7 @@
 
 #include "firmware/application/application.h"
 #include "firmware/application/command_line.h"
+#include "firmware/drive/fault_reason.h"
 
 enum { DIGITS = 6 };
 
@@ -72,6 +73,9 @@ void report_start(struct text *text, const struct application *application)
     put_number(text, "supply_V", settings->motor.supply_V);
     put_word(text, "law", drive_law_name(settings->law));
     put_word(text, "feedback", drive_feedback_name(settings->feedback));
+    if (settings->feedback == DRIVE_FEEDBACK_SENSORLESS) {
+        put_number(text, "blind_below_rad_s", drive_blind_speed_rad_s(settings, board->facts));
+    }
     text_put(text, "; started by: ");
     text_put(text, board->start_cause(board->context));
 }
@@ -82,56 +86,21 @@ void report_refused_settings(struct text *text, const struct application *applic
     text_put(text, application->stored_refusal);
 }
 
-void report_fault_reason(struct text *text, const struct application *application)
-{
-    const struct drive *drive = &application->drive;
-    const enum drive_fault fault = drive->fault;
-
-    text_put(text, drive_fault_name(fault));
-    switch (fault) {
-    case DRIVE_FAULT_OVERCURRENT:
-        text_put(text, ": a phase current beyond ");
-        text_number(text, drive->settings.overcurrent_trip_A, DIGITS);
-        text_put(text, " A");
-        break;
-    case DRIVE_FAULT_HARDWARE_OVERCURRENT:
-        text_put(text, ": the board's comparator has tripped");
-        break;
-    case DRIVE_FAULT_DEADLINE_MISSED:
-        text_put(text, ": a control interrupt has ended too late");
-        break;
-    case DRIVE_FAULT_BUS_VOLTAGE:
-        text_put(text, ": the supply is outside 0.5...1.3 of ");
-        text_number(text, drive->settings.motor.supply_V, DIGITS);
-        text_put(text, " V");
-        break;
-    case DRIVE_FAULT_ESTIMATE_RANGE:
-        text_put(text, ": the estimate has lost the rotor");
-        break;
-    case DRIVE_FAULT_OFFSET_RANGE:
-        text_put(text, ": a current sensor's offset is too large to be one");
-        break;
-    case DRIVE_FAULT_LOST_SYNCHRONISM:
-        text_put(text, ": the rotor is not where the estimate has it");
-        break;
-    case DRIVE_FAULT_STALLED:
-        text_put(text, ": the rotor does not follow: overloaded, or held");
-        break;
-    case DRIVE_FAULT_POSITION_NOT_FOUND:
-        text_put(text, ": no current flows, or the rotor has not followed the alignment");
-        break;
-    default:
-        break;
-    }
-}
-
 void report_fault(struct text *text, const struct application *application)
 {
     text_put(text, "fault: ");
-    report_fault_reason(text, application);
+    fault_reason_put(text, &application->drive);
     text_put(text, "; the bridge is open since period ");
     text_unsigned(text, application->drive.state_since);
     text_put(text, ", disable clears the fault");
+}
+
+void report_dropped(struct text *text, uint32_t more)
+{
+    text_put(text, "warning: ");
+    text_unsigned(text, more);
+    text_put(text, more == 1u ? " command" : " commands");
+    text_put(text, " dropped: accepted, but not possible when the time to act came");
 }
 
 void report_synchronism(struct text *text, enum drive_synchronism synchronism)
@@ -192,6 +161,7 @@ void report_state(struct text *text, const struct application *application)
     put_number(text, "resistance_ohm", signals.resistance_est_ohm);
     put_number(text, "bus_V", signals.bus_V);
     put_count(text, "underruns", signals.reference_underruns);
+    put_count(text, "dropped", signals.commands_dropped);
     put_word(text, "law", drive_law_name(drive->settings.law));
     put_word(text, "feedback", drive_feedback_name(drive->settings.feedback));
     text_put(text, "; ");

@@ -17,8 +17,8 @@ void report_refused_settings(struct text *text, const struct application *applic
 /* "fault: overcurrent in period 1234: ...; the bridge is open, disable clears it" */
 void report_fault(struct text *text, const struct application *application);
 
-/* "overcurrent: a phase current beyond 5.4 A" */
-void report_fault_reason(struct text *text, const struct application *application);
+/* "warning: 2 commands dropped: ...", so many more than were announced before. */
+void report_dropped(struct text *text, uint32_t more);
 
 /* "warning: synchronism doubtful: ...", "... lost: ...", "warning: stalled: ..." or
    "synchronism: sure again" */

@@ -3,11 +3,16 @@
  * voltages fed forward, the vector limited with d first, integrators unwound by what the limit
  * took away.
  *
- *   v_d = Kp (i_d* - i_d) + z_d - N w L i_q
- *   v_q = Kp (i_q* - i_q) + z_q + N w L i_d + Km w
+ *   v_d = Kp (i_d* - i_d) + z_d - N w_f L i_q
+ *   v_q = Kp (i_q* - i_q) + z_q + N w_f L i_d + Km w
  *   z  += Ki (i* - i) + (Ki/Kp) (v_limited - v)
  *
  * Kp = L w_c and Ki = R w_c T cancel the winding's pole, so the loop closes with the bandwidth w_c.
+ * w is the rotor's speed, w_f that of the frame in which the currents are regulated: the rotor's in
+ * motion, zero in a hold. A rotational voltage fed forward in a frame that stands still would be a
+ * q current along the speed, N i_d w/(s + w_c): negative damping that grows with the hold's
+ * stiffness.
+ *
  * The currents are those predicted for S(k+1), where the voltage begins to act; that takes the
  * period of delay out of the loop.
  */
@@ -24,6 +29,12 @@ struct current_control_params {
     coef_t integral;
     coef_t unwind;    /* Ki/Kp */
     coef_t reactance; /* N L: voltage per speed and current */
+};
+
+/* Mechanical speeds: of the frame of the currents, and of the rotor, whose back-EMF it is. */
+struct rotation {
+    num_t frame;
+    num_t rotor;
 };
 
 struct current_control {
@@ -46,14 +57,15 @@ static inline num_t current_control_integrate(const struct current_control_param
 /* Voltage in the control frame, of magnitude at most voltage_limit. */
 __attribute__((always_inline)) static inline struct dq
 current_control_step(struct current_control *control, const struct current_control_params *params,
-                     struct dq reference, struct dq current, num_t speed, num_t voltage_limit)
+                     struct dq reference, struct dq current, struct rotation speed,
+                     num_t voltage_limit)
 {
-    num_t reactance = num_mul_coef(speed, params->reactance);
+    num_t reactance = num_mul_coef(speed.frame, params->reactance);
     struct dq error = {reference.d - current.d, reference.q - current.q};
     struct dq wanted = {num_mul_coef(error.d, params->proportional) + control->integral.d -
                             num_mul(reactance, current.q),
                         num_mul_coef(error.q, params->proportional) + control->integral.q +
-                            num_mul(reactance, current.d) + speed};
+                            num_mul(reactance, current.d) + speed.rotor};
     struct dq v = limit_voltage(wanted, voltage_limit);
 
     control->integral.d =

@@ -42,9 +42,11 @@ struct voltage_demand microstepping_law_step(struct microstepping_law_state *sta
         voltage = limit_voltage(voltage, input->voltage_limit);
     } else {
         /* The reference's frame turns with the reference. */
+        const struct rotation speed = {input->motion.reference_speed,
+                                       input->motion.reference_speed};
+
         voltage = current_control_step(&state->current_control, &params->current_control, wanted,
-                                       park(current, ahead), input->motion.reference_speed,
-                                       input->voltage_limit);
+                                       park(current, ahead), speed, input->voltage_limit);
     }
     const struct phases in_rotor_frame = inverse_park(voltage, ahead);
 

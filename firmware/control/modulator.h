@@ -8,9 +8,8 @@
 #ifndef STEADYSTEP_MODULATOR_H
 #define STEADYSTEP_MODULATOR_H
 
+#include "firmware/control/modulation_limit.h"
 #include "firmware/motor/park.h"
-
-#define MODULATION_MAX 0.92
 
 struct modulator_params {
     int32_t half_period_counts;

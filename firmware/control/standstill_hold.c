@@ -16,17 +16,18 @@ struct standstill_hold_params standstill_hold_design(const struct per_unit *base
     params.current_ramp = num_from_double(task->current_A / base->current_A / ramp_periods);
     params.motion_current = num_from_double(task->motion_current_A / base->current_A);
     params.current_limit = num_from_double(task->current_limit_A / base->current_A);
-    params.damping =
-        coef_from_double(2.0 * task->speed_gain_As_rad * base->speed_rad_s / base->current_A);
+    params.damping = coef_from_double(task->damping_As_rad * base->speed_rad_s / base->current_A);
     params.delay_periods = (uint32_t)(task->delay_s / task->period_s + 0.5);
     params.error_limit = num_from_double(error_limit_turns);
     params.speed_limit = num_from_double(ramp_travel_turns / ramp_periods / base->turns_per_period);
     return params;
 }
 
-void standstill_hold_reset(struct standstill_hold *hold)
+void standstill_hold_reset(struct standstill_hold *hold,
+                           const struct standstill_hold_params *params)
 {
     hold->active = false;
+    hold->current = params->current;
     hold->i_d = NUM(0.0);
 }
 
@@ -34,27 +35,34 @@ void standstill_hold_enter(struct standstill_hold *hold, angle_t reference)
 {
     hold->active = true;
     hold->frame = sincos_of(reference);
+    hold->speed = NUM(0.0);
+}
+
+void standstill_hold_follow(struct standstill_hold *hold, angle_t reference, num_t speed)
+{
+    hold->frame = sincos_of(reference);
+    hold->speed = speed;
 }
 
 num_t standstill_hold_step(struct standstill_hold *hold,
                            const struct standstill_hold_params *params)
 {
-    const num_t target = hold->active ? params->current : params->motion_current;
+    const num_t target = hold->active ? hold->current : params->motion_current;
 
     hold->i_d += num_limit(target - hold->i_d, params->current_ramp);
     return hold->i_d;
 }
 
-void standstill_hold_leave(struct standstill_hold *hold, uint32_t rest_periods)
+void standstill_hold_leave(struct standstill_hold *hold, uint32_t slow_periods)
 {
-    hold->active = hold->active && rest_periods > 0u;
+    hold->active = hold->active && slow_periods > 0u;
 }
 
 void standstill_hold_consider(struct standstill_hold *hold,
                               const struct standstill_hold_params *params, angle_t reference,
-                              uint32_t rest_periods, num_t position_error, num_t speed)
+                              uint32_t slow_periods, num_t position_error, num_t speed)
 {
-    if (rest_periods > params->delay_periods && num_abs(position_error) < params->error_limit &&
+    if (slow_periods > params->delay_periods && num_abs(position_error) < params->error_limit &&
         num_abs(speed) < params->speed_limit) {
         standstill_hold_enter(hold, reference);
     }

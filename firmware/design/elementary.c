@@ -59,6 +59,24 @@ double exponential_phi2(double x)
     return (exponential_phi1(x) - 1.0) / x;
 }
 
+/* Heron's rule from half the exponent: five steps take 0.06 to below 1e-16. */
+double square_root(double x)
+{
+    union {
+        double value;
+        uint64_t bits;
+    } root = {.value = x};
+
+    if (!(x > 0.0) || !is_finite(x)) {
+        return x > 0.0 ? x : 0.0;
+    }
+    root.bits = (root.bits >> 1) + ((uint64_t)1023 << 51);
+    for (int step = 0; step < 5; step++) {
+        root.value = 0.5 * (root.value + x / root.value);
+    }
+    return root.value;
+}
+
 bool is_finite(double x)
 {
     double difference = x - x;

@@ -18,6 +18,9 @@ double exponential(double x);
 double exponential_phi1(double x);
 double exponential_phi2(double x);
 
+/* Square root, relative error below 2 ulp; 0 of what is not above 0. */
+double square_root(double x);
+
 /* True for every number but infinities and NaN. */
 bool is_finite(double x);
 

@@ -13,6 +13,7 @@
 #define STEADYSTEP_INVARIANT_EKF_DESIGN_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "firmware/design/refusal.h"
 #include "firmware/motor/motor_params.h"
@@ -25,9 +26,12 @@
  *   T_L_est   += k_load_q nu_q
  *   b_q       += k_bias_d sat(w_est / angle_d_full_speed) nu_d + k_bias_q nu_q
  *   R_est     += k_resistance i_d nu_d
- *   T_L_est   += load_return (T_settled - T_L_est)     T_settled += load_settle (T_L_est -
- * T_settled) with b_q a step of the offset b in the direction of the frame's q axis; b is
- * subtracted from the measured voltage.
+ * with b_q a step of the offset b in the direction of the frame's q axis; b is subtracted from the
+ * measured voltage. In hold, where `away` is T_L_est - T_settled, also
+ *   T_L_est   -= load_return away
+ *   theta_est += angle_return away
+ *   b_q       -= bias_return away
+ *   T_settled += load_settle away
  */
 struct invariant_ekf_gains {
     double k_current_d;              /* A per A */
@@ -38,17 +42,22 @@ struct invariant_ekf_gains {
     double k_load_q_Nm_A;            /* N m per A */
     double angle_d_full_speed_rad_s; /* |w_est| above which k_angle_d acts in full */
     double k_bias_d_V_A;             /* V per A; odd in the speed; 0 in hold */
-    double k_bias_q_V_A;             /* V per A; 0 in motion and while a load step is followed */
+    double k_bias_q_V_A;             /* V per A; 0 but in the unloaded hold */
     double k_resistance_ohm_A2;      /* ohm per A^2; 0 in motion */
     double load_return;              /* share per period; of the quiet hold, else 0 */
+    double angle_return_rad_Nm;      /* mechanical rad per N m and period; likewise */
+    double bias_return_V_Nm;         /* V per N m and period; likewise */
     double load_settle;              /* share per period; while a load step is followed, else 0 */
-    double load_step_Nm;             /* change that ends the quiet hold; 0 in motion */
 };
 
-/* How the load estimate behaves in the d-axis hold. */
-enum invariant_ekf_hold {
-    INVARIANT_EKF_HOLD_QUIET,    /* the load stays what it was, the voltage offset is learned */
-    INVARIANT_EKF_HOLD_FOLLOWING /* the load is learned, the offset stays what it was */
+/* The d-axis hold. */
+struct invariant_ekf_hold_gains {
+    struct invariant_ekf_gains quiet;     /* the load returns to what it was */
+    struct invariant_ekf_gains following; /* behind a load step: the load is learned */
+    struct invariant_ekf_gains unloaded;  /* no load is expected: the voltage offset is learned */
+    uint32_t following_periods;           /* how long a load step is followed */
+    double load_step_Nm;                  /* change that ends the quiet hold */
+    double led_load_step_Nm;              /* likewise where the reference creeps */
 };
 
 /* Gains in motion. False, with text in `error`, if the motor is outside what the model bears. */
@@ -57,7 +66,7 @@ bool invariant_ekf_motion_design(const struct motor_params *motor, double period
 
 /* Gains in the d-axis hold with `hold_current_A` > 0. */
 bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s,
-                               double hold_current_A, enum invariant_ekf_hold hold,
-                               struct invariant_ekf_gains *gains, char error[DESIGN_ERROR_TEXT]);
+                               double hold_current_A, struct invariant_ekf_hold_gains *gains,
+                               char error[DESIGN_ERROR_TEXT]);
 
 #endif

@@ -11,6 +11,17 @@ static const double position_over_integral = 30.0;
 /* A bandwidth at the limit is allowed, however its product with the period is rounded. */
 static const double rounding = 1.000001;
 
+double mechanical_control_bandwidth_max(double period_s)
+{
+    return MECHANICAL_CONTROL_PERIOD_MAX / (speed_over_position * period_s);
+}
+
+double winding_lag_bandwidth_max(const struct motor_params *motor)
+{
+    return MECHANICAL_CONTROL_LAG_MAX * motor->resistance_ohm /
+           ((speed_over_position + 1.0) * motor->inductance_H);
+}
+
 bool mechanical_control_design(const struct motor_params *motor, double period_s,
                                double bandwidth_rad_s, struct mechanical_control_gains *gains,
                                char error[DESIGN_ERROR_TEXT])
@@ -23,14 +34,13 @@ bool mechanical_control_design(const struct motor_params *motor, double period_s
         return false;
     }
     if (k1p * period_s > MECHANICAL_CONTROL_PERIOD_MAX * rounding) {
-        return design_refuse_limit(error,
-                                   (struct refusal){.quantity = "law_bandwidth_rad_s",
-                                                    .value = bandwidth_rad_s,
-                                                    .relation = "at most",
-                                                    .limit = MECHANICAL_CONTROL_PERIOD_MAX /
-                                                             (speed_over_position * period_s),
-                                                    .unit = "rad/s",
-                                                    .reason = "k1p T <= 0.15, k1p = 4 bandwidths"});
+        return design_refuse_limit(
+            error, (struct refusal){.quantity = "law_bandwidth_rad_s",
+                                    .value = bandwidth_rad_s,
+                                    .relation = "at most",
+                                    .limit = mechanical_control_bandwidth_max(period_s),
+                                    .unit = "rad/s",
+                                    .reason = "k1p T <= 0.15, k1p = 4 bandwidths"});
     }
     *gains = (struct mechanical_control_gains){
         .k1p_per_s = k1p,
@@ -45,8 +55,7 @@ bool winding_lag_check(const struct motor_params *motor, double bandwidth_rad_s,
                        double speed_limit_rad_s, char error[DESIGN_ERROR_TEXT])
 {
     const double winding_s = motor->inductance_H / motor->resistance_ohm;
-    const double bandwidth_max =
-        MECHANICAL_CONTROL_LAG_MAX / ((speed_over_position + 1.0) * winding_s);
+    const double bandwidth_max = winding_lag_bandwidth_max(motor);
     const double speed_max =
         REACTANCE_OVER_RESISTANCE_MAX / ((double)motor->rotor_teeth * winding_s);
 

@@ -30,6 +30,10 @@
  */
 #define REACTANCE_OVER_RESISTANCE_MAX 4.0
 
+/* Largest bandwidths, rad/s: of the sampled speed loop, and without current control. */
+double mechanical_control_bandwidth_max(double period_s);
+double winding_lag_bandwidth_max(const struct motor_params *motor);
+
 struct mechanical_control_gains {
     double k1p_per_s;
     double k0_per_s3;

@@ -26,7 +26,7 @@ void drive_reset_blocks(struct drive *drive)
 
     estimator_reset(&drive->estimator, &params->estimator, &start);
     reference_reset(&drive->reference, start.position);
-    standstill_hold_reset(&drive->hold);
+    standstill_hold_reset(&drive->hold, &params->hold);
     position_law_reset(&drive->law);
     detent_compensation_reset(&drive->detent);
     current_control_reset(&drive->current_control);

@@ -81,6 +81,9 @@ struct command_queue {
     struct urgent_command stop;
     uint32_t stop_acted_in; /* period of the last stop; the interrupt's */
     struct take_over take_over;
+    uint32_t dropped; /* commands that found the drive in a state in which they are not obeyed
+                         (command_rules.h), or a move another start; the interrupt's */
+    enum drive_command_kind dropped_kind; /* of the last of them */
 };
 
 /* Background: false if COMMAND_QUEUE_LENGTH - 1 wait; the last entry may be a profile in use. */

@@ -1,6 +1,7 @@
 /* The background's side of the drive: commands in, signals out. */
 #include "firmware/design/refusal.h"
-#include "firmware/drive/drive.h"
+#include "firmware/drive/board_limits.h"
+#include "firmware/drive/command_rules.h"
 #include "firmware/drive/parameter_store.h"
 
 static enum profile_shape shape_of(enum drive_command_kind kind)
@@ -59,10 +60,12 @@ static bool plan(struct drive *drive, const struct drive_command *command, struc
         .ramp_s = command->ramp_s,
         .jerk_s = command->jerk_s,
     };
+    const struct speed_limit speed = board_limits_speed(&drive->settings);
     const struct profile_drive limits = {
         .period_s = drive->board->facts->control_period_s,
         .rotor_teeth = drive->settings.motor.rotor_teeth,
-        .speed_limit_rad_s = drive->settings.speed_limit_rad_s,
+        .speed_limit_rad_s = speed.rad_s,
+        .speed_limit_reason = speed.reason,
         .acceleration_limit_rad_s2 = drive->settings.current_limit_A *
                                      drive->settings.motor.torque_constant_Nm_A /
                                      drive->settings.motor.inertia_kgm2,
@@ -191,8 +194,19 @@ static bool enable(struct drive *drive, uint32_t at_period, char error[DRIVE_ERR
 bool drive_command(struct drive *drive, const struct drive_command *command,
                    char error[DRIVE_ERROR_TEXT])
 {
+    const uint32_t now = *(const volatile uint32_t *)&drive->period;
+
+    return drive_command_asked_in(drive, command, now, error);
+}
+
+bool drive_command_asked_in(struct drive *drive, const struct drive_command *command,
+                            uint32_t asked_in, char error[DRIVE_ERROR_TEXT])
+{
     struct queued_command queued = {.kind = command->kind, .at_period = command->at_period};
 
+    if (!command_rules_check(drive, command, asked_in, error)) {
+        return false;
+    }
     if (command->kind == DRIVE_COMMAND_SAVE) {
         return save(drive, error);
     }
@@ -255,5 +269,7 @@ void drive_signals_read(const struct drive *drive, struct drive_signals *signals
     signals->u_q_V = num_to_double(drive->voltage_command.q) * base->voltage_V;
     signals->resistance_est_ohm = num_to_double(x->winding.resistance) * base->resistance_ohm;
     signals->reference_underruns = drive->planner.underruns;
+    signals->commands_dropped = drive->commands.dropped;
+    signals->dropped_kind = drive->commands.dropped_kind;
     signals->bus_V = num_to_double(drive->bus) * base->voltage_V;
 }

@@ -71,7 +71,7 @@ IN_PLACE void consider_hold(struct drive *drive, const struct prediction *next,
                             num_t position_error)
 {
     standstill_hold_consider(&drive->hold, &drive->params.hold, next->reference->position.fraction,
-                             drive->reference.rest_periods, position_error, next->rotor.speed);
+                             drive->reference.slow_periods, position_error, next->rotor.speed);
 }
 
 IN_PLACE struct dq wanted_current(struct drive *drive, const struct prediction *next)
@@ -81,8 +81,9 @@ IN_PLACE struct dq wanted_current(struct drive *drive, const struct prediction *
 
     current.d = standstill_hold_step(&drive->hold, &params->hold);
     if (drive->hold.active) {
-        current.q = standstill_hold_torque_current(
-            &params->hold, next->rotor.speed, drive->aligns ? NUM(0.0) : next->rotor.load_torque);
+        current.q =
+            standstill_hold_torque_current(&params->hold, next->rotor.speed - drive->hold.speed,
+                                           drive->aligns ? NUM(0.0) : next->rotor.load_torque);
     } else {
         const struct position_law_input input = law_input(drive, next);
 
@@ -92,22 +93,31 @@ IN_PLACE struct dq wanted_current(struct drive *drive, const struct prediction *
     return current;
 }
 
-/*
- * Hold or current law, then current control. The hold fixes the current frame to the reference; in
- * motion it turns with the rotor.
- */
+/* Of the hold: of the reference. In motion: of the rotor, as it turns. */
+IN_PLACE struct frame current_frame(const struct drive *drive, const struct estimate *estimate,
+                                    const struct prediction *next)
+{
+    if (drive->hold.active) {
+        return (struct frame){drive->hold.frame, drive->hold.frame, drive->hold.speed};
+    }
+    return (struct frame){next->frame, sincos_add(next->frame, estimate->half_turn),
+                          next->rotor.speed};
+}
+
+/* Hold or current law, then current control. */
 IN_PLACE struct phases regulate_current(struct drive *drive, const struct estimate *estimate,
                                         const struct prediction *next)
 {
     drive->current_reference = wanted_current(drive, next);
 
-    const struct sincos frame = drive->hold.active ? drive->hold.frame : next->frame;
+    const struct frame frame = current_frame(drive, estimate, next);
 
-    drive->current = park(next->current, frame);
+    drive->current = park(next->current, frame.begin);
     drive->voltage_command = current_control_step(
         &drive->current_control, &drive->params.current_control, drive->current_reference,
-        drive->current, next->rotor.speed, modulator_voltage_limit(&drive->modulator));
-    return inverse_park(drive->voltage_command, sincos_add(frame, estimate->half_turn));
+        drive->current, (struct rotation){frame.speed, next->rotor.speed},
+        modulator_voltage_limit(&drive->modulator));
+    return inverse_park(drive->voltage_command, frame.middle);
 }
 
 /* A voltage law. */
@@ -185,10 +195,34 @@ compensate_detent(struct drive *drive, const struct estimate *estimate, struct p
     next->rotor.load_torque = estimate->rotor.load_torque + drive->detent.torque;
 }
 
+/* To the middle of the period in which the next answer acts, S(k+2)...S(k+3). Apart: rare. */
+__attribute__((noinline)) static void lead_rotor(struct drive *drive)
+{
+    const struct reference_sample *reference = &drive->reference.next;
+    const int32_t half_turn = half_period_rotation(&drive->params.model, reference->speed);
+
+    standstill_hold_follow(&drive->hold, reference->position.fraction + 3u * (angle_t)half_turn,
+                           reference->speed);
+}
+
+/* The hold ends where the reference moves, but takes its frame along with one that creeps, until
+   that has come to rest. */
+IN_PLACE void leave_or_lead(struct drive *drive)
+{
+    if (!drive->hold.active) {
+        return;
+    }
+    standstill_hold_leave(&drive->hold, drive->reference.slow_periods);
+    if (drive->hold.active && !drive->aligns &&
+        (drive->reference.next.moving || drive->hold.speed != NUM(0.0))) {
+        lead_rotor(drive);
+    }
+}
+
 /* Between hold and voltage law nothing of the past of the one that takes over is left. */
 IN_PLACE void hand_over(struct drive *drive, const struct estimate *estimate, bool held)
 {
-    standstill_hold_leave(&drive->hold, drive->reference.rest_periods);
+    leave_or_lead(drive);
     if (drive->hold.active && !held) {
         drive->current_control.integral.d = num_mul(estimate->winding.resistance, drive->current.d);
         drive->current_control.integral.q = num_mul(estimate->winding.resistance, drive->current.q);
@@ -252,7 +286,7 @@ IN_PLACE struct hal_outputs control_current(struct drive *drive, const struct es
     predict(&next, drive, estimate);
     voltage = regulate_current(drive, estimate, &next);
     duties = modulate(drive, actuation_compensate(&drive->actuation, voltage));
-    standstill_hold_leave(&drive->hold, drive->reference.rest_periods);
+    leave_or_lead(drive);
     return duties;
 }
 
@@ -292,7 +326,8 @@ IN_PLACE const struct estimate *observe(struct drive *drive, const struct sample
     }
     actuation_observe(&drive->actuation, winding.voltage);
     return estimator_step(&drive->estimator, &drive->params.estimator, &winding,
-                          drive->encoder_count, drive->hold.active);
+                          drive->encoder_count,
+                          (struct rotor_hold){drive->hold.active, &drive->hold.speed});
 }
 
 /* The bridge is on and stays on for this period: what it needs of estimate and duties. */
@@ -331,5 +366,5 @@ struct hal_outputs drive_control_cycle(struct drive *drive, const struct hal_sam
     }
     (void)measure(drive, samples); /* the bus is shown in every state */
     return drive->state == DRIVE_FINDING_POSITION ? finding_position_cycle(drive, samples)
-                                                  : bridge_off;
+                                                  : state_machine_resting_bridge(drive);
 }

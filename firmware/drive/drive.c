@@ -2,7 +2,10 @@
 
 #include <stddef.h>
 
-#include "firmware/design/state_feedback_design.h"
+#include "firmware/design/hold_check.h"
+#include "firmware/drive/board_limits.h"
+#include "firmware/drive/default_settings.h"
+#include "firmware/drive/encoder_aligning.h"
 #include "firmware/drive/parameter_store.h"
 #include "firmware/drive/synchronism.h"
 
@@ -30,12 +33,40 @@ static bool design_high_gain_observer(struct drive *drive, const struct drive_se
     return high_gain_observer_design(&params->high_gain, &drive->params.model, &task, error);
 }
 
+static struct hold_task hold_task_of(const struct drive_settings *settings, double period_s)
+{
+    return (struct hold_task){
+        .motor = &settings->motor,
+        .period_s = period_s,
+        .hold_current_A = settings->hold_current_A,
+        .bandwidth_rad_s = settings->hold_bandwidth_rad_s,
+        .current_bandwidth_rad_s = settings->current_bandwidth_rad_s,
+    };
+}
+
+static bool holds(const struct drive_settings *settings)
+{
+    return settings->hold_at_rest || settings->hold_on_enable;
+}
+
+/* Up to where the hold takes its frame along; nothing but this estimator knows a led rotor. */
+static double creep_speed(const struct drive_settings *settings)
+{
+    return settings->hold_at_rest && settings->estimator == DRIVE_ESTIMATOR_INVARIANT_EKF
+               ? hold_creep_speed(&settings->motor, settings->hold_current_A)
+               : 0.0;
+}
+
 /* Each estimator's design apart: its locals are not on the stack below the others' deepest call. */
 __attribute__((noinline)) static bool
 design_encoder_observers(struct drive *drive, const struct drive_settings *settings,
                          double period_s, char error[DRIVE_ERROR_TEXT])
 {
     struct estimator_params *params = &drive->params.estimator;
+    const double current_A =
+        settings->encoder_zero_known
+            ? settings->hold_current_A
+            : encoder_aligning_current_A(settings, hold_task_of(settings, period_s));
     const struct encoder_observer_task task = {
         .base = &drive->base,
         .rotor_teeth = settings->motor.rotor_teeth,
@@ -44,13 +75,16 @@ design_encoder_observers(struct drive *drive, const struct drive_settings *setti
         .bandwidth_rad_s = settings->observer_bandwidth_rad_s,
         .resistance_adaptation_s =
             settings->resistance_adaptation ? settings->hold_on_enable_s / 8.0 : 0.0,
-        .hold_current_A = settings->hold_current_A,
+        .hold_current_A = current_A,
     };
 
     params->kind = ESTIMATOR_ENCODER_OBSERVER;
-    return encoder_observer_design(&params->encoder, &drive->params.model, &task, error) &&
-           (settings->observer != DRIVE_OBSERVER_HIGH_GAIN ||
-            design_high_gain_observer(drive, settings, period_s, error));
+    if (!encoder_observer_design(&params->encoder, &drive->params.model, &task, error)) {
+        return false;
+    }
+    encoder_aligning_design(drive, settings, period_s, current_A);
+    return settings->observer != DRIVE_OBSERVER_HIGH_GAIN ||
+           design_high_gain_observer(drive, settings, period_s, error);
 }
 
 __attribute__((noinline)) static bool design_steady_state_ekf(struct drive *drive,
@@ -75,25 +109,23 @@ __attribute__((noinline)) static bool design_invariant_ekf(struct drive *drive,
                                                            char error[DRIVE_ERROR_TEXT])
 {
     const struct motor_params *motor = &settings->motor;
+    const struct hold_task hold = hold_task_of(settings, period_s);
     struct estimator_params *params = &drive->params.estimator;
     struct invariant_ekf_gains moving;
-    struct invariant_ekf_gains holding;
-    struct invariant_ekf_gains following;
+    struct invariant_ekf_hold_gains holding;
 
     if (!invariant_ekf_motion_design(motor, period_s, &moving, error) ||
-        !invariant_ekf_hold_design(motor, period_s, settings->hold_current_A,
-                                   INVARIANT_EKF_HOLD_QUIET, &holding, error) ||
-        !invariant_ekf_hold_design(motor, period_s, settings->hold_current_A,
-                                   INVARIANT_EKF_HOLD_FOLLOWING, &following, error)) {
+        !invariant_ekf_hold_design(motor, period_s, settings->hold_current_A, &holding, error) ||
+        (holds(settings) && !hold_estimator_check(&hold, &holding, error))) {
         return false;
     }
     if (!settings->resistance_adaptation) {
-        holding.k_resistance_ohm_A2 = 0.0;
-        following.k_resistance_ohm_A2 = 0.0;
+        holding.quiet.k_resistance_ohm_A2 = 0.0;
+        holding.following.k_resistance_ohm_A2 = 0.0;
+        holding.unloaded.k_resistance_ohm_A2 = 0.0;
     }
     params->kind = ESTIMATOR_INVARIANT_EKF;
-    params->invariant =
-        invariant_ekf_scale(&drive->params.model, &drive->base, &moving, &holding, &following);
+    params->invariant = invariant_ekf_scale(&drive->params.model, &drive->base, &moving, &holding);
     return true;
 }
 
@@ -223,10 +255,11 @@ static bool design_finding(struct drive *drive, const struct drive_settings *set
 static bool design_hold(struct drive *drive, const struct drive_settings *settings, double period_s,
                         char error[DRIVE_ERROR_TEXT])
 {
-    struct state_feedback_gains gains;
+    const struct hold_task hold = hold_task_of(settings, period_s);
+    double damping_As_rad;
 
-    if (!state_feedback_design(&settings->motor, period_s, settings->hold_bandwidth_rad_s,
-                               settings->current_bandwidth_rad_s, &gains, error)) {
+    if (!hold_damping_design(&hold, &damping_As_rad, error) ||
+        (holds(settings) && !hold_control_check(&hold, error))) {
         return false;
     }
     const struct standstill_hold_task task = {
@@ -235,7 +268,7 @@ static bool design_hold(struct drive *drive, const struct drive_settings *settin
         .ramp_s = settings->hold_ramp_s,
         .delay_s = settings->hold_delay_s,
         .current_limit_A = settings->current_limit_A,
-        .speed_gain_As_rad = gains.k_speed_As_rad,
+        .damping_As_rad = damping_As_rad,
         .period_s = period_s,
     };
     drive->params.hold = standstill_hold_design(&drive->base, &task);
@@ -268,6 +301,11 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
     }
     drive->board = board;
     drive->settings = *settings;
+    settings = &drive->settings;
+    default_settings_apply(&drive->settings, period_s);
+    if (!board_limits_apply(&drive->settings, facts, error)) {
+        return false;
+    }
     drive->base = per_unit_base(&settings->motor, period_s);
     drive->settings.speed_limit_rad_s = speed_limit(settings, &drive->base);
     params->measurement = measurement_design(facts, &drive->base);
@@ -276,12 +314,13 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
     params->initial_position =
         position_from_rad(settings->initial_angle_rad + settings->initial_angle_error_rad,
                           settings->motor.rotor_teeth);
-    params->reference = reference_design(&drive->base, period_s);
+    params->reference = reference_design(&drive->base, period_s, creep_speed(settings));
     params->current_control = current_control_design(&settings->motor, &drive->base, period_s,
                                                      settings->current_bandwidth_rad_s);
     params->modulator = modulator_design(facts->pwm_half_period_counts);
     params->protection = protection_design(&drive->base, facts, &drive->settings);
     params->calibrate_offsets = settings->calibrate_offsets;
+    drive->calibration_params = offset_calibration_design(facts, &settings->motor, &drive->base);
     params->feed_forward = settings->feed_forward;
     params->immediate = facts->acts_at_once;
     params->hold_at_rest = settings->hold_at_rest;

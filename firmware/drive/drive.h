@@ -13,8 +13,10 @@
 #include "firmware/drive/command_queue.h"
 #include "firmware/drive/drive_interface.h"
 #include "firmware/drive/measurement.h"
+#include "firmware/drive/offset_calibration.h"
 #include "firmware/drive/planner.h"
 #include "firmware/drive/protection.h"
+#include "firmware/estimator/encoder_alignment.h"
 #include "firmware/estimator/estimator.h"
 #include "firmware/estimator/initial_position.h"
 #include "firmware/estimator/standstill_pulses.h"
@@ -117,8 +119,12 @@ struct drive {
 
     /* enabling, with its constants: behind all that an interrupt in operation uses */
     struct position start; /* rotor, as told or as found */
+    struct offset_calibration calibration;
+    struct offset_calibration_params calibration_params;
     struct initial_position finding;
     struct initial_position_params finding_params;
+    struct encoder_alignment alignment;
+    struct encoder_alignment_params alignment_params;
     struct standstill_pulses pulses;
     struct standstill_pulses_params pulses_params;
     struct phases loss_before_pulse;
@@ -136,9 +142,14 @@ __attribute__((noinline)) bool drive_init(struct drive *drive, const struct hal 
 __attribute__((noinline)) struct hal_outputs drive_control_cycle(struct drive *drive,
                                                                  const struct hal_samples *samples);
 
-/* Background: plans and posts a command. false: refused, reason in error. */
+/* Background: judges a command by command_rules.h, plans and posts it. false: refused, reason in
+   error. */
 bool drive_command(struct drive *drive, const struct drive_command *command,
                    char error[DRIVE_ERROR_TEXT]);
+
+/* The same of one that was asked for in a period that may have passed. */
+bool drive_command_asked_in(struct drive *drive, const struct drive_command *command,
+                            uint32_t asked_in, char error[DRIVE_ERROR_TEXT]);
 
 /* Background: the state that a command posted now for `at_period` will find: the present one, or
    switch-on-disabled if a disable waits that acts by then. A fault to come is not foreseen. */

@@ -13,15 +13,18 @@
 #include "firmware/control/position_laws.h"
 #include "firmware/motor/motor_params.h"
 
+struct hal_facts;
+
 /* States of the drive; names and order of CiA 402 (IEC 61800-7-201), substates of enabling apart.
  */
 enum drive_state {
     DRIVE_SWITCH_ON_DISABLED,  /* bridge off, waits for an enable command */
-    DRIVE_CALIBRATING_OFFSETS, /* bridge off, converter offsets are averaged */
+    DRIVE_CALIBRATING_OFFSETS, /* converter offsets are averaged, with the bridge off, then on */
     DRIVE_FINDING_POSITION,    /* voltage impulses, or a gentle alignment, find the rotor */
-    DRIVE_ALIGNING,            /* d-axis hold at the known angle; series resistance is calibrated */
-    DRIVE_OPERATION_ENABLED,   /* ready: holds or moves */
-    DRIVE_FAULT,               /* bridge open until the drive is disabled */
+    DRIVE_ALIGNING,          /* d-axis hold at the known angle, or an encoder's zero is found by it;
+                                series resistance is calibrated */
+    DRIVE_OPERATION_ENABLED, /* ready: holds or moves */
+    DRIVE_FAULT,             /* bridge open until the drive is disabled */
     DRIVE_STATES
 };
 
@@ -33,8 +36,10 @@ enum drive_fault {
     DRIVE_FAULT_DEADLINE_MISSED,      /* a control interrupt ended too late */
     DRIVE_FAULT_BUS_VOLTAGE,          /* measured bus outside 0.5...1.3 x nominal */
     DRIVE_FAULT_ESTIMATE_RANGE,       /* an estimate left its physical range or is not finite */
-    DRIVE_FAULT_OFFSET_RANGE,         /* a converter offset too large to be an offset */
-    DRIVE_FAULT_POSITION_NOT_FOUND,   /* neither impulses nor alignment have shown the rotor */
+    DRIVE_FAULT_OFFSET_RANGE,         /* a converter offset too large to be an offset, or the rotor
+                                         was being turned while they were looked for */
+    DRIVE_FAULT_POSITION_NOT_FOUND,   /* neither impulses nor alignment have shown the rotor, or
+                                         they contradict themselves */
     DRIVE_FAULT_LOST_SYNCHRONISM,     /* the rotor is not where the estimate has it */
     DRIVE_FAULT_STALLED, /* the rotor does not follow, although the estimate is sound */
     DRIVE_FAULTS
@@ -117,9 +122,11 @@ struct drive_settings {
     bool detent_learning;              /* with an encoder only; true for its default law */
     bool bridge_loss_compensation;     /* dead time and diodes; true */
     bool resistance_adaptation;        /* track the series resistance while holding; true */
-    double law_bandwidth_rad_s;        /* w0 of the position law, pole pair; 200, of the default law
-                                          300, with an encoder 900 */
-    double current_bandwidth_rad_s;    /* of the loop inside it; 1500, with that law 2000 */
+    double law_bandwidth_rad_s;        /* w0 of the position law, pole pair; NaN: not given, 200, of
+                                          the default law 300, with an encoder 900, or what the
+                                          period bears (drive/default_settings.h) */
+    double current_bandwidth_rad_s;    /* of the loop inside it; NaN: 1500, with that law 2000, or
+                                          what the period bears */
     double law_gains[DRIVE_LAW_GAINS]; /* given to the law instead of what the bandwidths make of
                                           them and not checked against their limits, in the order
                                           of firmware_image.law_gain; NaN: not given */
@@ -129,13 +136,14 @@ struct drive_settings {
 
     /* limits */
     double current_limit_A;    /* of the current reference; rated current */
-    double overcurrent_trip_A; /* software trip on a sampled phase current; 1.8 x rated */
+    double overcurrent_trip_A; /* software trip on a sampled phase current; NaN: not given, 1.8 x
+                                  rated, cut to what the board measures (board_limits.h) */
     double speed_limit_rad_s;  /* estimates beyond it open the bridge; 1.3 supply/Km, cut to 0.24
                                   electrical turn per period */
 
     /* encoder */
-    double observer_bandwidth_rad_s; /* triple pole of the model observer; 1000, of the default law
-                                        with an encoder 1400 */
+    double observer_bandwidth_rad_s; /* triple pole of the model observer; NaN: 1000, of the default
+                                        law with an encoder 1400, or what the period bears */
     double high_gain_epsilon_s;      /* of the high-gain observer; 1e-3 */
     double encoder_zero_rad;         /* rotor angle where count 0 begins; 0 */
     double initial_load_torque_Nm;   /* load that the model observer begins with; 0 */
@@ -143,17 +151,21 @@ struct drive_settings {
     /* enabling and hold */
     bool encoder_zero_known; /* absolute encoder or indexed: the rotor's angle follows from the
                                 count; else it is initial_angle_rad at the end of the hold; false */
-    bool calibrate_offsets;  /* step of enabling; true */
-    bool hold_on_enable;     /* step of enabling: 150 ms hold before ready; true */
-    bool hold_at_rest;       /* d-axis current at rest; true, with an encoder false */
+    bool calibrate_offsets;  /* step of enabling, with the bridge off, then on; true */
+    bool hold_on_enable; /* step of enabling: hold_on_enable_s before ready; with an encoder whose
+                            zero is not known it is found first; true */
+    bool hold_at_rest;   /* d-axis current at rest; true, with an encoder false */
     bool standstill_pulses;  /* pulses on the hold current show the rotor's angle under load; needs
                                 a motor that saturates; false */
-    double hold_on_enable_s; /* 0.150 */
-    double hold_current_A;   /* d-axis current at rest; half the rated current */
+    double hold_on_enable_s; /* 0.150; half of it behind the search for an encoder's zero */
+    double hold_current_A;   /* d-axis current at rest; NaN: half the rated current, or what of it
+                                the hold's own check passes (design/hold_check.h) */
     double motion_current_A; /* d-axis current in motion; 0 */
     double hold_ramp_s;      /* time for the hold current to ramp in or out; 0.010 */
     double hold_delay_s;     /* from the end of a profile to the hold; 0.015 */
-    double hold_bandwidth_rad_s;    /* w0 of the state feedback whose damping the hold takes; 200 */
+    double hold_bandwidth_rad_s;    /* w0 of the state feedback whose damping the hold takes; NaN:
+                                       200 or a quarter of sqrt(N Km hold_current_A / J), or what
+                                       the current loop bears */
     double initial_angle_rad;       /* mechanical rotor angle the drive is told; 0 */
     double initial_angle_error_rad; /* added to it, to tell the drive something wrong; an encoder
                                        whose zero is known still measures right; 0 */
@@ -181,13 +193,15 @@ enum drive_command_kind {
 };
 
 /*
- * A command, addressed to a period: it acts in the control interrupt whose index is at_period
- * (0 is the first), or in the next one if that has passed. Moves are absolute and start from the
- * end of the last posted move. Of two disables or two stops that wait, the earlier period counts.
- * An enable may follow a disable at once; if the board's overcurrent trip comes between the posting
- * of the two and the disable, the drive is in fault again as soon as it is enabled. A drive whose
- * encoder's zero is known starts where its rotor is: it refuses all motion between the posting of
- * an enable and operation.
+ * A command, addressed to a period, is judged by the state that it will find there
+ * (drive/command_rules.h): a move, say, is refused unless the drive is ready, and it is dropped and
+ * counted if a fault has come when its period does. It acts in the control interrupt whose index is
+ * at_period (0 is the first), or in the next one if that has passed. Moves are absolute and start
+ * from the end of the last posted move. Of two disables or two stops that wait, the earlier period
+ * counts. An enable may follow a disable at once; if the board's overcurrent trip comes between the
+ * posting of the two and the disable, the drive is in fault again as soon as it is enabled. A drive
+ * whose encoder's zero is known starts where its rotor is: it refuses all motion between the
+ * posting of an enable and operation.
  *
  * Sine, set-points, velocity and retarget are planned by drive_background, DRIVE_LEAD_s ahead: they
  * act in the period they are addressed to if they are posted that much earlier, else that much
@@ -249,6 +263,11 @@ struct drive_signals {
     double resistance_est_ohm;
     double bus_V;
     uint32_t reference_underruns; /* sines and set-points whose continuation came too late */
+    uint32_t commands_dropped;    /* accepted, but in their period the drive could not obey them: it
+                                     was in fault, as a rule, or a move would not have begun where
+                                     the reference was. What a disable or a stop has flushed does
+                                     not count */
+    enum drive_command_kind dropped_kind; /* of the last of them, if any */
 };
 
 enum { DRIVE_ERROR_TEXT = 160 };
@@ -273,6 +292,14 @@ void drive_settings_select_law(struct drive_settings *settings, enum position_la
  * field, its value and the allowed range in `error`.
  */
 bool drive_settings_check(const struct drive_settings *settings, char error[DRIVE_ERROR_TEXT]);
+
+/*
+ * The speed, rad/s, below which a drive without an encoder is blind on this board: there the
+ * back-EMF is less than what the offset that calibration leaves in the currents makes of the
+ * resistance, offset x R / Km. 0 with an encoder.
+ */
+double drive_blind_speed_rad_s(const struct drive_settings *settings,
+                               const struct hal_facts *facts);
 
 /* Name of a state, fault, law or estimator as scenarios and the serial line spell it. */
 const char *drive_state_name(enum drive_state state);

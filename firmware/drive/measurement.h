@@ -6,12 +6,6 @@
 #include "firmware/motor/per_unit.h"
 #include "hal/hal.h"
 
-/* Sample sets averaged for the offsets: noise and quantisation fall to a twentieth. */
-#define OFFSET_SAMPLES 512
-
-/* An offset above this many codes is a defect, not an offset. */
-#define OFFSET_CODES_MAX 64
-
 struct measurement_params {
     coef_t current;       /* per code */
     coef_t phase_voltage; /* per code */
@@ -20,9 +14,7 @@ struct measurement_params {
 };
 
 struct measurement {
-    struct channels offset; /* of the four channels that are zeroed */
-    int32_t sum[4];         /* of codes, while calibrating: currents, voltages */
-    uint32_t samples;
+    struct channels offset; /* of the four channels that are zeroed: offset_calibration.h */
 };
 
 struct sample_set {
@@ -53,12 +45,5 @@ measurement_step(const struct measurement *measurement, const struct measurement
     now.bus = num_from_code(samples->bus_voltage, params->bus_voltage);
     return now;
 }
-
-enum offset_calibration { OFFSETS_PENDING, OFFSETS_FOUND, OFFSETS_OUT_OF_RANGE };
-
-/* One period of calibration with the bridge off. */
-enum offset_calibration measurement_calibrate(struct measurement *measurement,
-                                              const struct measurement_params *params,
-                                              const struct hal_samples *samples);
 
 #endif

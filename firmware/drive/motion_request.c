@@ -1,5 +1,6 @@
 /* From the units of a command to those of the reference: turns and periods. */
 #include "firmware/design/refusal.h"
+#include "firmware/drive/board_limits.h"
 #include "firmware/drive/drive.h"
 
 /* Ranges of the reference, electrical turns per period^n: profile.c */
@@ -41,9 +42,12 @@ static double smaller(double a, double b)
 }
 
 /* What the drive can follow, rad/s and rad/s^2. */
-static double speed_limit(const struct drive *drive, const struct units *units)
+static struct speed_limit speed_limit(const struct drive *drive, const struct units *units)
 {
-    return smaller(drive->settings.speed_limit_rad_s, SPEED_MAX_TURNS * units->speed);
+    struct speed_limit limit = board_limits_speed(&drive->settings);
+
+    limit.rad_s = smaller(limit.rad_s, SPEED_MAX_TURNS * units->speed);
+    return limit;
 }
 
 static double acceleration_limit(const struct drive *drive, const struct units *units)
@@ -59,7 +63,7 @@ static bool limits_of(const struct drive *drive, const struct drive_command *com
                       struct motion_limits *limits, char error[DRIVE_ERROR_TEXT])
 {
     const struct units units = units_of(drive);
-    const double speed = speed_limit(drive, &units);
+    const double speed = speed_limit(drive, &units).rad_s;
     const double acceleration = acceleration_limit(drive, &units);
     const double slowest = 2.0 * speed / (DURATION_MAX * units.period_s);
     const double softest = command->acceleration_rad_s2 / (JERK_TIME_MAX * units.period_s);
@@ -80,11 +84,11 @@ static bool request_velocity(const struct drive *drive, const struct drive_comma
                              struct motion_request *request, char error[DRIVE_ERROR_TEXT])
 {
     const struct units units = units_of(drive);
-    const double limit = speed_limit(drive, &units);
+    const struct speed_limit limit = speed_limit(drive, &units);
 
     request->speed = command->speed_rad_s / units.speed;
-    return design_require_within(error, "speed", command->speed_rad_s, -limit, limit, "rad/s",
-                                 "limit of the drive") &&
+    return design_require_within(error, "speed", command->speed_rad_s, -limit.rad_s, limit.rad_s,
+                                 "rad/s", limit.reason) &&
            limits_of(drive, command, &request->limits, error);
 }
 
@@ -92,6 +96,7 @@ static bool request_retarget(const struct drive *drive, const struct drive_comma
                              struct motion_request *request, char error[DRIVE_ERROR_TEXT])
 {
     const struct units units = units_of(drive);
+    const struct speed_limit limit = speed_limit(drive, &units);
     const double range = TURNS_MAX * units.turn_rad;
     double distance;
 
@@ -103,9 +108,11 @@ static bool request_retarget(const struct drive *drive, const struct drive_comma
     distance = command->position_rad -
                position_to_rad(drive->reference.next.position, drive->settings.motor.rotor_teeth);
     distance = distance < 0.0 ? -distance : distance;
-    if (!design_require_within(
-            error, "speed", command->speed_rad_s, distance / (DURATION_MAX * units.period_s),
-            speed_limit(drive, &units), "rad/s", "limit of the drive, 2^30 periods to go") ||
+    if (!design_require_within(error, "speed", command->speed_rad_s,
+                               distance / (DURATION_MAX * units.period_s), 1e9, "rad/s",
+                               "2^30 periods to go") ||
+        !design_require_within(error, "speed", command->speed_rad_s, 0.0, limit.rad_s, "rad/s",
+                               limit.reason) ||
         !design_require_within(error, "speed", command->speed_rad_s, 1e-9, 1e9, "rad/s",
                                "a speed above zero") ||
         !limits_of(drive, command, &request->limits, error)) {
@@ -139,6 +146,7 @@ static bool request_sine(const struct drive *drive, const struct drive_command *
         command->amplitude_rad < 0.0 ? -command->amplitude_rad : command->amplitude_rad;
     const double halves = 2.0 * command->cycles;
     const double stop_s = 0.1;
+    const struct speed_limit speed = speed_limit(drive, &units);
     struct motion_limits *limits = &request->limits;
 
     if (!design_require_within(error, "amplitude", amplitude, AMPLITUDE_MIN_rad,
@@ -170,7 +178,7 @@ static bool request_sine(const struct drive *drive, const struct drive_command *
     });
     *limits = sine_peaks(&request->sine);
     if (!design_require_within(error, "speed of the sine", limits->speed * units.speed, 0.0,
-                               speed_limit(drive, &units), "rad/s", "limit of the drive") ||
+                               speed.rad_s, "rad/s", speed.reason) ||
         !design_require_within(
             error, "acceleration of the sine", limits->acceleration * units.acceleration, 0.0,
             acceleration_limit(drive, &units), "rad/s^2", "limit of the drive")) {

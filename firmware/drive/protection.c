@@ -1,8 +1,6 @@
 #include "firmware/drive/protection.h"
 
-/* Share of the nominal supply; the sensing saturates at 1.3. */
-static const double bus_min = 0.5;
-static const double bus_max = 1.29;
+#include "firmware/drive/board_limits.h"
 
 /* No load that the motor could hold twice over is taken for real. */
 static const double load_torque_limit = 2.0;
@@ -30,11 +28,11 @@ struct protection_params protection_design(const struct per_unit *base,
 {
     const double supply_V = settings->motor.supply_V;
     const int32_t trip = codes(settings->overcurrent_trip_A, facts->current_A_per_code);
-    const int32_t bus_code_min = codes(bus_min * supply_V, facts->bus_V_per_code);
+    const int32_t bus_code_min = codes(BUS_VOLTAGE_MIN * supply_V, facts->bus_V_per_code);
     const struct protection_params params = {
         .current_codes = {facts->current_zero_code - trip, 2 * trip},
         .bus_codes = {bus_code_min,
-                      codes(bus_max * supply_V, facts->bus_V_per_code) - bus_code_min},
+                      codes(BUS_VOLTAGE_MAX * supply_V, facts->bus_V_per_code) - bus_code_min},
         .speed_limit = num_from_double(
             estimate_limit(settings, settings->speed_limit_rad_s / base->speed_rad_s)),
         .load_torque_limit = num_from_double(estimate_limit(settings, load_torque_limit)),

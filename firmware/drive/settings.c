@@ -1,4 +1,5 @@
 #include "firmware/design/refusal.h"
+#include "firmware/drive/board_limits.h"
 #include "firmware/drive/drive_interface.h"
 #include "firmware/linkage.h"
 
@@ -11,22 +12,22 @@ CALLED_FROM_OUTSIDE void drive_settings_default(struct drive_settings *settings,
         .motor = *motor,
         .law = POSITION_LAW_STATE_FEEDBACK,
         .estimator = DRIVE_ESTIMATOR_INVARIANT_EKF,
-        .law_bandwidth_rad_s = 300.0,
+        .law_bandwidth_rad_s = not_given,
         .feed_forward = true,
-        .current_bandwidth_rad_s = 1500.0,
-        .observer_bandwidth_rad_s = 1000.0,
+        .current_bandwidth_rad_s = not_given,
+        .observer_bandwidth_rad_s = not_given,
         .high_gain_epsilon_s = 1e-3,
         .synchronism_policy = DRIVE_SYNCHRONISM_FAULT,
         .bridge_loss_compensation = true,
         .current_limit_A = motor->rated_current_A,
-        .overcurrent_trip_A = 1.8 * motor->rated_current_A,
-        .speed_limit_rad_s = 1.3 * motor->supply_V / motor->torque_constant_Nm_A,
+        .overcurrent_trip_A = not_given,
+        .speed_limit_rad_s = SPEED_LIMIT_SHARE * motor->supply_V / motor->torque_constant_Nm_A,
         .resistance_adaptation = true,
-        .hold_current_A = 0.5 * motor->rated_current_A,
+        .hold_current_A = not_given,
         .hold_ramp_s = 0.010,
         .hold_delay_s = 0.015,
         .hold_at_rest = true,
-        .hold_bandwidth_rad_s = 200.0,
+        .hold_bandwidth_rad_s = not_given,
         .calibrate_offsets = true,
         .hold_on_enable = true,
         .hold_on_enable_s = 0.150,
@@ -50,15 +51,12 @@ CALLED_FROM_OUTSIDE void drive_settings_select_feedback(struct drive_settings *s
 CALLED_FROM_OUTSIDE void drive_settings_select_law(struct drive_settings *settings,
                                                    enum position_law law)
 {
-    const bool linearised = law == POSITION_LAW_FEEDBACK_LINEARISATION;
-    const bool fast = linearised && settings->feedback == DRIVE_FEEDBACK_ENCODER;
-    const bool stiff = linearised || law == POSITION_LAW_STATE_FEEDBACK;
-
     settings->law = law;
-    settings->law_bandwidth_rad_s = fast ? 900.0 : stiff ? 300.0 : 200.0;
-    settings->current_bandwidth_rad_s = fast ? 2000.0 : 1500.0;
-    settings->observer_bandwidth_rad_s = fast ? 1400.0 : 1000.0;
-    settings->detent_learning = fast;
+    settings->law_bandwidth_rad_s = not_given;
+    settings->current_bandwidth_rad_s = not_given;
+    settings->observer_bandwidth_rad_s = not_given;
+    settings->detent_learning =
+        law == POSITION_LAW_FEEDBACK_LINEARISATION && settings->feedback == DRIVE_FEEDBACK_ENCODER;
 }
 
 /* Name, value and allowed range of one setting. */
@@ -90,6 +88,12 @@ static bool check(const struct bounded *setting, char error[DRIVE_ERROR_TEXT])
     return true;
 }
 
+/* NaN, not given, becomes a value that is in order. */
+static double or_in_order(double value, double in_order)
+{
+    return value == value ? value : in_order;
+}
+
 /* Ranges wide enough for any hybrid stepper, narrow enough to catch a slip of the unit. */
 bool drive_settings_check(const struct drive_settings *settings, char error[DRIVE_ERROR_TEXT])
 {
@@ -104,17 +108,22 @@ bool drive_settings_check(const struct drive_settings *settings, char error[DRIV
         {"rated_current_A", rated, 1e-2, 50.0, "A"},
         {"supply_V", motor->supply_V, 5.0, 400.0, "V"},
         {"rotor_teeth", (double)motor->rotor_teeth, 1.0, 1000.0, ""},
-        {"law_bandwidth_rad_s", settings->law_bandwidth_rad_s, 1.0, 1e4, "rad/s"},
-        {"current_bandwidth_rad_s", settings->current_bandwidth_rad_s, 10.0, 1e6, "rad/s"},
-        {"observer_bandwidth_rad_s", settings->observer_bandwidth_rad_s, 1.0, 1e6, "rad/s"},
+        {"law_bandwidth_rad_s", or_in_order(settings->law_bandwidth_rad_s, 100.0), 1.0, 1e4,
+         "rad/s"},
+        {"current_bandwidth_rad_s", or_in_order(settings->current_bandwidth_rad_s, 1000.0), 10.0,
+         1e6, "rad/s"},
+        {"observer_bandwidth_rad_s", or_in_order(settings->observer_bandwidth_rad_s, 1000.0), 1.0,
+         1e6, "rad/s"},
         {"high_gain_epsilon_s", settings->high_gain_epsilon_s, 1e-7, 1.0, "s"},
-        {"hold_bandwidth_rad_s", settings->hold_bandwidth_rad_s, 1.0, 1e4, "rad/s"},
+        {"hold_bandwidth_rad_s", or_in_order(settings->hold_bandwidth_rad_s, 100.0), 1.0, 1e4,
+         "rad/s"},
         {"encoder_zero_rad", settings->encoder_zero_rad, -1e4, 1e4, "rad"},
         {"initial_load_torque_Nm", settings->initial_load_torque_Nm, -100.0, 100.0, "N m"},
         {"current_limit_A", settings->current_limit_A, 0.01 * rated, 2.0 * rated, "A"},
-        {"overcurrent_trip_A", settings->overcurrent_trip_A, 0.1 * rated, 4.0 * rated, "A"},
+        {"overcurrent_trip_A", or_in_order(settings->overcurrent_trip_A, rated), 0.1 * rated,
+         6.0 * rated, "A"},
         {"speed_limit_rad_s", settings->speed_limit_rad_s, 0.1, 1e4, "rad/s"},
-        {"hold_current_A", settings->hold_current_A, 0.01 * rated, rated, "A"},
+        {"hold_current_A", or_in_order(settings->hold_current_A, rated), 0.01 * rated, rated, "A"},
         {"motion_current_A", settings->motion_current_A, 0.0, rated, "A"},
         {"hold_ramp_s", settings->hold_ramp_s, 1e-3, 1.0, "s"},
         {"hold_delay_s", settings->hold_delay_s, 0.0, 100.0, "s"},

@@ -1,6 +1,8 @@
 #include "firmware/drive/state_machine.h"
 
 #include "firmware/drive/block_reset.h"
+#include "firmware/drive/command_rules.h"
+#include "firmware/drive/encoder_aligning.h"
 #include "firmware/drive/synchronism.h"
 
 static void enter(struct drive *drive, enum drive_state state)
@@ -9,34 +11,35 @@ static void enter(struct drive *drive, enum drive_state state)
     drive->state_since = drive->period;
 }
 
-/* The rotor has been drawn into the d axis: where it is now is where it was told to be. */
 static void end_aligning(struct drive *drive)
 {
     const struct drive_params *params = &drive->params;
 
-    if (drive->aligns) {
-        estimator_place(&drive->estimator, &params->estimator, drive->reference.next.position);
-    }
     drive->aligns = false;
+    drive->hold.current = params->hold.current;
     drive->hold.active = params->hold_at_rest;
     synchronism_start(drive);
     enter(drive, DRIVE_OPERATION_ENABLED);
 }
 
-/*
- * Opposite the axis that draws it a rotor feels no torque. So one that may stand anywhere is drawn
- * a quarter turn beside its place first, and from there home.
- */
-#define QUARTER_TURN (1u << 30)
+static void align_encoder(struct drive *drive)
+{
+    const enum encoder_aligning aligning = encoder_aligning_step(drive);
 
+    if (aligning == ENCODER_ALIGNED) {
+        end_aligning(drive);
+    } else if (aligning == ENCODER_NOT_ALIGNED) {
+        state_machine_fault(drive, DRIVE_FAULT_POSITION_NOT_FOUND);
+    }
+}
+
+/* The first hold: without an encoder, and with one whose zero is known, it calibrates. */
 static void align(struct drive *drive)
 {
-    const uint32_t periods = drive->period - drive->state_since;
-
-    if (periods > drive->params.hold_on_enable_periods) {
+    if (drive->aligns) {
+        align_encoder(drive);
+    } else if (drive->period - drive->state_since > drive->params.hold_on_enable_periods) {
         end_aligning(drive);
-    } else if (drive->aligns && periods == drive->params.hold_on_enable_periods / 2u) {
-        standstill_hold_enter(&drive->hold, drive->reference.next.position.fraction);
     }
 }
 
@@ -46,8 +49,8 @@ static void power_up(struct drive *drive)
     if (drive->params.hold_on_enable_periods > 0u) {
         drive->aligns =
             estimator_has_encoder(&drive->params.estimator) && !drive->params.encoder_zero_known;
-        standstill_hold_enter(&drive->hold, drive->reference.next.position.fraction +
-                                                (drive->aligns ? QUARTER_TURN : 0u));
+        encoder_aligning_start(drive);
+        standstill_hold_enter(&drive->hold, drive->reference.next.position.fraction);
         enter(drive, DRIVE_ALIGNING);
     } else {
         synchronism_start(drive);
@@ -82,6 +85,7 @@ static void find_position_or_power_up(struct drive *drive)
 static void start_enabling(struct drive *drive)
 {
     measurement_reset(&drive->measurement);
+    offset_calibration_reset(&drive->calibration);
     if (drive->params.calibrate_offsets) {
         enter(drive, DRIVE_CALIBRATING_OFFSETS);
     } else {
@@ -94,6 +98,13 @@ static void disable(struct drive *drive)
     drive->aligns = false;
     drive->fault = DRIVE_FAULT_NONE;
     enter(drive, DRIVE_SWITCH_ON_DISABLED);
+}
+
+/* It was accepted, but what it was accepted for has not come: counted, so that somebody hears. */
+static void drop(struct command_queue *queue, const struct queued_command *command)
+{
+    queue->dropped++;
+    queue->dropped_kind = command->kind;
 }
 
 /* true: done with the command; false: it waits for its period or for the reference to rest. */
@@ -109,20 +120,25 @@ static bool obey(struct drive *drive, struct queued_command *command)
         return true;
     }
     if (drive->state != DRIVE_OPERATION_ENABLED) {
+        if (!command_rules_obeyed(command->kind, drive->state)) {
+            drop(&drive->commands, command);
+        }
         return true;
     }
     if (reference_busy(&drive->reference)) {
         return false; /* and so the profile in use stays in the queue's memory */
     }
     if (queued_command_is_move(command)) {
-        (void)reference_load(&drive->reference, &command->profile);
+        if (!reference_load(&drive->reference, &command->profile)) {
+            drop(&drive->commands, command);
+        }
         return true;
     }
     if (queued_command_is_planned(command)) {
         return false; /* it goes when its plan takes over */
     }
     if (command->kind == DRIVE_COMMAND_HOLD) {
-        drive->reference.rest_periods = UINT32_MAX;
+        drive->reference.slow_periods = UINT32_MAX;
     }
     return true;
 }
@@ -168,7 +184,15 @@ static void take_commands(struct drive *drive)
 
 static void calibrate_offsets(struct drive *drive, const struct hal_samples *samples)
 {
-    switch (measurement_calibrate(&drive->measurement, &drive->params.measurement, samples)) {
+    if (drive->calibration.bridge_on) {
+        state_machine_fault(drive, protection_check_samples(&drive->params.protection, samples));
+        if (drive->state == DRIVE_FAULT) {
+            return;
+        }
+    }
+    switch (offset_calibration_step(&drive->calibration, &drive->calibration_params,
+                                    &drive->params.measurement, samples,
+                                    &drive->measurement.offset)) {
     case OFFSETS_PENDING:
         break;
     case OFFSETS_FOUND:
@@ -184,12 +208,22 @@ void state_machine_fault(struct drive *drive, enum drive_fault fault)
 {
     if (fault != DRIVE_FAULT_NONE) {
         drive->fault = fault;
+        drive->commands.attention = COMMAND_QUEUE_CALLS; /* nothing waits for a rest any more */
         enter(drive, DRIVE_FAULT);
     }
 }
 
+struct hal_outputs state_machine_resting_bridge(const struct drive *drive)
+{
+    const bool on = drive->state == DRIVE_CALIBRATING_OFFSETS && drive->calibration.bridge_on;
+    const uint16_t half = on ? (uint16_t)drive->params.modulator.middle_counts : 0u;
+
+    return (struct hal_outputs){.high_counts = {half, half, half, half}, .bridge_on = on};
+}
+
 /* The states other than operation; true: the bridge is on, and the control runs. */
-static bool step_outside_operation(struct drive *drive, const struct hal_samples *samples)
+__attribute__((noinline)) static bool step_outside_operation(struct drive *drive,
+                                                             const struct hal_samples *samples)
 {
     if (drive->state == DRIVE_CALIBRATING_OFFSETS) {
         calibrate_offsets(drive, samples);

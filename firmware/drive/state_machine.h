@@ -30,6 +30,10 @@ bool state_machine_step(struct drive *drive, const struct hal_samples *samples);
 /* The steps of enabling behind finding-position: the rotor stands at this electrical angle. */
 void state_machine_position_found(struct drive *drive, angle_t angle);
 
+/* The bridge while nothing controls it: off; in the second stage of the offsets' calibration on,
+   all legs at half duty. */
+struct hal_outputs state_machine_resting_bridge(const struct drive *drive);
+
 /* Enters the fault state if there is a fault; the bridge opens in the same period. */
 void state_machine_fault(struct drive *drive, enum drive_fault fault);
 

@@ -2,9 +2,6 @@
 
 #include "firmware/design/elementary.h"
 
-/* p = e^-0.5 = 0.6: beyond it a count of noise goes straight into the speed. */
-#define BANDWIDTH_PERIOD_MAX 0.5
-
 bool encoder_observer_design(struct encoder_observer_params *params,
                              const struct motor_model_params *model,
                              const struct encoder_observer_task *task,
@@ -25,13 +22,14 @@ bool encoder_observer_design(struct encoder_observer_params *params,
                                  "rad/s")) {
         return false;
     }
-    if (task->bandwidth_rad_s * period_s > BANDWIDTH_PERIOD_MAX) {
-        return design_refuse_limit(error, (struct refusal){.quantity = "observer_bandwidth_rad_s",
-                                                           .value = task->bandwidth_rad_s,
-                                                           .relation = "at most",
-                                                           .limit = BANDWIDTH_PERIOD_MAX / period_s,
-                                                           .unit = "rad/s",
-                                                           .reason = "0.5 per control period"});
+    if (task->bandwidth_rad_s * period_s > ENCODER_OBSERVER_PERIOD_MAX) {
+        return design_refuse_limit(error,
+                                   (struct refusal){.quantity = "observer_bandwidth_rad_s",
+                                                    .value = task->bandwidth_rad_s,
+                                                    .relation = "at most",
+                                                    .limit = ENCODER_OBSERVER_PERIOD_MAX / period_s,
+                                                    .unit = "rad/s",
+                                                    .reason = "0.5 per control period"});
     }
     /* 1 - p by its series' sum, exact for small w_o T */
     const double x = task->bandwidth_rad_s * period_s;
@@ -68,12 +66,15 @@ void encoder_observer_reset(struct encoder_observer *observer,
 }
 
 void encoder_observer_place(struct encoder_observer *observer,
-                            const struct encoder_observer_params *params, struct position position)
+                            const struct encoder_observer_params *params, struct position position,
+                            int32_t count)
 {
-    encoder_set(&observer->encoder, position, observer->encoder.count);
-    observer->estimate.rotor.position = position;
-    observer->estimate.rotor.speed = NUM(0.0);
-    observer->estimate.rotor.load_torque = NUM(0.0);
+    struct rotor *rotor = &observer->estimate.rotor;
+
+    encoder_set(&observer->encoder, position, count);
+    rotor->position = position;
+    rotor->speed = NUM(0.0);
+    rotor->load_torque = park(observer->estimate.current, sincos_of(position.fraction)).q;
     estimate_look_ahead(&observer->estimate, &params->model);
 }
 

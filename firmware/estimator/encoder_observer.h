@@ -34,6 +34,10 @@ struct encoder_observer {
     num_t known_torque; /* part of the load that need not be estimated; set before each step */
 };
 
+/* Bandwidth times period, p = e^-0.5 = 0.6: beyond it a count of noise goes straight into the
+ * speed. */
+#define ENCODER_OBSERVER_PERIOD_MAX 0.5
+
 /* What it is designed from. */
 struct encoder_observer_task {
     const struct per_unit *base;
@@ -56,9 +60,10 @@ void encoder_observer_reset(struct encoder_observer *observer,
                             const struct encoder_observer_params *params, struct position position,
                             num_t load_torque, num_t resistance, int32_t count);
 
-/* The rotor rests where the encoder now is: at `position`. Forgets the load. */
+/* The rotor rests at `position` with this count: its load is the torque that its current makes. */
 void encoder_observer_place(struct encoder_observer *observer,
-                            const struct encoder_observer_params *params, struct position position);
+                            const struct encoder_observer_params *params, struct position position,
+                            int32_t count);
 
 /* From S(k-1) to S(k). Not inlined: its registers cost the sensorless interrupt nothing. */
 __attribute__((noinline)) void encoder_observer_step(struct encoder_observer *observer,

@@ -4,6 +4,12 @@
 
 #include "firmware/motor/motor_model.h"
 
+/* What the hold does with the rotor over the period. */
+struct rotor_hold {
+    bool active;
+    const num_t *speed; /* of the frame in which it holds: 0 at rest; read in hold alone */
+};
+
 struct estimate {
     struct phases current;
     struct rotor rotor;

@@ -153,14 +153,15 @@ static inline void estimator_tell_torque(struct estimator *estimator,
     }
 }
 
-/* With an encoder: the rotor is where the encoder now is, at `position`. */
+/* With an encoder: the rotor is at `position` with this count. */
 static inline void estimator_place(struct estimator *estimator,
-                                   const struct estimator_params *params, struct position position)
+                                   const struct estimator_params *params, struct position position,
+                                   int32_t count)
 {
     if (params->kind == ESTIMATOR_ENCODER_OBSERVER) {
-        encoder_observer_place(&estimator->encoder, &params->encoder, position);
+        encoder_observer_place(&estimator->encoder, &params->encoder, position, count);
     } else if (params->kind == ESTIMATOR_HIGH_GAIN_OBSERVER) {
-        high_gain_observer_place(&estimator->high_gain, position);
+        high_gain_observer_place(&estimator->high_gain, position, count);
     }
 }
 
@@ -168,17 +169,17 @@ static inline void estimator_place(struct estimator *estimator,
 static inline const struct estimate *estimator_step(struct estimator *estimator,
                                                     const struct estimator_params *params,
                                                     const struct channels *winding,
-                                                    int32_t encoder_count, bool holding)
+                                                    int32_t encoder_count, struct rotor_hold hold)
 {
     if (params->kind == ESTIMATOR_INVARIANT_EKF) {
         invariant_ekf_step(&estimator->invariant, &params->invariant, winding->current,
-                           winding->voltage, holding);
+                           winding->voltage, hold);
     } else if (params->kind == ESTIMATOR_STEADY_STATE_EKF) {
         steady_state_ekf_step(&estimator->steady_state, &params->steady_state, winding->current,
                               winding->voltage);
     } else if (params->kind == ESTIMATOR_ENCODER_OBSERVER) {
         encoder_observer_step(&estimator->encoder, &params->encoder, winding->current,
-                              winding->voltage, encoder_count, holding);
+                              winding->voltage, encoder_count, hold.active);
     } else {
         high_gain_observer_step(&estimator->high_gain, &params->high_gain, winding->current,
                                 encoder_count);

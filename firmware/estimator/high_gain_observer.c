@@ -94,9 +94,10 @@ void high_gain_observer_reset(struct high_gain_observer *observer,
     observer->x[2] = NUM(0.0);
 }
 
-void high_gain_observer_place(struct high_gain_observer *observer, struct position position)
+void high_gain_observer_place(struct high_gain_observer *observer, struct position position,
+                              int32_t count)
 {
-    encoder_set(&observer->encoder, position, observer->encoder.count);
+    encoder_set(&observer->encoder, position, count);
     observer->estimate.rotor.position = position;
     observer->measured = position;
 }

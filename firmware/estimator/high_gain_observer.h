@@ -67,7 +67,8 @@ void high_gain_observer_reset(struct high_gain_observer *observer,
                               int32_t count);
 
 /* The rotor is where the encoder now is: at `position`. */
-void high_gain_observer_place(struct high_gain_observer *observer, struct position position);
+void high_gain_observer_place(struct high_gain_observer *observer, struct position position,
+                              int32_t count);
 
 /* From S(k-1) to S(k). */
 void high_gain_observer_step(struct high_gain_observer *observer,

@@ -1,10 +1,8 @@
 #include "firmware/estimator/invariant_ekf.h"
 
-/* The quick gains settle in 2 ms; what they take in later than that is noise. */
-#define FOLLOWING_PERIODS 20u
-
-/* Behind them the hold returns to the load found, for a while, unless the load changes by twice a
-   step: a hold that followed each drift at once would follow its own compensation around. */
+/* Behind the gains that follow a load step the hold returns to the load found, for a while, unless
+   the load changes by twice a step: a hold that followed each drift at once would follow its own
+   compensation around. */
 #define REST_PERIODS 100u
 
 /* A rotor that is drawn into place from where it was told not to be comes to rest within 50 ms. */
@@ -29,6 +27,9 @@ static struct invariant_ekf_gain_set scale(const struct per_unit *base,
         .bias_q = coef_from_double(k->k_bias_q_V_A / base->resistance_ohm),
         .resistance = coef_from_double(k->k_resistance_ohm_A2 * i * i / base->resistance_ohm),
         .load_return = coef_from_double(k->load_return),
+        .angle_return =
+            coef_from_double(k->angle_return_rad_Nm * base->torque_Nm / base->rad_per_turn),
+        .bias_return = coef_from_double(k->bias_return_V_Nm * base->torque_Nm / base->voltage_V),
         .load_settle = coef_from_double(k->load_settle),
     };
     return set;
@@ -37,22 +38,19 @@ static struct invariant_ekf_gain_set scale(const struct per_unit *base,
 struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params *model,
                                                 const struct per_unit *base,
                                                 const struct invariant_ekf_gains *moving,
-                                                const struct invariant_ekf_gains *holding,
-                                                const struct invariant_ekf_gains *following)
+                                                const struct invariant_ekf_hold_gains *hold)
 {
     struct invariant_ekf_params params = {
         .model = *model,
         .moving = scale(base, moving),
-        .holding = scale(base, holding),
-        .following = scale(base, following),
+        .holding = scale(base, &hold->quiet),
+        .unloaded = scale(base, &hold->unloaded),
+        .following = scale(base, &hold->following),
         .odd_gain_speed = num_from_double(moving->angle_d_full_speed_rad_s / base->speed_rad_s),
-        .load_step = num_from_double(holding->load_step_Nm / base->torque_Nm),
+        .following_periods = hold->following_periods,
+        .load_step = num_from_double(hold->load_step_Nm / base->torque_Nm),
+        .led_load_step = num_from_double(hold->led_load_step_Nm / base->torque_Nm),
     };
-    /* A displacement is then the only other thing that an offset can be taken for; it decays by
-       itself, with the rotor's swing. */
-    params.unloaded = params.holding;
-    params.unloaded.angle_q = coef_from_double(0.0);
-    params.unloaded.load_q = coef_from_double(0.0);
     return params;
 }
 
@@ -95,6 +93,7 @@ static struct predicted predict(const struct invariant_ekf *ekf,
 struct correction {
     num_t turns;  /* of the angle */
     num_t bias_q; /* of the voltage offset, in the direction of the frame's q axis */
+    num_t load_torque;
 };
 
 static struct correction correct_in_motion(const struct invariant_ekf_params *params, num_t speed,
@@ -104,15 +103,26 @@ static struct correction correct_in_motion(const struct invariant_ekf_params *pa
     const num_t direction = num_limit(speed, params->odd_gain_speed);
     const num_t odd = num_mul(innovation.d, num_mul_coef(direction, gain->angle_d));
 
-    return (struct correction){odd + num_mul_coef(innovation.q, gain->angle_q),
-                               num_mul_coef_nearest(odd, gain->bias_per_turn)};
+    return (struct correction){.turns = odd + num_mul_coef(innovation.q, gain->angle_q),
+                               .bias_q = num_mul_coef_nearest(odd, gain->bias_per_turn),
+                               .load_torque = num_mul_coef(innovation.q, gain->load_q)};
 }
 
+/* `away`: of the load from the one settled at. */
 static struct correction correct_in_hold(const struct invariant_ekf_gain_set *gain,
-                                         struct dq innovation)
+                                         struct dq innovation, num_t away)
 {
-    return (struct correction){num_mul_coef(innovation.q, gain->angle_q),
-                               num_mul_coef_nearest(innovation.q, gain->bias_q)};
+    return (struct correction){
+        .turns = num_mul_coef(innovation.q, gain->angle_q) + num_mul_coef(away, gain->angle_return),
+        .bias_q = num_mul_coef_nearest(innovation.q, gain->bias_q) -
+                  num_mul_coef_nearest(away, gain->bias_return),
+        .load_torque =
+            num_mul_coef(innovation.q, gain->load_q) - num_mul_coef(away, gain->load_return)};
+}
+
+static num_t away_from_settled_load(const struct invariant_ekf *ekf)
+{
+    return ekf->estimate.rotor.load_torque - ekf->settled_load;
 }
 
 /* Returns the innovation in the estimated rotor frame. */
@@ -126,14 +136,15 @@ static struct dq correct(struct invariant_ekf *ekf, const struct invariant_ekf_p
                                  current.b - predicted->current.b};
     const struct sincos frame = estimate_end_of_period(x);
     const struct dq innovation = park(error, frame);
-    const struct correction by = holding ? correct_in_hold(gain, innovation)
-                                         : correct_in_motion(params, rotor->speed, innovation);
+    const struct correction by =
+        holding ? correct_in_hold(gain, innovation, away_from_settled_load(ekf))
+                : correct_in_motion(params, rotor->speed, innovation);
 
     x->current.a = predicted->current.a + num_mul_coef(error.a, gain->current);
     x->current.b = predicted->current.b + num_mul_coef(error.b, gain->current);
     x->rotor.speed = rotor->speed + num_mul_coef(innovation.q, gain->speed_q);
     x->rotor.position = position_add(rotor->position, angle_from_any_turns(by.turns));
-    x->rotor.load_torque = rotor->load_torque + num_mul_coef(innovation.q, gain->load_q);
+    x->rotor.load_torque = rotor->load_torque + by.load_torque;
     ekf->bias.a -= num_mul_unit_nearest(by.bias_q, frame.sin);
     ekf->bias.b += num_mul_unit_nearest(by.bias_q, frame.cos);
     return innovation;
@@ -149,11 +160,13 @@ static void adapt_resistance(struct invariant_ekf *ekf, const struct invariant_e
     winding_set_resistance(&x->winding, &params->model, x->winding.resistance + change);
 }
 
-/* Which of the two sets of gains serves this period of the hold. */
-static const struct invariant_ekf_gain_set *hold_gains(struct invariant_ekf *ekf,
-                                                       const struct invariant_ekf_params *params)
+/* Which of the sets of gains serves this period of the hold. */
+static const struct invariant_ekf_gain_set *
+hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_params *params, num_t frame_speed)
 {
-    const num_t change = num_abs(ekf->estimate.rotor.load_torque - ekf->settled_load);
+    const num_t load_step = frame_speed != NUM(0.0) ? params->led_load_step : params->load_step;
+    const num_t away = away_from_settled_load(ekf);
+    const num_t change = num_abs(away);
 
     if (ekf->unloaded_periods > 0u) {
         ekf->unloaded_periods--;
@@ -162,39 +175,33 @@ static const struct invariant_ekf_gain_set *hold_gains(struct invariant_ekf *ekf
         }
         return &params->unloaded;
     }
-    if (change > params->load_step &&
-        (ekf->following_periods == 0u || num_half(change) > params->load_step)) {
-        ekf->following_periods = FOLLOWING_PERIODS + REST_PERIODS;
+    if (change > load_step && (ekf->following_periods == 0u || num_half(change) > load_step)) {
+        ekf->following_periods = params->following_periods + REST_PERIODS;
     }
     if (ekf->following_periods == 0u) {
         return &params->holding;
     }
     ekf->following_periods--;
-    return ekf->following_periods < REST_PERIODS ? &params->holding : &params->following;
-}
-
-static void correct_hold(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                         const struct invariant_ekf_gain_set *gain, struct dq innovation)
-{
-    struct rotor *rotor = &ekf->estimate.rotor;
-    const num_t change = rotor->load_torque - ekf->settled_load;
-
-    rotor->load_torque -= num_mul_coef(change, gain->load_return);
-    ekf->settled_load += num_mul_coef(change, gain->load_settle);
-    adapt_resistance(ekf, params, gain, innovation.d);
+    if (ekf->following_periods < REST_PERIODS) {
+        return &params->holding;
+    }
+    ekf->settled_load += num_mul_coef(away, params->following.load_settle);
+    return &params->following;
 }
 
 void invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                        struct phases current, struct phases voltage, bool holding)
+                        struct phases current, struct phases voltage, struct rotor_hold hold)
 {
-    const struct invariant_ekf_gain_set *gain = holding ? hold_gains(ekf, params) : &params->moving;
+    const bool holding = hold.active;
+    const struct invariant_ekf_gain_set *gain =
+        holding ? hold_gains(ekf, params, *hold.speed) : &params->moving;
     const struct phases driving = {voltage.a - ekf->bias.a, voltage.b - ekf->bias.b};
     const struct predicted predicted = predict(ekf, params, driving);
     const struct dq innovation = correct(ekf, params, gain, &predicted, current, holding);
 
     ekf->innovation_sum += innovation.d;
     if (holding) {
-        correct_hold(ekf, params, gain, innovation);
+        adapt_resistance(ekf, params, gain, innovation.d);
     } else {
         settle(ekf);
     }

@@ -20,9 +20,12 @@
  *
  * At rest no innovation tells load from displacement; only the back-EMF of the rotor's own motion
  * does, and what is integrated of it walks away with noise and offset. So the hold follows the load
- * at once, but returns within 30 ms to the load it had settled at, unless the difference shows a
- * load step: then what is estimated is the load from there on. Of small steps one in 12 ms is
- * believed, so that the estimate cannot run away with the current that compensates it.
+ * at once, but returns within 3 to 10 ms, load and angle together, to the load it had settled at,
+ * and takes what lasts for an offset; unless the difference shows a load step: then what is
+ * estimated is the load from there on. Of small steps one in 10 ms is believed, so that the
+ * estimate cannot run away with the current that compensates it. A rotor that is led along a
+ * creeping reference passes its detent torque, which is no step: there it takes three times as
+ * much.
  *
  * Gains: design/invariant_ekf_design.h.
  */
@@ -41,9 +44,11 @@ struct invariant_ekf_gain_set {
     coef_t load_q;
     coef_t bias_per_turn; /* voltage in q per odd correction of the angle, electrical turns */
     coef_t bias_q;
-    coef_t resistance;  /* per product of d current and d innovation */
-    coef_t load_return; /* share of its way back to the settled load, each period */
-    coef_t load_settle; /* share of the settled load's way to the estimate, each period */
+    coef_t resistance;   /* per product of d current and d innovation */
+    coef_t load_return;  /* share of its way back to the settled load, each period */
+    coef_t angle_return; /* electrical turns per torque on that way */
+    coef_t bias_return;  /* voltage in q per torque on that way */
+    coef_t load_settle;  /* share of the settled load's way to the estimate, each period */
 };
 
 struct invariant_ekf_params {
@@ -53,7 +58,9 @@ struct invariant_ekf_params {
     struct invariant_ekf_gain_set unloaded;  /* holding, where no load is expected */
     struct invariant_ekf_gain_set following; /* holding, after a load step */
     num_t odd_gain_speed;                    /* w_s */
+    uint32_t following_periods;              /* how long a load step is followed */
     num_t load_step;                         /* what a quiet hold takes for a step of the load */
+    num_t led_load_step;                     /* likewise where the rotor is led */
 };
 
 struct invariant_ekf {
@@ -70,8 +77,7 @@ struct invariant_ekf {
 struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params *model,
                                                 const struct per_unit *base,
                                                 const struct invariant_ekf_gains *moving,
-                                                const struct invariant_ekf_gains *holding,
-                                                const struct invariant_ekf_gains *following);
+                                                const struct invariant_ekf_hold_gains *hold);
 
 /*
  * At rest at a known position, without current and load. In the first `unloaded_periods` of holding
@@ -82,6 +88,6 @@ void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_p
 
 /* From S(k-1) to S(k). `voltage`: mean over that period; `current`: sampled at S(k). */
 void invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                        struct phases current, struct phases voltage, bool holding);
+                        struct phases current, struct phases voltage, struct rotor_hold hold);
 
 #endif

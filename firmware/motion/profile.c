@@ -19,15 +19,15 @@ static int64_t in_2_64(double turns)
 }
 
 /* The magnitude against the limit of the drive and against the range of the reference. */
-static bool require_below(const char *quantity, double value, double limit, double range,
-                          const char *unit, char error[DESIGN_ERROR_TEXT])
+static bool require_below(const char *quantity, double value, double limit, const char *reason,
+                          double range, const char *unit, char error[DESIGN_ERROR_TEXT])
 {
     double magnitude = value < 0.0 ? -value : value;
 
-    return limit < range ? design_require_within(error, quantity, magnitude, 0.0, limit, unit,
-                                                 "limit of the drive")
-                         : design_require_within(error, quantity, magnitude, 0.0, range, unit,
-                                                 "range of the reference");
+    return limit < range
+               ? design_require_within(error, quantity, magnitude, 0.0, limit, unit, reason)
+               : design_require_within(error, quantity, magnitude, 0.0, range, unit,
+                                       "range of the reference");
 }
 
 /* The time in whole periods, low...high. */
@@ -80,9 +80,9 @@ static bool scale(struct profile *profile, const struct profile_drive *drive,
     const double acceleration = speed / to_speed;
 
     if (!require_below("cruise speed", speed * turn_rad_s, drive->speed_limit_rad_s,
-                       SPEED_MAX_TURNS * turn_rad_s, "rad/s", error) ||
+                       drive->speed_limit_reason, SPEED_MAX_TURNS * turn_rad_s, "rad/s", error) ||
         !require_below("acceleration", acceleration * turn_rad_s / drive->period_s,
-                       drive->acceleration_limit_rad_s2,
+                       drive->acceleration_limit_rad_s2, "limit of the drive",
                        ACCELERATION_MAX_TURNS * turn_rad_s / drive->period_s, "rad/s^2", error)) {
         return false;
     }

@@ -41,6 +41,7 @@ struct profile_drive {
     double period_s;
     int32_t rotor_teeth;
     double speed_limit_rad_s;         /* of the cruise */
+    const char *speed_limit_reason;   /* where it comes from */
     double acceleration_limit_rad_s2; /* of the ramps */
 };
 

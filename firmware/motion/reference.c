@@ -8,7 +8,8 @@
 #define ACCELERATION_SCALE 64.0 /* turns_from_angle takes them for 2^-32 turn */
 #define JERK_SCALE         1024.0
 
-struct reference_params reference_design(const struct per_unit *base, double period_s)
+struct reference_params reference_design(const struct per_unit *base, double period_s,
+                                         double creep_rad_s)
 {
     const double speed = 1.0 / base->turns_per_period;
     const double acceleration =
@@ -19,6 +20,8 @@ struct reference_params reference_design(const struct per_unit *base, double per
     params.speed_remainder = coef_from_double(speed - coef_to_double(params.speed));
     params.acceleration = coef_from_double(acceleration / ACCELERATION_SCALE);
     params.jerk = coef_from_double(acceleration / JERK_SCALE);
+    params.creep =
+        (int32_t)(creep_rad_s / base->speed_rad_s * base->turns_per_period * 4294967296.0);
     return params;
 }
 
@@ -46,7 +49,7 @@ void reference_reset(struct reference *r, struct position position)
 {
     r->next = (struct reference_sample){.position = position};
     r->now = r->next;
-    r->rest_periods = 0;
+    r->slow_periods = 0;
     r->phase = REFERENCE_REST;
     r->periods_left = 0;
     r->stop_requested = false;
@@ -90,7 +93,6 @@ static void advance(struct reference *r)
     r->at.speed += r->at.acceleration + (r->jerk >> 1);
     r->at.acceleration += r->jerk;
     r->periods_left--;
-    r->rest_periods = 0;
 }
 
 /*
@@ -153,7 +155,7 @@ static void come_to_rest(struct reference *r)
     begin(r, REFERENCE_REST, 0, 0);
     r->stop_requested = false;
     r->at.speed = 0;
-    r->rest_periods = 0;
+    r->slow_periods = 0;
     place(r, r->stopped ? (struct position){r->at.turns, (angle_t)(r->at.fraction >> 32)}
                         : r->profile->target);
 }
@@ -165,7 +167,7 @@ static void rest_behind_plan(struct reference *r)
     begin(r, REFERENCE_REST, 0, 0);
     r->stop_requested = false;
     r->at.speed = 0;
-    r->rest_periods = 0;
+    r->slow_periods = 0;
     place(r, here);
 }
 
@@ -280,12 +282,30 @@ void reference_skip(struct reference *r, uint32_t periods)
     }
 }
 
+static inline bool cruises(const struct reference *r)
+{
+    return r->phase == REFERENCE_CRUISE ||
+           (r->phase == REFERENCE_PLANNED && r->at.acceleration == 0 && r->jerk == 0);
+}
+
+/* A cruise at up to the creep speed. What is slow in passing is not. */
+static inline bool creeps(const struct reference *r, const struct reference_params *params)
+{
+    const int32_t speed = (int32_t)(r->at.speed >> 32);
+
+    return cruises(r) && speed <= params->creep && speed >= -params->creep;
+}
+
 void reference_step(struct reference *r, const struct reference_params *params)
 {
     if (r->periods_left > 0u) {
         advance(r);
-    } else if (r->phase == REFERENCE_REST && r->rest_periods < UINT32_MAX) {
-        r->rest_periods++;
+        r->slow_periods =
+            (r->phase == REFERENCE_CRUISE || r->phase == REFERENCE_PLANNED) && creeps(r, params)
+                ? r->slow_periods + 1u
+                : 0u;
+    } else if (r->slow_periods < UINT32_MAX) {
+        r->slow_periods++;
     }
     if (r->phase == REFERENCE_QUEUED) {
         r->phase = REFERENCE_LOADED;

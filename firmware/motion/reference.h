@@ -28,6 +28,7 @@ struct reference_params {
     coef_t speed_remainder; /* what a coef_t of 16 bits leaves of it */
     coef_t acceleration;    /* per 2^-6 turn/period^2 */
     coef_t jerk;            /* per 2^-10 turn/period^3 */
+    int32_t creep;          /* 2^-32 turn/period: a cruise up to here is slow; 0: none is */
 };
 
 struct reference_sample {
@@ -55,7 +56,7 @@ enum reference_phase {
 struct reference {
     struct reference_sample now;  /* at S(k) */
     struct reference_sample next; /* at S(k+1) */
-    uint32_t rest_periods;        /* since the reference came to rest, at S(k+1); saturates */
+    uint32_t slow_periods;        /* since it came to rest or to creep, at S(k+1); saturates */
 
     struct profile *profile; /* the one taken over */
     enum reference_phase phase;
@@ -72,7 +73,8 @@ struct reference {
     const struct motion_plan *volatile continuation; /* NULL: has not come */
 };
 
-struct reference_params reference_design(const struct per_unit *base, double period_s);
+struct reference_params reference_design(const struct per_unit *base, double period_s,
+                                         double creep_rad_s);
 
 /*
  * Change of the per-unit acceleration in a control period, from S(k+1) on. The range is 2^-11 turn

@@ -20,6 +20,21 @@ struct channels {
     struct phases voltage; /* mean over the past period */
 };
 
+/* A control frame over the period in which a voltage acts. It carries its own speed: the frame of a
+   held rotor stands still, whatever the rotor does in it. */
+struct frame {
+    struct sincos begin;  /* at the beginning of the period */
+    struct sincos middle; /* in its middle, where the voltage is turned back to the phases */
+    num_t speed;          /* mechanical, as the rotor's */
+};
+
+static inline struct frame frame_at_rest(struct sincos axes)
+{
+    const struct frame frame = {axes, axes, NUM(0.0)};
+
+    return frame;
+}
+
 static inline struct dq park(struct phases x, struct sincos angle)
 {
     struct dq y = {num_mul_unit(x.a, angle.cos) + num_mul_unit(x.b, angle.sin),

@@ -1,6 +1,7 @@
 # What the ports to Cortex-M cores have in common: pin map, CMSIS-Core, version and default motor of
 # an image, and what is made of it. A port's CMakeLists.txt includes this file.
-set(STEADYSTEP_MOTOR bendjedia-2012 CACHE STRING "Default motor: a file of sil/motors")
+set(STEADYSTEP_MOTOR bendjedia-2012 CACHE STRING
+  "Default motor: a file of sil/motors, without .toml, or the path of one of your own")
 set(STEADYSTEP_PIN_MAP ${default_pin_map} CACHE STRING
   "Pin map: a file of the port's pin_maps/, without .h, or the path of one of your own")
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
@@ -24,14 +25,35 @@ function(find_pin_map name variable)
   set(${variable} ${path} PARENT_SCOPE)
 endfunction()
 
+# find_motor(<name or path> <variable>): the path of a motor file, which has been read once.
+function(find_motor name variable)
+  if(name MATCHES "/|\\.toml$")
+    get_filename_component(path ${name} ABSOLUTE BASE_DIR ${PROJECT_SOURCE_DIR})
+  else()
+    set(path ${PROJECT_SOURCE_DIR}/sil/motors/${name}.toml)
+  endif()
+  if(NOT EXISTS ${path})
+    message(FATAL_ERROR "STEADYSTEP_MOTOR is '${name}': there is no ${path}; expected a file of "
+      "sil/motors, without .toml, or the path of a motor file, from the root of the project or "
+      "absolute")
+  endif()
+  execute_process(COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/motor_parameters.py ${path}
+    OUTPUT_QUIET ERROR_VARIABLE complaint RESULT_VARIABLE refused)
+  if(refused)
+    message(FATAL_ERROR "STEADYSTEP_MOTOR is '${name}': ${complaint}")
+  endif()
+  set(${variable} ${path} PARENT_SCOPE)
+endfunction()
+
 find_pin_map(${STEADYSTEP_PIN_MAP} pin_map)
+find_motor(${STEADYSTEP_MOTOR} motor)
 
 # board_image_source(<file> <number format>): version and default motor; looked at in every build,
 # written when something has changed.
 function(board_image_source file numeric)
   add_custom_target(board_image_source
     COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/tools/board_image.py
-            --root ${PROJECT_SOURCE_DIR} --motor ${STEADYSTEP_MOTOR} --version ${PROJECT_VERSION}
+            --root ${PROJECT_SOURCE_DIR} --motor ${motor} --version ${PROJECT_VERSION}
             --board ${STEADYSTEP_BOARD} --pin-map ${pin_map} --numeric ${numeric}
             "--flags=${CMAKE_C_FLAGS} ${CMAKE_C_FLAGS_RELEASE}" ${file}
     BYPRODUCTS ${file}

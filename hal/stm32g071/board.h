@@ -26,7 +26,15 @@
 enum {
     CONTROL_PERIOD_us = 100,
     /* Background work in double precision takes longer here than on a faster core. */
-    WATCHDOG_ms = 200
+    WATCHDOG_ms = 200,
+    CONVERTER_CODES = 4096 /* 12 bits */
 };
+
+/* Largest difference of delay between the two legs of a phase, assumed. */
+#define LEG_DELAY_s 20e-9
+
+/* What calibration leaves of a current's offset, assumed: a code, 0.8 mV, is 6 uV/K at the shunt
+   over 10 K behind a gain of 13.75. */
+#define CURRENT_OFFSET_CODES 1.0
 
 #endif

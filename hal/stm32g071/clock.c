@@ -8,7 +8,9 @@ enum { READY_WAIT = 100000 }; /* passes at 16 MHz, > 25 ms; the PLL locks in 40 
 bool clock_start(void)
 {
     RCC->ahbenr |= RCC_AHBENR_FLASHEN;
-    FLASH->acr = FLASH_ACR_LATENCY(FLASH_WAIT_STATES_64_MHZ) | FLASH_ACR_PRFTEN | FLASH_ACR_ICEN;
+    /* Without DBG_SWEN no debugger reaches the running program: it can be flashed once only. */
+    FLASH->acr = FLASH_ACR_DBG_SWEN | FLASH_ACR_LATENCY(FLASH_WAIT_STATES_64_MHZ) |
+                 FLASH_ACR_PRFTEN | FLASH_ACR_ICEN;
     if (!wait_until(&FLASH->acr, FLASH_ACR_LATENCY(7), FLASH_ACR_LATENCY(FLASH_WAIT_STATES_64_MHZ),
                     READY_WAIT)) {
         return false;

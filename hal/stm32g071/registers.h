@@ -73,6 +73,7 @@ struct flash_registers {
 #define FLASH_ACR_LATENCY(value) FIELD(value, 0, 3)
 #define FLASH_ACR_PRFTEN         BIT(8)
 #define FLASH_ACR_ICEN           BIT(9)
+#define FLASH_ACR_DBG_SWEN       BIT(18)
 #define FLASH_SR_EOP             BIT(0)
 #define FLASH_SR_OPERR           BIT(1)
 #define FLASH_SR_PROGERR         BIT(3)

@@ -53,6 +53,8 @@ enum {
     DEADLINE_CYCLES = CORE_Hz / 1000000 * 90, /* after S(k), for the end of the control interrupt */
     CONTROL_PERIOD_us = 100,
 
+    CONVERTER_CODES = 4096, /* 12 bits */
+
     /* Leg voltages: groups of conversions in a period, and their results added up in each. */
     LEG_GROUPS = 17,
     LEG_GROUP_CYCLES = PWM_PERIOD / LEG_GROUPS,
@@ -60,6 +62,14 @@ enum {
 
     WATCHDOG_ms = 50,
 };
+
+/* Largest difference of delay between the two legs of a phase, assumed: drivers of one type and
+   lot, and their MOSFETs. */
+#define LEG_DELAY_s 20e-9
+
+/* What calibration leaves of a current's offset, assumed: a code, 0.8 mV, is the amplifier's drift
+   of 10 uV/K over 10 K at a gain of 8. */
+#define CURRENT_OFFSET_CODES 1.0
 
 #ifndef BRIDGE_DEAD_TIME_s
 #define BRIDGE_DEAD_TIME_s (DEAD_TIME_CYCLES / (double)CORE_Hz)

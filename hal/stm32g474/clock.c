@@ -51,10 +51,9 @@ static void boost_regulator(void)
 
 static void set_flash_latency(void)
 {
-    const uint32_t acr =
-        FLASH_ACR_LATENCY(FLASH_WAIT_STATES) | FLASH_ACR_PRFTEN | FLASH_ACR_ICEN | FLASH_ACR_DCEN;
-
-    FLASH->acr = acr;
+    /* Without DBG_SWEN no debugger reaches the running program: it can be flashed once only. */
+    FLASH->acr = FLASH_ACR_DBG_SWEN | FLASH_ACR_LATENCY(FLASH_WAIT_STATES) | FLASH_ACR_PRFTEN |
+                 FLASH_ACR_ICEN | FLASH_ACR_DCEN;
     if (!wait_until(&FLASH->acr, FLASH_ACR_LATENCY(15), FLASH_ACR_LATENCY(FLASH_WAIT_STATES),
                     SWITCH_WAIT)) {
         board_fault(BOARD_FAULT_CLOCK_FLASH_LATENCY);

@@ -119,6 +119,7 @@ struct flash_registers {
 #define FLASH_ACR_ICEN           BIT(9)
 #define FLASH_ACR_DCEN           BIT(10)
 #define FLASH_ACR_DCRST          BIT(12)
+#define FLASH_ACR_DBG_SWEN       BIT(18)
 #define FLASH_SR_EOP             BIT(0)
 #define FLASH_SR_OPERR           BIT(1)
 #define FLASH_SR_PROGERR         BIT(3)

@@ -23,8 +23,11 @@ hal_facts facts_of(const plant::Config &config)
     facts.pwm_half_period_counts = static_cast<std::uint32_t>(config.bridge.half_period_counts);
     facts.dead_time_s =
         config.bridge.model == plant::BridgeModel::switched ? config.bridge.dead_time_s : 0.0;
+    facts.leg_delay_s = 20e-9; /* as the reference board, although the plant has none */
+    facts.converter_codes = static_cast<std::uint32_t>(plant::converter_codes(config.sensors));
     facts.current_A_per_code = plant::current_A_per_code(config.sensors);
     facts.current_zero_code = static_cast<std::uint16_t>(plant::current_zero_code(config.sensors));
+    facts.current_offset_codes = 1.0; /* as the reference board */
     facts.bus_V_per_code = plant::bus_V_per_code(config.sensors);
     facts.phase_voltage_V_per_code = plant::phase_voltage_V_per_code(config.sensors);
     facts.has_phase_voltages = true;

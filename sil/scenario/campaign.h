@@ -1,7 +1,8 @@
 /*
  * A campaign: many runs whose scenarios are drawn at random, each from its seed alone. A kind of
  * campaign draws the text of a scenario file, so what runs here runs by hand as well, with the same
- * hashes: `campaign KIND --seed N --write-scenario FILE`, then `run FILE`.
+ * hashes: `campaign KIND --seed N --write-scenario FILE`, then `run FILE`. Numbers of a kind are
+ * those of the reference motor bendjedia-2012; for another they go with its ratings (ratings.h).
  */
 #ifndef STEADYSTEP_SCENARIO_CAMPAIGN_H
 #define STEADYSTEP_SCENARIO_CAMPAIGN_H
@@ -10,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "sil/scenario/ratings.h"
 #include "sil/scenario/result.h"
 
 namespace scenario
@@ -30,22 +32,41 @@ struct CampaignOutcome {
     {
         return verdict == "held";
     }
+    bool refused() const
+    {
+        return verdict.rfind("refused", 0) == 0;
+    }
+};
+
+/* The motor that scenarios are drawn for. */
+struct CampaignMotor {
+    std::string name = "bendjedia-2012"; /* or a path, as a scenario gives it */
+    RatingScales scales;                 /* of its ratings to that motor's */
+};
+
+/* What a seed draws: texts of files. */
+struct Drawn {
+    std::string scenario;
+    std::string motor_id, motor; /* of its own motor, if it draws one: text of <motor_id>.toml,
+                                    which the scenario expects beside itself; else "" */
 };
 
 struct CampaignKind {
     const char *name, *description;
     double duration_s; /* of one run, unless told */
     std::vector<CampaignFigure> figures;
-    /* Text of the seed's scenario file; the same on every machine (random_scenario.h). */
-    std::string (*draw)(std::uint64_t seed, double duration_s);
+    /* The same on every machine (random_scenario.h). */
+    Drawn (*draw)(std::uint64_t seed, double duration_s, const CampaignMotor &motor);
     CampaignOutcome (*judge)(const Result &result, const Record &record);
+    bool draws_motor = false; /* then a refusal by the drive is a verdict, not bad input */
 };
 
 /* All kinds. A new one is a source of its own and a line in campaign.cpp. */
 const std::vector<const CampaignKind *> &campaign_kinds();
 
-extern const CampaignKind long_run_campaign; /* campaign_long_run.cpp */
-extern const CampaignKind slip_campaign;     /* campaign_slip.cpp */
+extern const CampaignKind long_run_campaign;                    /* campaign_long_run.cpp */
+extern const CampaignKind slip_campaign;                        /* campaign_slip.cpp */
+extern const CampaignKind motors_campaign, any_motors_campaign; /* campaign_motors.cpp */
 
 struct CampaignOrder {
     const CampaignKind *kind = nullptr;
@@ -53,10 +74,19 @@ struct CampaignOrder {
     std::uint64_t first_seed = 1, seeds = 1;
     std::string numeric = "float";
     CommandLine given; /* laid over every drawn scenario */
-    std::string out;   /* folder that keeps a line per finished run; "": none */
+    CampaignMotor motor;
+    std::string out; /* folder that keeps a line per finished run; "": none */
     unsigned jobs = 1;
     bool json = false;
 };
+
+/* The motor that --set motor= names, or the reference motor; throws InputError, also where a kind
+   that draws its motors is given one. */
+CampaignMotor campaign_motor(const Catalogue &catalogue, const CampaignKind &kind,
+                             const CommandLine &given);
+
+/* Writes the order's first seed as a scenario, and its motor beside it; throws InputError. */
+void write_drawn(const CampaignOrder &order, const std::string &file);
 
 /* The scenario that a seed draws; throws InputError. */
 Scenario drawn_scenario(const Catalogue &catalogue, const CampaignOrder &order, std::uint64_t seed);
@@ -64,7 +94,7 @@ Scenario drawn_scenario(const Catalogue &catalogue, const CampaignOrder &order, 
 /*
  * Runs the order and prints its report, or JSON. Runs that `out` holds already, of the same
  * program, scenario and settings, are taken from there. Returns whether all runs held; throws
- * InputError.
+ * InputError. Where motors are drawn, a run that is refused does not count against it.
  */
 bool run_campaign(const Catalogue &catalogue, const CampaignOrder &order);
 

@@ -1,8 +1,10 @@
 #include "sil/scenario/campaign_journal.h"
 
+#include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
@@ -18,12 +20,15 @@ using Json = nlohmann::ordered_json;
 namespace
 {
 
-/* FNV-1a. */
+/* FNV-1a over words of eight bytes: a program has millions of them. */
 std::uint64_t hash_of(const std::string &bytes)
 {
     std::uint64_t hash = 0xcbf29ce484222325u;
-    for (const char byte : bytes) {
-        hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
+    for (std::size_t at = 0; at < bytes.size(); at += sizeof(std::uint64_t)) {
+        std::uint64_t word = 0;
+        std::memcpy(&word, bytes.data() + at, std::min(sizeof word, bytes.size() - at));
+        hash = (hash ^ word) * 0x100000001b3u;
+        hash ^= hash >> 32; /* a product carries no bit downwards */
     }
     return hash;
 }
@@ -31,7 +36,9 @@ std::uint64_t hash_of(const std::string &bytes)
 std::string content_of(const fs::path &file)
 {
     std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    std::ostringstream content;
+    content << stream.rdbuf();
+    return content.str();
 }
 
 /* All that was written, in one line. */
@@ -87,6 +94,7 @@ CampaignJournal::CampaignJournal(const Catalogue &catalogue, const CampaignOrder
     std::ifstream stream(file());
     std::string line;
     while (std::getline(stream, line)) {
+        cut_off_ = stream.eof(); /* the last line, without its end */
         const Json json = Json::parse(line, nullptr, false);
         if (json.is_discarded() || json.value("condition", "") != condition_) {
             continue;
@@ -129,7 +137,8 @@ void CampaignJournal::add(const CampaignRun &run)
     json["drive_hash"] = hexadecimal(run.drive_hash);
     json["simulated_s"] = run.simulated_s;
     std::ofstream stream(file(), std::ios::app);
-    stream << json.dump() << "\n" << std::flush;
+    stream << (cut_off_ ? "\n" : "") << json.dump() << "\n" << std::flush;
+    cut_off_ = false;
     if (!stream) {
         throw InputError(file() + ": cannot be written");
     }

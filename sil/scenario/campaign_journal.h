@@ -38,6 +38,7 @@ class CampaignJournal
     const CampaignOrder &order_;
     std::string condition_;
     std::map<std::uint64_t, CampaignRun> runs_;
+    bool cut_off_ = false; /* the file's last line has no end yet */
 };
 
 } // namespace scenario

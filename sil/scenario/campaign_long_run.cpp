@@ -1,7 +1,8 @@
 /*
  * Campaign "long-run": a minute of random moves, rests and loads on the plant `real`, every
  * parameter of motor, bridge, supply and sensing drawn anew, while the drive believes the motor
- * file. Ranges: what the drive has to live with, from a motor's tolerances and warming.
+ * file. Ranges: what the drive has to live with, from a motor's tolerances and warming. Speeds,
+ * loads, currents and bus are those of the reference motor.
  */
 #include "sil/scenario/campaign.h"
 
@@ -18,9 +19,9 @@ namespace
 {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double period_parts = 1e4; /* times in whole control periods */
-constexpr double largest_load_Nm = 0.15;
-constexpr double warming = 1.4; /* copper, 100 K */
+constexpr double period_parts = 1e4;     /* times in whole control periods */
+constexpr double largest_load_Nm = 0.15; /* 32 % of the rated torque */
+constexpr double warming = 1.4;          /* copper, 100 K */
 
 enum Stream : std::uint64_t { of_plant, of_moves, of_loads };
 
@@ -29,7 +30,7 @@ struct Start {
     double theta_rad, resistance_scale;
 };
 
-Start draw_plant(ScenarioText &text, Draw draw)
+Start draw_plant(ScenarioText &text, Draw draw, const RatingScales &scales)
 {
     Start start{};
     start.theta_rad = draw.between(-3, 3, 1e3);
@@ -48,14 +49,15 @@ Start draw_plant(ScenarioText &text, Draw draw)
     text.number("detent_1", draw.between(0, 0.01, 1e4));
     text.number("coulomb_friction", draw.between(0, 0.02, 1e4));
     text.number("bridge_resistance_ohm", draw.between(0.1, 0.3, 1e3));
-    text.number("bus_V", draw.between(22, 26, 10));
+    text.number("bus_V", times(draw.between(22, 26, 10), scales.supply));
     text.number("bus_source_ohm", draw.between(0.05, 0.2, 1e3));
-    text.number("brake_V", 29);
+    text.number("brake_V", times(29, scales.supply));
     text.number("dead_time_s", draw.between(0.7e-6, 1.3e-6, 1e9));
-    text.number("current_offset_a_A", draw.between(-0.05, 0.05, 1e4));
-    text.number("current_offset_b_A", draw.between(-0.05, 0.05, 1e4));
-    text.number("current_offset_on_a_A", draw.between(-0.01, 0.01, 1e5));
-    text.number("current_offset_on_b_A", draw.between(-0.01, 0.01, 1e5));
+    text.number("current_range_A", times(plant::SensorConfig().current_range_A, scales.current));
+    text.number("current_offset_a_A", times(draw.between(-0.05, 0.05, 1e4), scales.current));
+    text.number("current_offset_b_A", times(draw.between(-0.05, 0.05, 1e4), scales.current));
+    text.number("current_offset_on_a_A", times(draw.between(-0.01, 0.01, 1e5), scales.current));
+    text.number("current_offset_on_b_A", times(draw.between(-0.01, 0.01, 1e5), scales.current));
     text.number("current_gain_a", draw.between(0.99, 1.01, 1e4));
     text.number("current_gain_b", draw.between(0.99, 1.01, 1e4));
     text.number("phase_voltage_offset_on_a_V", draw.between(-0.005, 0.005, 1e5));
@@ -69,11 +71,11 @@ struct Move {
     double speed_rad_s, acceleration_rad_s2, ramp_s, cruise_s, distance_rad;
 };
 
-Move draw_move(Draw &draw)
+Move draw_move(Draw &draw, const RatingScales &scales)
 {
     Move move{};
-    move.speed_rad_s = draw.mostly_low(2, 60, 100);
-    move.acceleration_rad_s2 = draw.between(100, 700, 1);
+    move.speed_rad_s = times(draw.mostly_low(2, 60, 100), scales.speed);
+    move.acceleration_rad_s2 = times(draw.between(100, 700, 1), scales.acceleration);
     move.ramp_s =
         rounded(std::max(0.005, move.speed_rad_s / move.acceleration_rad_s2), period_parts);
     move.cruise_s = draw.between(0.01, 0.35, period_parts);
@@ -129,11 +131,12 @@ double write_retarget(ScenarioText &text, Draw &draw, const Move &move, double t
     return middle_s + lead_s + 2 * ramp_s + way_rad / move.speed_rad_s + ramp_s;
 }
 
-void draw_moves(ScenarioText &text, Draw moves, Draw loads, double position_rad, double duration_s)
+void draw_moves(ScenarioText &text, Draw moves, Draw loads, const RatingScales &scales,
+                double position_rad, double duration_s)
 {
     double time_s = 0;
     for (;;) {
-        const Move move = draw_move(moves);
+        const Move move = draw_move(moves, scales);
         const double begin_s = time_s;
         ScenarioText written = text;
         double target_rad = rounded(position_rad + move.distance_rad, 1e4);
@@ -147,30 +150,30 @@ void draw_moves(ScenarioText &text, Draw moves, Draw loads, double position_rad,
         const double load_Nm =
             loads.chance(0.2) ? 0 : loads.between(-largest_load_Nm, largest_load_Nm, 1e4);
         written.event(rounded(loads.between(begin_s, end_s, period_parts), period_parts),
-                      "load_torque_Nm = " + shortest(load_Nm));
+                      "load_torque_Nm = " + shortest(times(load_Nm, scales.torque)));
         text = written;
         position_rad = target_rad;
     }
 }
 
-std::string draw_long_run(std::uint64_t seed, double duration_s)
+Drawn draw_long_run(std::uint64_t seed, double duration_s, const CampaignMotor &motor)
 {
     ScenarioText text;
     text.text("description", "random moves, rests and loads on a motor off its file in everything");
-    text.text("motor", "bendjedia-2012");
+    text.text("motor", motor.name);
     text.number("duration_s", duration_s);
     text.integer("seed", seed);
-    const Start start = draw_plant(text, Draw(seed, of_plant));
+    const Start start = draw_plant(text, Draw(seed, of_plant), motor.scales);
     Draw loads(seed, of_loads);
     if (loads.chance(0.5)) {
         const double scale = start.resistance_scale * loads.between(1, warming, 100);
         text.event(0, "plant.resistance_scale = " + shortest(rounded(scale, 1e3)) +
                           ", ramp_s = " + shortest(duration_s));
     }
-    draw_moves(text, Draw(seed, of_moves), loads, start.theta_rad, duration_s);
+    draw_moves(text, Draw(seed, of_moves), loads, motor.scales, start.theta_rad, duration_s);
     text.expect("metric = \"fault\", equals = \"none\"");
     text.expect("metric = \"slip_full_steps\", max = 0");
-    return text.finish();
+    return {text.finish(), "", ""};
 }
 
 CampaignOutcome judge_long_run(const Result &result, const Record &)
@@ -179,11 +182,11 @@ CampaignOutcome judge_long_run(const Result &result, const Record &)
     const double teeth = result.scenario->motor.params.rotor_teeth;
     const double degrees = teeth * 180 / pi; /* electrical, per rad */
     CampaignOutcome outcome;
-    /* What a drive in fault refuses ends a run, too: the fault is the reason. */
-    outcome.verdict = all.fault != "none"       ? "fault " + all.fault
-                      : all.slip_full_steps > 0 ? "slipped"
-                      : !result.failure.empty() ? "failed"
-                                                : "held";
+    /* What a drive in fault refuses is a failure, too: the fault is the reason. */
+    outcome.verdict = all.fault != "none"                  ? "fault " + all.fault
+                      : all.slip_full_steps > 0            ? "slipped"
+                      : !result.not_as_described().empty() ? "failed"
+                                                           : "held";
     outcome.figures = {std::floor(all.estimate_error_final_rad * degrees / 90 + 0.5),
                        all.estimate_error_max_rad, all.estimate_error_max_rad * degrees,
                        all.estimate_error_rms_rad * degrees, all.position_error_max_rad};
@@ -194,7 +197,8 @@ CampaignOutcome judge_long_run(const Result &result, const Record &)
 
 const CampaignKind long_run_campaign = {
     "long-run",
-    "random moves of 2...60 rad/s, loads of up to 0.15 Nm, rests of 50...300 ms, motor unknown",
+    "random moves of 2...60 rad/s, loads of up to 0.15 Nm, rests of 50...300 ms, motor unknown; "
+    "another motor than the reference: in proportion to its ratings",
     60,
     {{"lost_full_steps", true},
      {"estimate_error_max_rad", false},

@@ -125,6 +125,22 @@ std::string given_text(const CampaignOrder &order)
     return text;
 }
 
+/* The words of the first refusal of each quantity. */
+std::string refusal_lines(const CampaignOrder &order, const std::vector<CampaignRun> &runs)
+{
+    std::map<std::string, const CampaignRun *> first;
+    for (const CampaignRun &run : runs) {
+        if (run.outcome.refused()) {
+            first.emplace(run.outcome.verdict, &run);
+        }
+    }
+    std::string text;
+    for (const auto &[verdict, run] : first) {
+        text += "  REFUSED  " + run->failure + "; " + reproduce_command(order, run->seed) + "\n";
+    }
+    return text;
+}
+
 } // namespace
 
 std::string reproduce_command(const CampaignOrder &order, std::uint64_t seed)
@@ -147,10 +163,11 @@ std::string not_held_line(const CampaignOrder &order, const CampaignRun &run)
 std::string campaign_report(const CampaignOrder &order, const std::vector<CampaignRun> &runs)
 {
     double simulated_s = 0;
-    std::size_t held = 0;
+    std::size_t held = 0, refused = 0;
     for (const CampaignRun &run : runs) {
         simulated_s += run.simulated_s;
         held += run.outcome.held() ? 1 : 0;
+        refused += run.outcome.refused() ? 1 : 0;
     }
     std::string text =
         format("campaign %s  %s  %s  %.4g s each, %.6g s simulated\n", order.kind->name,
@@ -159,7 +176,7 @@ std::string campaign_report(const CampaignOrder &order, const std::vector<Campai
     text += verdict_table(runs) + figure_table(order, runs);
     std::size_t shown = 0;
     for (const CampaignRun &run : runs) {
-        if (!run.outcome.held() && shown++ < most_commands) {
+        if (!run.outcome.held() && !run.outcome.refused() && shown++ < most_commands) {
             text += "  NOT HELD  " + run.outcome.verdict + ": " +
                     reproduce_command(order, run.seed) + "\n";
         }
@@ -167,7 +184,9 @@ std::string campaign_report(const CampaignOrder &order, const std::vector<Campai
     if (shown > most_commands) {
         text += format("  and %zu more\n", shown - most_commands);
     }
-    return text + format("%zu of %zu runs hold\n", held, runs.size());
+    text += refusal_lines(order, runs);
+    text += format("%zu of %zu runs hold", held, runs.size());
+    return text + (refused > 0 ? format(", %zu are refused\n", refused) : "\n");
 }
 
 std::string campaign_json(const CampaignOrder &order, const std::vector<CampaignRun> &runs)

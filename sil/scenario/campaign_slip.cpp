@@ -78,7 +78,7 @@ CampaignOutcome judge_slip(const Result &result, const Record &record)
     CampaignOutcome outcome;
     outcome.figures.assign(7, Metrics::none);
     const Course course = course_of(record, result.scenario->motor.params.rotor_teeth);
-    if (!result.failure.empty() && course.fault == none) { /* one in fault may refuse moves */
+    if (!result.not_as_described().empty() && course.fault == none) { /* or it may refuse moves */
         outcome.verdict = "failed";
         return outcome;
     }

@@ -14,13 +14,13 @@ namespace scenario
 
 namespace fs = std::filesystem;
 
-namespace
-{
-
 bool is_path(const std::string &name)
 {
     return name.find('/') != std::string::npos || fs::path(name).extension() == ".toml";
 }
+
+namespace
+{
 
 std::vector<fs::path> toml_files(const fs::path &folder)
 {

@@ -9,6 +9,9 @@
 namespace scenario
 {
 
+/* With '/' in it or ending in .toml; else a name. */
+bool is_path(const std::string &name);
+
 class Catalogue
 {
   public:

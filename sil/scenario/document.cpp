@@ -1,17 +1,37 @@
 #include "sil/scenario/document.h"
 
+#include <algorithm>
 #include <fstream>
 #include <set>
 #include <sstream>
 #include <utility>
+#include <vector>
 
+/* The library's assertions are reached by some malformed input; thrown, they are a complaint. */
+namespace
+{
+struct LibraryAssertion {
+};
+
+[[noreturn]] void break_assertion()
+{
+    throw LibraryAssertion();
+}
+} // namespace
+#undef NDEBUG
+#define TOML_ASSERT(expr)      ((expr) ? static_cast<void>(0) : break_assertion())
+#define TOML_MAX_NESTED_VALUES 32
 #include <toml++/toml.h>
+
+#include "sil/scenario/text.h"
 
 namespace scenario
 {
 
 namespace
 {
+
+constexpr std::size_t most_key_parts = 16; /* a.b.c has three; deeper tables are nobody's */
 
 Value convert(const toml::node &node, const std::string &file)
 {
@@ -66,6 +86,101 @@ Value parse_setting_value(const std::string &text, const Location &location)
     return value;
 }
 
+/*
+ * How many parts a dotted key has; the library nests as many tables, each of which takes stack. It
+ * sees strings and comments as the library does as long as the text is valid; where it is not, the
+ * library goes no further.
+ */
+class KeyDepth
+{
+  public:
+    explicit KeyDepth(const std::string &text) : text_(text)
+    {
+    }
+
+    /* The first line with too deep a key; 0: none. */
+    std::size_t line_too_deep()
+    {
+        std::size_t dots = 0;
+        while (at_ < text_.size()) {
+            const char letter = text_[at_];
+            if (letter == '"' || letter == '\'') {
+                skip_string(letter);
+                continue;
+            }
+            if (letter == '#') {
+                at_ = std::min(text_.find('\n', at_), text_.size());
+                continue;
+            }
+            if (letter == '.') {
+                if (++dots >= most_key_parts) {
+                    return line();
+                }
+            } else if (std::string_view("=,[]{}\n").find(letter) != std::string_view::npos) {
+                dots = 0;
+            }
+            ++at_;
+        }
+        return 0;
+    }
+
+  private:
+    std::size_t line() const
+    {
+        return 1 + static_cast<std::size_t>(
+                       std::count(text_.begin(), text_.begin() + static_cast<long>(at_), '\n'));
+    }
+
+    /* Behind the closing quote; a string of one line ends with the line at the latest. */
+    void skip_string(char quote)
+    {
+        const std::string three(3, quote);
+        const bool many_lines = text_.compare(at_, 3, three) == 0;
+        for (at_ += many_lines ? 3 : 1; at_ < text_.size(); ++at_) {
+            if (text_[at_] == '\\' && quote == '"') {
+                ++at_;
+            } else if (many_lines ? text_.compare(at_, 3, three) == 0
+                                  : text_[at_] == quote || text_[at_] == '\n') {
+                at_ += many_lines ? 3 : 1;
+                break;
+            }
+        }
+        for (int own = 0; many_lines && own < 2 && at_ < text_.size(); ++own) {
+            at_ += text_[at_] == quote ? 1 : 0; /* two more may belong to the string */
+        }
+    }
+
+    const std::string &text_;
+    std::size_t at_ = 0;
+};
+
+bool breaks_assertion(const std::string &text)
+{
+    try {
+        (void)toml::parse(text);
+    } catch (const toml::parse_error &) {
+        /* cut off in the middle of something */
+    } catch (const LibraryAssertion &) {
+        return true;
+    }
+    return false;
+}
+
+/* The library does not tell where it is: the first line with which the text breaks the assertion,
+   which all that is longer does as well. */
+std::size_t line_of_assertion(const std::string &text)
+{
+    std::vector<std::size_t> ends; /* of lines */
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        at = std::min(text.find('\n', at), text.size());
+        ends.push_back(at);
+    }
+    const auto broken = std::partition_point(ends.begin(), ends.end(), [&](std::size_t end) {
+        return !breaks_assertion(text.substr(0, end));
+    });
+    return static_cast<std::size_t>(broken - ends.begin()) + 1;
+}
+
 } // namespace
 
 std::string Location::text() const
@@ -115,12 +230,20 @@ Value read_toml(const std::filesystem::path &file)
 
 Value parse_toml(const std::string &text, const std::string &name)
 {
+    const auto complain = [&](std::size_t line, const std::string &what) {
+        throw InputError(Location{name, line}.text() + ": not valid TOML: " + in_one_line(what));
+    };
+    if (const std::size_t line = KeyDepth(text).line_too_deep()) {
+        complain(line, "a key of more than " + std::to_string(most_key_parts) + " parts");
+    }
     try {
         return convert(toml::parse(text), name);
     } catch (const toml::parse_error &error) {
-        throw InputError(Location{name, error.source().begin.line}.text() +
-                         ": not valid TOML: " + std::string(error.description()));
+        complain(error.source().begin.line, std::string(error.description()));
+    } catch (const LibraryAssertion &) {
+        complain(line_of_assertion(text), "a character that has no place here");
     }
+    return {};
 }
 
 void merge(Value &target, const Value &over)
@@ -142,6 +265,10 @@ void apply_setting(Value &target, const std::string &setting)
 {
     const Location location{"--set " + setting, 0};
     const std::size_t equals = setting.find('=');
+    if (KeyDepth(setting).line_too_deep() != 0) {
+        throw InputError("--set " + setting.substr(0, 20) + "...: a key of more than " +
+                         std::to_string(most_key_parts) + " parts");
+    }
     if (equals == std::string::npos || equals == 0 || equals + 1 == setting.size()) {
         throw InputError(location.text() + ": expected table.key=value");
     }

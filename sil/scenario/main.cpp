@@ -1,20 +1,29 @@
 /* steadystep-sil: runs scenarios of the simulated drive. Exit codes: 0 all expectations held,
    1 some did not, 2 bad input. */
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <limits>
 #include <set>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include "sil/scenario/batch.h"
 #include "sil/scenario/campaign.h"
 #include "sil/scenario/image_run.h"
+#include "sil/scenario/motor_plausibility.h"
+#include "sil/scenario/motor_report.h"
 #include "sil/scenario/output.h"
 #include "sil/scenario/report.h"
 #include "sil/scenario/runner.h"
@@ -30,14 +39,13 @@ namespace
 enum ExitCode { held = 0, not_held = 1, bad_input = 2 };
 
 struct Options {
-    std::vector<std::string> scenarios;
+    std::vector<std::string> scenarios, motors;
     CommandLine given;
     std::string sweep = "bendjedia-robustness";
     std::string campaign, scenario_file; /* --write-scenario */
     double campaign_duration_s = 0;      /* 0: the kind's own */
-    std::string numeric, seeds, out, folder;
-    std::int64_t seed = 0;
-    bool one_seed = false, json = false;
+    std::string numeric, seed, seeds, out, folder;
+    bool json = false;
     unsigned jobs = default_workers();
     fs::path program;
 
@@ -53,11 +61,24 @@ struct Seeds {
 };
 
 constexpr std::uint64_t most_seeds = 1000000;
+constexpr std::uint64_t largest_seed = std::numeric_limits<std::int64_t>::max(); /* as in a file */
+
+std::uint64_t one_seed(const std::string &text)
+{
+    std::uint64_t seed = 0;
+    const char *const end = text.data() + text.size();
+    const std::from_chars_result read = std::from_chars(text.data(), end, seed);
+    if (read.ec != std::errc() || read.ptr != end || seed > largest_seed) {
+        throw InputError("--seed " + text + ": expected an integer in 0..." +
+                         std::to_string(largest_seed));
+    }
+    return seed;
+}
 
 Seeds seeds_of(const Options &options, std::uint64_t default_seed)
 {
-    if (options.one_seed) {
-        return {static_cast<std::uint64_t>(options.seed), 1};
+    if (!options.seed.empty()) {
+        return {one_seed(options.seed), 1};
     }
     if (options.seeds.empty()) {
         return {default_seed, 1};
@@ -68,7 +89,8 @@ Seeds seeds_of(const Options &options, std::uint64_t default_seed)
     const bool two = dash.ec == std::errc() && dash.ptr != end && *dash.ptr == '-';
     const std::from_chars_result rest =
         std::from_chars(two ? dash.ptr + 1 : end, end, last); /* nothing left is an error, too */
-    if (rest.ec != std::errc() || rest.ptr != end || last < first || last - first >= most_seeds) {
+    if (rest.ec != std::errc() || rest.ptr != end || last < first || last > largest_seed ||
+        last - first >= most_seeds) {
         throw InputError("--seeds " + options.seeds + ": expected A-B with A <= B, at most " +
                          std::to_string(most_seeds) + " seeds");
     }
@@ -96,6 +118,19 @@ const firmware_image &image(const Options &options, const Scenario &scenario)
     return *image_of(options.numeric.empty() ? scenario.numerics.front() : options.numeric);
 }
 
+/* What stands out in the motor files, unless they say why: often a slip of a unit. */
+void show_doubts(const std::vector<Scenario> &scenarios)
+{
+    std::set<std::string> doubts;
+    for (const Scenario &scenario : scenarios) {
+        for (const std::string &doubt : unexplained_doubts_about(scenario.motor)) {
+            if (doubts.insert(doubt).second) {
+                std::fprintf(stderr, "steadystep-sil: doubtful: %s\n", doubt.c_str());
+            }
+        }
+    }
+}
+
 std::vector<Scenario> read_scenarios(const Options &options)
 {
     const Catalogue catalogue = options.catalogue();
@@ -111,6 +146,7 @@ std::vector<Scenario> read_scenarios(const Options &options)
             check_image(scenarios.back(), image(options, scenarios.back()).numeric);
         }
     }
+    show_doubts(scenarios);
     return scenarios;
 }
 
@@ -173,14 +209,13 @@ int run_command(Options options)
                 if (options.json) {
                     all.insert(all.end(), results.begin(), results.end());
                 } else {
-                    std::printf("%s\n", one.text.c_str());
-                    std::fflush(stdout);
+                    print(one.text + "\n");
                 }
             });
     if (options.json) {
-        std::fputs(summaries_json(all).c_str(), stdout);
+        print(summaries_json(all));
     } else {
-        std::printf("%zu of %zu scenarios hold\n", scenarios.size() - failed, scenarios.size());
+        print(format("%zu of %zu scenarios hold\n", scenarios.size() - failed, scenarios.size()));
     }
     return failed == 0 ? held : not_held;
 }
@@ -201,21 +236,21 @@ int sweep_command(Options options)
     if (!options.out.empty()) {
         prepare_folder(options.out);
     }
-    std::printf("%s\n%s, %llu seed%s; 95th percentiles\n\n%s", sweep.description.c_str(),
-                options.numeric.c_str(), static_cast<unsigned long long>(seeds),
-                seeds == 1 ? "" : "s", sweep_heading(sweep).c_str());
+    print(sweep.description + "\n" + options.numeric +
+          format(", %llu seed%s; 95th percentiles\n\n", static_cast<unsigned long long>(seeds),
+                 seeds == 1 ? "" : "s") +
+          sweep_heading(sweep));
     std::vector<SweepFigures> figures;
     std::size_t failed = 0;
     run_all(options, pointers, false, [&](std::size_t i, const std::vector<Result> &results) {
         figures.push_back(figures_of(sweep.cases[i], results));
-        std::printf("%s", sweep_line(sweep.cases[i], figures.back()).c_str());
+        print(sweep_line(sweep.cases[i], figures.back()));
         if (!figures.back().held) {
             ++failed;
-            std::printf("  reproduce: %s\n",
-                        reproduce_command(sweep.cases[i].scenario, options.numeric, results[0].seed)
-                            .c_str());
+            print("  reproduce: " +
+                  reproduce_command(sweep.cases[i].scenario, options.numeric, results[0].seed) +
+                  "\n");
         }
-        std::fflush(stdout);
     });
     if (!options.out.empty()) {
         write_file(fs::path(options.out) / "table.json",
@@ -247,15 +282,22 @@ int campaign_command(const Options &options)
     order.numeric = options.numeric.empty() ? "float" : options.numeric;
     order.given = options.given;
     order.out = options.out;
+    order.motor = campaign_motor(catalogue, *order.kind, order.given);
     order.jobs = options.jobs;
     order.json = options.json;
     if (options.scenario_file.empty()) {
         return run_campaign(catalogue, order) ? held : not_held;
     }
-    if (order.seeds != 1 || !order.given.settings.empty() || !order.given.parameters.empty()) {
-        throw InputError("--write-scenario: expected one seed, without --set and --parameters");
+    const auto of_motor = [](const std::string &setting) {
+        return setting.rfind("motor=", 0) == 0;
+    };
+    const std::vector<std::string> &settings = order.given.settings;
+    if (order.seeds != 1 || !std::all_of(settings.begin(), settings.end(), of_motor) ||
+        !order.given.parameters.empty()) {
+        throw InputError("--write-scenario: expected one seed, no --parameters, and of --set "
+                         "nothing but motor=");
     }
-    write_file(options.scenario_file, order.kind->draw(order.first_seed, order.duration_s));
+    write_drawn(order, options.scenario_file);
     return held;
 }
 
@@ -280,14 +322,16 @@ std::string gains_of(position_law law)
 int list_command(const Options &options)
 {
     const Catalogue catalogue = options.catalogue();
-    std::string complaints;
+    std::string lines, complaints;
+    const auto entry = [&](const std::string &name, const std::string &description) {
+        lines += format("  %-32s ", name.c_str()) + description + "\n";
+    };
     const auto list = [&](const char *heading, const std::vector<fs::path> &files,
                           const auto &describe) {
-        std::printf("%s\n", heading);
+        lines += std::string(heading) + "\n";
         for (const fs::path &file : files) {
             try {
-                const std::string description = describe(file);
-                std::printf("  %-32s %s\n", name_of(file).c_str(), description.c_str());
+                entry(name_of(file), describe(file));
             } catch (const InputError &error) {
                 complaints += std::string("steadystep-sil: ") + error.what() + "\n";
             }
@@ -302,17 +346,57 @@ int list_command(const Options &options)
          [](const fs::path &file) { return read_motor(file).description; });
     list("parameters", catalogue.parameters(),
          [](const fs::path &file) { return read_parameters(file).description; });
-    std::printf("campaigns\n");
+    lines += "campaigns\n";
     for (const CampaignKind *kind : campaign_kinds()) {
-        std::printf("  %-32s %s\n", kind->name, kind->description);
+        entry(kind->name, kind->description);
     }
-    std::printf("laws, and the gains that can be given to them\n");
+    lines += "laws, and the gains that can be given to them\n";
     for (int law = 0; law < POSITION_LAW_COUNT; ++law) {
-        std::printf("  %-32s %s\n", drive_law_name(static_cast<position_law>(law)),
-                    gains_of(static_cast<position_law>(law)).c_str());
+        entry(drive_law_name(static_cast<position_law>(law)),
+              gains_of(static_cast<position_law>(law)));
     }
+    print(lines);
     std::fputs(complaints.c_str(), stderr);
     return complaints.empty() ? held : bad_input;
+}
+
+int check_motor_command(const Options &options)
+{
+    const Catalogue catalogue = options.catalogue();
+    std::vector<Motor> motors;
+    bool doubtful = false;
+    for (const std::string &name : options.motors) {
+        motors.push_back(read_motor(catalogue.motor(name, "check-motor", {})));
+        doubtful = doubtful || !unexplained_doubts_about(motors.back()).empty();
+    }
+    if (options.json) {
+        print(motors_json(motors));
+    } else {
+        for (const Motor &motor : motors) {
+            print(motor_report(motor));
+        }
+    }
+    return doubtful ? not_held : held;
+}
+
+/* A NaN lies in every range. */
+CLI::Validator finite()
+{
+    return {[](const std::string &text) {
+                return std::isfinite(std::strtod(text.c_str(), nullptr))
+                           ? std::string()
+                           : std::string("expected a finite number");
+            },
+            ""};
+}
+
+CLI::Validator not_empty()
+{
+    return {[](const std::string &text) {
+                return text.empty() ? std::string("expected a text that is not empty")
+                                    : std::string();
+            },
+            ""};
 }
 
 /* Options that `run` and `sweep` share. */
@@ -322,12 +406,15 @@ void add_run_options(CLI::App &command, Options &options)
         .add_option("--numeric", options.numeric,
                     "number format of the drive; else the scenario's first, float as a rule")
         ->check(CLI::IsMember({"float", "fixed", "double"}));
-    CLI::Option *seed = command.add_option("--seed", options.seed, "seed of all noise")
-                            ->check(CLI::NonNegativeNumber);
-    CLI::Option *seeds = command.add_option("--seeds", options.seeds,
-                                            "A-B: one run per seed, the 95th percentile decides");
+    CLI::Option *seed =
+        command.add_option("--seed", options.seed, "seed of all noise")->check(not_empty());
+    CLI::Option *seeds = command
+                             .add_option("--seeds", options.seeds,
+                                         "A-B: one run per seed, the 95th percentile decides")
+                             ->check(not_empty());
     seed->excludes(seeds);
-    command.add_option("--out", options.out, "folder that receives the results");
+    command.add_option("--out", options.out, "folder that receives the results")
+        ->check(not_empty());
     command.add_option("--jobs", options.jobs, "runs at a time; changes no result")
         ->check(CLI::Range(1u, 256u))
         ->capture_default_str();
@@ -338,8 +425,10 @@ void add_given_options(CLI::App &command, Options &options)
 {
     command.add_option("--set", options.given.settings, "table.key=value, on top of every file")
         ->allow_extra_args(false);
-    command.add_option("--parameters", options.given.parameters,
-                       "parameter set, on top of every file and below --set");
+    command
+        .add_option("--parameters", options.given.parameters,
+                    "parameter set, on top of every file and below --set")
+        ->check(not_empty());
 }
 
 int run_program(int argc, char **argv)
@@ -378,32 +467,51 @@ int run_program(int argc, char **argv)
         app.add_subcommand("campaign", "run scenarios drawn at random, one per seed");
     campaign->add_option("KIND", options.campaign, "as `list` names them")->required();
     campaign->add_option("--duration", options.campaign_duration_s, "of one run, s")
-        ->check(CLI::Range(0.1, 600.0));
-    campaign->add_option("--write-scenario", options.scenario_file,
-                         "writes the scenario of --seed to this file and runs nothing");
+        ->check(CLI::Range(0.1, 600.0))
+        ->check(finite());
+    campaign
+        ->add_option("--write-scenario", options.scenario_file,
+                     "writes the scenario of --seed to this file and runs nothing")
+        ->check(not_empty());
     campaign->add_flag("--json", options.json, "JSON on standard output, no report");
     add_given_options(*campaign, options);
     add_run_options(*campaign, options);
+    CLI::App *check_motor = app.add_subcommand(
+        "check-motor", "say what motor files mean and whether their values go together");
+    check_motor->add_option("MOTOR", options.motors, "names or paths")->required();
+    check_motor->add_flag("--json", options.json, "one array of motors, nothing else");
     CLI::App *list = app.add_subcommand(
         "list", "scenarios, sweeps, motors, parameter sets and laws, in one line each");
 
     try {
         app.parse(argc, argv);
-        options.one_seed =
-            run->count("--seed") + sweep->count("--seed") + campaign->count("--seed") > 0;
         if (*list) {
             return list_command(options);
+        }
+        if (*check_motor) {
+            return check_motor_command(options);
         }
         if (*campaign) {
             return campaign_command(options);
         }
         return *run ? run_command(options) : sweep_command(options);
     } catch (const CLI::Success &asked) {
-        return app.exit(asked); /* --help, --version */
+        std::ostringstream text; /* of --help, --version */
+        const int code = app.exit(asked, text);
+        print(text.str());
+        return code;
     } catch (const CLI::ParseError &error) {
         std::fprintf(stderr, "steadystep-sil: %s (see --help)\n", error.what());
     }
     return bad_input;
+}
+
+/* Without it, what is printed would end up in the first file that is opened. */
+void require_standard_output()
+{
+    if (fcntl(STDOUT_FILENO, F_GETFD) < 0) {
+        throw InputError("standard output: is closed");
+    }
 }
 
 } // namespace
@@ -411,9 +519,10 @@ int run_program(int argc, char **argv)
 int main(int argc, char **argv)
 {
     try {
+        require_standard_output();
         return run_program(argc, argv);
     } catch (const std::exception &error) { /* InputError, and what the machine refuses */
-        std::fprintf(stderr, "steadystep-sil: %s\n", error.what());
+        std::fprintf(stderr, "steadystep-sil: %s\n", in_one_line(error.what()).c_str());
         return bad_input;
     }
 }

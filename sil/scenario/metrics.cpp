@@ -252,6 +252,20 @@ RowRange rows_of(const Record &record, const Window &window)
             std::min(record.rows(), zero + periods(record, window.end_s) + 1)};
 }
 
+bool contains(const Record &record, const Window &window, double time_s)
+{
+    const double half_period_s = record.period_s() / 2;
+    if (window.kind == Window::Kind::all) {
+        return true;
+    }
+    if (window.kind == Window::Kind::times) {
+        return time_s >= window.begin_s - half_period_s && time_s <= window.end_s + half_period_s;
+    }
+    const RowRange move = rows_of(record, {Window::Kind::move});
+    const bool in_move = !move.empty() && time_s <= record.time_s(move.last - 1) + half_period_s;
+    return in_move == (window.kind == Window::Kind::move);
+}
+
 const std::vector<MetricField> &metric_fields()
 {
     static const std::vector<MetricField> fields = {
@@ -285,6 +299,8 @@ const std::vector<MetricField> &metric_fields()
         {"enabling_time_s", &Metrics::enabling_time_s},
         {"enabling_motion_max_rad", &Metrics::enabling_motion_max_rad},
         {"enabling_displacement_rad", &Metrics::enabling_displacement_rad},
+        {"commands_refused", &Metrics::commands_refused},
+        {"commands_dropped", &Metrics::commands_dropped},
     };
     return fields;
 }

@@ -46,6 +46,10 @@ struct RowRange {
 
 RowRange rows_of(const Record &record, const Window &window);
 
+/* Whether a time lies in the window; what comes before time zero belongs to what it is followed
+   by. */
+bool contains(const Record &record, const Window &window, double time_s);
+
 /* What the figures need to know besides the record. */
 struct MetricSettings {
     int rotor_teeth = 50;
@@ -92,6 +96,8 @@ struct Metrics {
     double enabling_time_s = none;         /* of the command, as it acts, to the drive ready */
     double enabling_motion_max_rad = none; /* of the true rotor from where it stood, until then */
     double enabling_displacement_rad = none; /* what is left of it then */
+    double commands_refused = none;          /* of the timeline: not of the record, so not set by */
+    double commands_dropped = none;          /* evaluate() but by who has seen the run */
 
     std::string fault = "none"; /* the first in the window, as drive_fault_name spells it */
 };

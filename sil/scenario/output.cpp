@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <charconv>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 
@@ -45,8 +46,9 @@ Json expectation_json(const Expectation &expectation, const Observation &observa
     if (expectation.equals) {
         json["equals"] = *expectation.equals;
     }
-    if (expectation.equals_text) {
-        json["equals"] = *expectation.equals_text;
+    if (expectation.of_fault()) {
+        json["equals"] = expectation.equals_text.size() == 1 ? Json(expectation.equals_text.front())
+                                                             : Json(expectation.equals_text);
         json["value"] = observation.text;
     } else {
         json["value"] = observation.value;
@@ -56,6 +58,16 @@ Json expectation_json(const Expectation &expectation, const Observation &observa
 }
 
 } // namespace
+
+void print(const std::string &text)
+{
+    errno = 0;
+    const bool all = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+    if (std::fflush(stdout) != 0 || !all) {
+        throw InputError("standard output: cannot be written: " +
+                         std::string(std::strerror(errno)));
+    }
+}
 
 void prepare_folder(const fs::path &folder)
 {
@@ -139,6 +151,24 @@ Json interrupt_json(const Result &result)
     return json;
 }
 
+void put_incidents(Json &json, const std::vector<Incident> &incidents)
+{
+    for (const char *const list : {"faults", "commands_refused", "commands_dropped"}) {
+        json[list] = Json::array();
+    }
+    for (const Incident &incident : incidents) {
+        Json one;
+        one["time_s"] = incident.time_s;
+        const bool fault = incident.kind == Incident::Kind::fault;
+        one[fault ? "fault" : "command"] = incident.what;
+        if (incident.kind == Incident::Kind::refused) {
+            one["reason"] = incident.reason;
+        }
+        one["expected"] = incident.expected;
+        json[fault ? "faults" : incident.metric()].push_back(one);
+    }
+}
+
 Json summary(const Result &result)
 {
     const Scenario &scenario = *result.scenario;
@@ -154,9 +184,12 @@ Json summary(const Result &result)
     json["version"] = STEADYSTEP_VERSION;
     json["reproduce"] = reproduce_command(scenario, result.numeric, result.seed);
     json["passed"] = result.passed();
-    json["failure"] = result.failure.empty() ? Json() : Json(result.failure);
+    const std::string failure = result.not_as_described();
+    json["failure"] = failure.empty() ? Json() : Json(failure);
+    put_incidents(json, result.incidents);
     json["simulated_s"] = result.simulated_s;
     json["cpu_s"] = result.cpu_s;
+    json["blind_below_rad_s"] = result.blind_below_rad_s ? Json(*result.blind_below_rad_s) : Json();
     json["trace_hash"] = hexadecimal(result.trace_hash);
     json["drive_hash"] = hexadecimal(result.drive_hash);
     json["metrics"]["move"] = window_json(result.move);

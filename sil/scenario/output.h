@@ -1,4 +1,5 @@
-/* Files that --out receives. Each is written aside and renamed, so that none is ever half there. */
+/* Standard output, and the files that --out receives. Each is written aside and renamed, so that
+   none is ever half there. */
 #ifndef STEADYSTEP_SCENARIO_OUTPUT_H
 #define STEADYSTEP_SCENARIO_OUTPUT_H
 
@@ -11,6 +12,9 @@
 
 namespace scenario
 {
+
+/* To standard output, at once; throws InputError if it does not take all of it. */
+void print(const std::string &text);
 
 /* The folder exists and takes files afterwards; throws InputError. */
 void prepare_folder(const std::filesystem::path &folder);

@@ -62,6 +62,20 @@ double Draw::mostly_low(double low, double high, double parts_per_unit)
     return rounded(low + (high - low) * u * u, parts_per_unit);
 }
 
+double Draw::over_octaves(double low, double high)
+{
+    double octaves = 0, top = low;
+    for (; 2 * top <= high; top *= 2) {
+        octaves += 1;
+    }
+    double place = (octaves + high / top - 1) * uniform();
+    double value = low;
+    for (; place >= 1; place -= 1) {
+        value *= 2;
+    }
+    return significant(value * (1 + place), 4);
+}
+
 double Draw::either_sign(double magnitude)
 {
     return chance(0.5) ? magnitude : -magnitude;
@@ -80,6 +94,24 @@ std::size_t Draw::index(std::size_t count)
 double rounded(double value, double parts_per_unit)
 {
     return std::floor(value * parts_per_unit + 0.5) / parts_per_unit;
+}
+
+double significant(double value, int digits)
+{
+    double least = 1; /* of the numbers with so many digits before the point */
+    for (int i = 1; i < digits; ++i) {
+        least *= 10;
+    }
+    double parts_per_unit = 1;
+    while (value != 0 && std::fabs(value) * parts_per_unit < least) {
+        parts_per_unit *= 10;
+    }
+    return rounded(value, parts_per_unit);
+}
+
+double times(double value, double scale)
+{
+    return scale == 1 ? value : significant(value * scale, 4);
 }
 
 void ScenarioText::comment(const std::string &text)

@@ -24,6 +24,8 @@ class Draw
     double between(double low, double high, double parts_per_unit);
     /* The same with density falling to the upper end as 1 / sqrt: low + (high - low) u^2. */
     double mostly_low(double low, double high, double parts_per_unit);
+    /* Every octave of low...high alike, and even within it; to four significant digits. */
+    double over_octaves(double low, double high);
     double either_sign(double magnitude);
     bool chance(double probability);
     std::size_t index(std::size_t count); /* 0...count - 1 */
@@ -36,6 +38,12 @@ class Draw
 
 /* Rounded to whole 1 / parts_per_unit, ties up. */
 double rounded(double value, double parts_per_unit);
+
+/* To so many significant digits; digits before the point all stay. */
+double significant(double value, int digits);
+
+/* value x scale to four significant digits; the value itself where the scale is 1. */
+double times(double value, double scale);
 
 class ScenarioText
 {

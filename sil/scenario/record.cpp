@@ -51,13 +51,17 @@ void Record::append(const Row &row)
     rows_.push_back(row);
 }
 
+double time_of(double periods, double period_s)
+{
+    /* Divided by 10 kHz it is the number nearest to the decimal; multiplied by 1e-4 it may not. */
+    const double rate_Hz = std::floor(1 / period_s + 0.5);
+    const double misfit = rate_Hz * period_s - 1;
+    return std::fabs(misfit) < 1e-12 ? periods / rate_Hz : periods * period_s;
+}
+
 double Record::time_s(std::size_t row) const
 {
-    const double periods = static_cast<double>(row) - static_cast<double>(time_zero_row_);
-    /* Divided by 10 kHz it is the number nearest to the decimal; multiplied by 1e-4 it may not. */
-    const double rate_Hz = std::floor(1 / period_s_ + 0.5);
-    const double misfit = rate_Hz * period_s_ - 1;
-    return std::fabs(misfit) < 1e-12 ? periods / rate_Hz : periods * period_s_;
+    return time_of(static_cast<double>(row) - static_cast<double>(time_zero_row_), period_s_);
 }
 
 } // namespace scenario

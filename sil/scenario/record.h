@@ -46,6 +46,9 @@ enum Column : std::size_t {
 /* Name with unit, as trace.csv heads the column. */
 const char *column_name(Column column);
 
+/* Of a number of periods; the number nearest to the decimal where the rate is one of whole Hz. */
+double time_of(double periods, double period_s);
+
 using Row = std::array<double, COLUMNS>;
 
 class Record

@@ -14,7 +14,7 @@ namespace
 
 std::string shown(const Expectation &expectation, const Observation &observation)
 {
-    if (expectation.equals_text) {
+    if (expectation.of_fault()) {
         return observation.text.empty() ? "-" : observation.text;
     }
     return observation.value == observation.value ? format("%.3g", observation.value) : "none";
@@ -64,6 +64,33 @@ std::string figures(const char *name, const WindowResult &window)
                   m.load_torque_error_rms_Nm, m.current_peak_A);
 }
 
+/* What happened without being expected, of each run; of a single one what was expected, too. */
+std::string incidents_of(const Result &result, bool all)
+{
+    constexpr std::size_t most_lines = 8;
+    std::string text;
+    std::size_t lines = 0, left_out = 0;
+    for (const Incident &incident : result.incidents) {
+        if (incident.expected && !all) {
+            continue;
+        }
+        if (lines++ >= most_lines) {
+            ++left_out;
+            continue;
+        }
+        text += (incident.expected ? "  expected  " : "  NOT EXPECTED  ") +
+                format("seed %llu: ", static_cast<unsigned long long>(result.seed)) +
+                incident.text() + "\n";
+    }
+    return text + (left_out == 0 ? "" : format("  and %zu more\n", left_out));
+}
+
+bool all_expected(const Result &result)
+{
+    return std::all_of(result.incidents.begin(), result.incidents.end(),
+                       [](const Incident &incident) { return incident.expected; });
+}
+
 } // namespace
 
 Report report(const std::vector<Result> &results)
@@ -84,6 +111,11 @@ Report report(const std::vector<Result> &results)
                        result.failure.c_str());
             seed_to_reproduce = result.seed;
         }
+        if (!all_expected(result)) {
+            report.passed = false;
+            seed_to_reproduce = result.seed;
+        }
+        report.text += incidents_of(result, !many);
     }
     if (!scenario.expectations.empty() || !scenario.reports.empty()) {
         report.text += line("expectation", "window", many ? "95 % of runs" : "value",
@@ -112,6 +144,12 @@ Report report(const std::vector<Result> &results)
             format("  figures of seed %llu:\n", static_cast<unsigned long long>(first.seed));
     }
     report.text += figures("move", first.move) + figures("rest", first.rest);
+    if (first.blind_below_rad_s) {
+        report.text += format("  blind: +-%.3g A for a %.3g A motor: creep below %.2g rad/s is out "
+                              "of reach\n",
+                              scenario.plant.sensors.current_range_A,
+                              scenario.motor.params.rated_current_A, *first.blind_below_rad_s);
+    }
     if (first.board) {
         report.text += interrupt_table(*first.board, first.cpu_s);
     }

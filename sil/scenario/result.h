@@ -37,10 +37,19 @@ struct Result {
     std::vector<Observation> reported;     /* one per report */
     std::uint64_t trace_hash = 0, drive_hash = 0;
     double simulated_s = 0, cpu_s = 0;
+    std::vector<Incident> incidents; /* by time, each judged */
+    /* Of a run whose reference creeps where the drive is blind: the speed below which it is. */
+    std::optional<double> blind_below_rad_s;
     std::string serial;                              /* transcript of the serial line */
     std::optional<virtual_board::BoardReport> board; /* of an image on the virtual board */
 
+    /* It ran to its end, all bounds are held, and nothing happened that is not expected. */
     bool passed() const;
+    /* Why it is not the run that the scenario describes: it ended early, or the drive refused or
+       dropped a command without being expected to; "" if it is, be it in fault. */
+    std::string not_as_described() const;
+    /* The first fault that was not expected; nullptr: none. */
+    const Incident *unexpected_fault() const;
 };
 
 /* Runs and evaluates; the record stays with the caller, who may write or drop it. */

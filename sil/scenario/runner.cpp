@@ -16,7 +16,7 @@ namespace scenario
 namespace
 {
 
-constexpr double longest_enabling_s = 2;
+constexpr double longest_enabling_s = 60;
 
 std::uint32_t periods(double time_s, double period_s)
 {
@@ -58,8 +58,8 @@ class Runner
         : scenario_(scenario), board_(board), direct_(direct),
           period_s_(scenario.plant.bridge.period_s), values_(values_of(scenario)),
           motor_(scaled(scenario.motor.params, scenario.scales)),
-          result_{Record(period_s_ * scenario.record_every), 0, 0, 0, 0, 0, "", ""}, line_(board),
-          tape_(scenario.events, period_s_)
+          result_{Record(period_s_ * scenario.record_every), 0, 0, 0, 0, 0, "", {}, ""},
+          line_(board), tape_(scenario.events, period_s_)
     {
     }
 
@@ -77,7 +77,9 @@ class Runner
             result_.failure = failure.what();
         }
         result_.drive_hash = board_.drive_hash();
+        result_.blind_speed_rad_s = drive_blind_speed_rad_s(&scenario_.drive, &board_.facts());
         result_.serial = line_.transcript();
+        add_refused_lines();
         return std::move(result_);
     }
 
@@ -95,7 +97,7 @@ class Runner
         if (direct_ != nullptr) {
             direct_->command(command);
         } else {
-            line_.type_command(sil::typed_line(command), "enabling");
+            line_.type(sil::typed_line(command), "enabling", 0);
         }
     }
 
@@ -115,6 +117,10 @@ class Runner
             if (state == DRIVE_OPERATION_ENABLED) {
                 result_.enabling_time_s = (k - begin) * period_s_;
                 return wait_for_time_zero(k);
+            }
+            if (!line_.refusals().empty()) {
+                result_.failure = reason_of(line_.refusals().front());
+                return false;
             }
             if (state == DRIVE_FAULT || k == last) {
                 result_.failure = format("the drive did not become ready: %s after %g s, fault %s",
@@ -154,6 +160,7 @@ class Runner
             tape_.type(std::int64_t{n} - shift, time_zero_, line_);
             if (n < shift) {
                 control();
+                watch(std::int64_t{n} - shift);
             }
         }
         result_.time_zero_s = (k + shift) * period_s_;
@@ -168,6 +175,7 @@ class Runner
             if (n > 0 || direct_ == nullptr) {
                 control();
             }
+            watch(n);
             record(n);
             if (n == last) {
                 return;
@@ -189,9 +197,10 @@ class Runner
             } else if (event.power_cycle) {
                 board_.power_cycle();
                 line_.forget();
+                watch_.restart();
                 time_zero_ = 0u - n; /* the drive counts its periods from 0 again */
             } else if (event.type) {
-                line_.type(*event.type);
+                line_.type(*event.type, event.location.text(), time_of(n, period_s_));
             } else if (event.expects) {
                 expect(event);
             } else if (event.shorted_leg) {
@@ -223,11 +232,51 @@ class Runner
         }
         drive_command command = *event.command;
         command.at_period = time_zero_ + n;
-        direct_->command(command);
-        if (!event.set_points_rad.empty()) {
+        if (posted(command, event.location, n) && !event.set_points_rad.empty()) {
             streams_.push_back({command, &event.set_points_rad, 1, n,
-                                std::max(1u, periods(command.interval_s, period_s_))});
+                                std::max(1u, periods(command.interval_s, period_s_)),
+                                event.location});
         }
+    }
+
+    /* false: the drive refuses it, and the run goes on. */
+    bool posted(const drive_command &command, const Location &origin, std::uint32_t n)
+    {
+        try {
+            direct_->command(command);
+        } catch (const std::invalid_argument &refusal) {
+            const std::string name = command_name(command.kind);
+            result_.incidents.push_back({Incident::Kind::refused, time_of(n, period_s_), name,
+                                         origin.text() + ": " + name + ": " + refusal.what()});
+            return false;
+        }
+        return true;
+    }
+
+    static std::string reason_of(const SerialLine::Refusal &refusal)
+    {
+        return refusal.origin + ": " + refusal.line + ": " + refusal.answer;
+    }
+
+    /* Those whose answer no event of the timeline has expected. */
+    void add_refused_lines()
+    {
+        std::vector<Incident> &incidents = result_.incidents;
+        for (const SerialLine::Refusal &refusal : line_.refusals()) {
+            if (!refusal.expected) {
+                incidents.push_back(
+                    {Incident::Kind::refused, refusal.time_s, refusal.line, reason_of(refusal)});
+            }
+        }
+        std::stable_sort(incidents.begin(), incidents.end(),
+                         [](const Incident &a, const Incident &b) { return a.time_s < b.time_s; });
+    }
+
+    /* After the control interrupt of period n. */
+    void watch(std::int64_t n)
+    {
+        const double time_s = time_of(static_cast<double>(n), period_s_);
+        watch_.look(board_.signals(), time_s, result_.incidents);
     }
 
     void expect(const Event &event)
@@ -243,16 +292,19 @@ class Runner
         const std::vector<double> *positions_rad;
         std::size_t next; /* first position that has not been posted */
         std::uint32_t start, interval;
+        Location origin;
     };
 
-    /* The set-point of this period. */
+    /* The set-point of this period; the first that is refused is the last. */
     void stream(std::uint32_t n)
     {
         for (Stream &stream : streams_) {
             if (stream.next < stream.positions_rad->size() &&
                 n == stream.start + stream.next * stream.interval) {
                 stream.command.position_rad = (*stream.positions_rad)[stream.next++];
-                direct_->command(stream.command);
+                if (!posted(stream.command, stream.origin, n)) {
+                    stream.next = stream.positions_rad->size();
+                }
             }
         }
     }
@@ -329,6 +381,7 @@ class Runner
     Run result_;
     SerialLine line_;
     Tape tape_;
+    DriveWatch watch_;
     double stood_at_rad_ = 0; /* the rotor, when it was enabled */
     std::uint32_t time_zero_ = 0;
     std::size_t next_ = 0; /* first event that has not acted */
@@ -338,7 +391,29 @@ class Runner
 
 constexpr int drive_queue_length = 15;
 
-/* As many as the drive takes at once: it plans a move, and may refuse it, when it is posted. */
+/* The steps of enabling left out: ready at once, where the drive is told that it stands. */
+drive_settings without_enabling(drive_settings settings)
+{
+    settings.calibrate_offsets = false;
+    settings.hold_on_enable = false;
+    settings.initial_position = DRIVE_INITIAL_POSITION_TOLD;
+    settings.standstill_pulses = false; /* they need what the impulses find */
+    return settings;
+}
+
+void make_ready(sil::Board &board)
+{
+    drive_command enable{};
+    enable.kind = DRIVE_COMMAND_ENABLE;
+    board.command(enable);
+    while (board.signals().state == DRIVE_SWITCH_ON_DISABLED) {
+        board.control();
+    }
+}
+
+/* As many as a drive takes at once: it plans a move, and may refuse it, when it is posted. What is
+   refused because of the state that it finds, or starts where only the run can show, is for the
+   run. */
 void post_commands(sil::Board &board, const Scenario &scenario)
 {
     int posted = 0;
@@ -350,21 +425,17 @@ void post_commands(sil::Board &board, const Scenario &scenario)
             continue;
         }
         const drive_command_kind kind = event.command->kind;
-        if (kind == DRIVE_COMMAND_STOP) {
-            return; /* where the next move starts is known in the run only */
+        if (kind == DRIVE_COMMAND_STOP || kind == DRIVE_COMMAND_DISABLE) {
+            return;
         }
         try {
             board.command(*event.command);
         } catch (const std::invalid_argument &refusal) {
             throw InputError(event.location.text() + ": " + refusal.what());
         }
-        const bool starts_where_it_is =
-            kind == DRIVE_COMMAND_ENABLE &&
-            (scenario.drive.encoder_zero_known ||
-             scenario.drive.initial_position != DRIVE_INITIAL_POSITION_TOLD);
-        if (starts_where_it_is || kind == DRIVE_COMMAND_SINE || kind == DRIVE_COMMAND_VELOCITY ||
+        if (kind == DRIVE_COMMAND_SINE || kind == DRIVE_COMMAND_VELOCITY ||
             kind == DRIVE_COMMAND_SET_POINT) {
-            return; /* likewise */
+            return;
         }
         ++posted;
     }
@@ -409,7 +480,9 @@ const firmware_image *image_of(const std::string &numeric)
 void check(const Scenario &scenario, const firmware_image &image)
 {
     try {
-        sil::Board board(scenario.plant, image, scenario.drive);
+        sil::Board(scenario.plant, image, scenario.drive);
+        sil::Board board(scenario.plant, image, without_enabling(scenario.drive));
+        make_ready(board);
         post_commands(board, scenario);
         disturb(board.plant(), scenario);
     } catch (const std::invalid_argument &refusal) {

@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "sil/board/board.h"
 #include "sil/board/drive_board.h"
+#include "sil/scenario/incident.h"
 #include "sil/scenario/record.h"
 #include "sil/scenario/scenario_file.h"
 
@@ -16,8 +18,8 @@ namespace scenario
 /* The image of "float", "fixed" or "double"; nullptr: no such format. */
 const firmware_image *image_of(const std::string &numeric);
 
-/* Powers a board up, posts the commands and lets it go again; throws InputError if the drive or the
-   plant refuses something. */
+/* Powers a board up, posts what can be judged before the run, and lets it go again; throws
+   InputError if the drive or the plant refuses something. */
 void check(const Scenario &scenario, const firmware_image &image);
 
 struct Run {
@@ -26,8 +28,10 @@ struct Run {
     double enabling_time_s = 0; /* as metrics.h has it */
     double enabling_motion_max_rad = 0, enabling_displacement_rad = 0; /* magnitudes */
     std::uint64_t drive_hash = 0;
-    std::string failure; /* why the run ended early; "" if it did not */
-    std::string serial;  /* transcript of the drive's serial line */
+    std::string failure;             /* why the run ended early; "" if it did not */
+    std::vector<Incident> incidents; /* by time; none of them judged yet */
+    std::string serial;              /* transcript of the drive's serial line */
+    double blind_speed_rad_s = 0;    /* drive_blind_speed_rad_s of this drive on this board */
 };
 
 /* The plant of one run. */

@@ -16,6 +16,7 @@ namespace
 {
 
 constexpr double supply_headroom = 1.3; /* full scale of voltage sensing / nominal supply */
+constexpr std::size_t most_bases = 16;  /* each is held until the last one has been read */
 constexpr double longest_run_s = 600;
 constexpr double most_rows = 6e6; /* 25 columns: 1.2 GB */
 constexpr double largest_position_rad = 1e7;
@@ -31,6 +32,10 @@ Value read_with_bases(const Catalogue &catalogue, const fs::path &file, std::vec
     const std::string where = base->location.text() + ": base";
     if (base->kind != Value::Kind::text) {
         throw InputError(where + ": expected the name or path of a scenario in quotes");
+    }
+    if (chain.size() >= most_bases) {
+        throw InputError(where + ": expected at most " + std::to_string(most_bases) +
+                         " scenarios on top of one another");
     }
     chain.push_back(file);
     const fs::path base_file = catalogue.scenario(base->text, where, file.parent_path());
@@ -211,15 +216,28 @@ void read_drive(const Value &table, drive_settings &drive)
     reader.finish();
 }
 
-/* What `real` adds to `bench`; sources: sil/plant/README.md. */
-void make_real(plant::Config &plant)
+/* Harmonics 4, 2 and 1 of the detent torque, as shares of the holding torque. A motor file's detent
+   torque is the peak of their sum and keeps their ratio. */
+void set_detent(plant::ImperfectionConfig &imperfections, const Motor &motor)
 {
-    constexpr double current_code_A = 12.0 / 4096.0;
+    constexpr double detent_4 = 0.05, detent_2 = 0.015, detent_1 = 0.0075;
+    constexpr double peak = 1.2789059088441; /* of sin 4x + 0.3 sin 2x + 0.15 sin x */
+    const double scale =
+        motor.detent_torque_Nm.has_value()
+            ? *motor.detent_torque_Nm / (peak * detent_4 * motor.holding_torque_Nm())
+            : 1.0;
+    imperfections.detent_4 = detent_4 * scale;
+    imperfections.detent_2 = detent_2 * scale;
+    imperfections.detent_1 = detent_1 * scale;
+}
+
+/* What `real` adds to `bench`; sources: sil/plant/README.md. */
+void make_real(plant::Config &plant, const Motor &motor)
+{
+    const double current_code_A = 2 * plant.sensors.current_range_A / 4096.0;
     plant.imperfections.saturation_depth = 0.10;
     plant.imperfections.flux_harmonic_3 = 0.02;
-    plant.imperfections.detent_4 = 0.05;
-    plant.imperfections.detent_2 = 0.015;
-    plant.imperfections.detent_1 = 0.0075;
+    set_detent(plant.imperfections, motor);
     plant.imperfections.coulomb_friction = 0.015;
     plant.imperfections.bridge_resistance_ohm = 2 * 0.11;
     plant.imperfections.phase_voltage_filter_s = 10e-6;
@@ -258,13 +276,30 @@ void read_supply(TableReader &reader, plant::Config &plant)
     reader.number("brake_V", supply.brake_V, 1, 2000);
 }
 
-void read_plant_model(TableReader &reader, plant::Config &plant)
+/* The range of the current sensing, in A or in rated currents; its noise stays the same in codes.
+ */
+void read_current_range(TableReader &reader, plant::SensorConfig &sensors, const Motor &motor)
+{
+    const char *const rated = "current_range_rated";
+    const double default_range_A = sensors.current_range_A;
+    double ratio = 0;
+    const bool in_A = reader.number("current_range_A", sensors.current_range_A, 0.1, 1000);
+    if (reader.number(rated, ratio, 1, 100)) {
+        if (in_A) {
+            reader.fail(rated, "expected either this or current_range_A");
+        }
+        sensors.current_range_A = ratio * motor.params.rated_current_A;
+    }
+    sensors.current_noise_rms_A *= sensors.current_range_A / default_range_A;
+}
+
+void read_plant_model(TableReader &reader, plant::Config &plant, const Motor &motor)
 {
     std::size_t model = 1, bridge = 0;
     reader.choice("model", model, {"ideal", "bench", "real"});
     const bool ideal = model == 0;
     if (model == 2) {
-        make_real(plant);
+        make_real(plant, motor);
     }
     plant.bridge.model = ideal ? plant::BridgeModel::averaged : plant::BridgeModel::switched;
     plant.sensors.exact = ideal;
@@ -285,7 +320,8 @@ void read_plant(const Value &table, Scenario &scenario)
     std::int64_t half_period_counts = bridge.half_period_counts;
     std::int64_t encoder_counts_per_turn = sensors.encoder_counts_per_turn;
 
-    read_plant_model(reader, plant);
+    read_current_range(reader, sensors, scenario.motor);
+    read_plant_model(reader, plant, scenario.motor);
     read_imperfections(reader, plant.imperfections);
     read_supply(reader, plant);
     reader.number("dead_time_s", bridge.dead_time_s, 0, 1e-5);
@@ -293,7 +329,6 @@ void read_plant(const Value &table, Scenario &scenario)
     reader.number("period_s", bridge.period_s, 1e-6, 1e-3);
     reader.integer("half_period_counts", half_period_counts, 1, 65535);
     reader.integer("delay_periods", delay_periods, 0, 1);
-    reader.number("current_range_A", sensors.current_range_A, 0.1, 1000);
     reader.number("current_noise_rms_A", sensors.current_noise_rms_A, 0, 10);
     reader.number("current_offset_a_A", sensors.current_offset_a_A, -10, 10);
     reader.number("current_offset_b_A", sensors.current_offset_b_A, -10, 10);
@@ -386,7 +421,8 @@ namespace
 {
 
 /* What `document` means. */
-Scenario interpreted(const Catalogue &catalogue, const Value &document, const CommandLine &given)
+Scenario interpreted(const Catalogue &catalogue, const Value &document, const CommandLine &given,
+                     const Motor *own_motor)
 {
     Scenario scenario;
     scenario.given = given;
@@ -405,7 +441,9 @@ Scenario interpreted(const Catalogue &catalogue, const Value &document, const Co
     if (reader.text("motor", motor)) {
         const Location &where = scenario.document.find("motor")->location;
         scenario.motor =
-            read_motor(catalogue.motor(motor, where.text() + ": motor", folder_of(where)));
+            own_motor != nullptr
+                ? *own_motor
+                : read_motor(catalogue.motor(motor, where.text() + ": motor", folder_of(where)));
     }
     reader.require("duration_s");
     reader.number("duration_s", scenario.duration_s, 1e-3, longest_run_s);
@@ -449,18 +487,19 @@ Scenario read_scenario(const Catalogue &catalogue, const std::string &name,
     const fs::path file = catalogue.scenario(name, asked_by);
     Value document = read_with_bases(catalogue, file, {});
     document.location = {file.string(), 0};
-    Scenario scenario = interpreted(catalogue, document, given);
+    Scenario scenario = interpreted(catalogue, document, given, nullptr);
     scenario.name = file.stem().string();
     scenario.asked = name;
     return scenario;
 }
 
 Scenario read_scenario_text(const Catalogue &catalogue, const std::string &text,
-                            const std::string &name, const CommandLine &given)
+                            const std::string &name, const CommandLine &given,
+                            const Motor *own_motor)
 {
     Value document = parse_toml(text, name);
     document.location = {name, 0};
-    Scenario scenario = interpreted(catalogue, document, given);
+    Scenario scenario = interpreted(catalogue, document, given, own_motor);
     scenario.name = scenario.asked = name;
     return scenario;
 }

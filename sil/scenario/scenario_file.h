@@ -69,9 +69,11 @@ ParameterSet read_parameters(const std::filesystem::path &file);
 Scenario read_scenario(const Catalogue &catalogue, const std::string &name,
                        const CommandLine &given, const std::string &asked_by);
 
-/* The same of a text without a base; `name` stands for its file. */
+/* The same of a text without a base; `name` stands for its file. `own_motor`: takes the place of
+   the motor it names; nullptr: none. */
 Scenario read_scenario_text(const Catalogue &catalogue, const std::string &text,
-                            const std::string &name, const CommandLine &given);
+                            const std::string &name, const CommandLine &given,
+                            const Motor *own_motor = nullptr);
 
 } // namespace scenario
 

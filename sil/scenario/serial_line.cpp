@@ -1,7 +1,5 @@
 #include "sil/scenario/serial_line.h"
 
-#include <stdexcept>
-
 #include "sil/scenario/text.h"
 
 namespace scenario
@@ -22,21 +20,11 @@ bool is_answer(const std::string &line)
 
 } // namespace
 
-void SerialLine::type(const std::string &line)
-{
-    send(line, "");
-}
-
-void SerialLine::type_command(const std::string &line, const std::string &origin)
-{
-    send(line, origin);
-}
-
-void SerialLine::send(const std::string &line, const std::string &origin)
+void SerialLine::type(const std::string &line, const std::string &origin, double time_s)
 {
     board_.type(line);
     if (line.find_first_not_of(" \t\r") != std::string::npos) {
-        unanswered_.push_back({line, origin});
+        unanswered_.push_back({line, origin, time_s});
     }
     note('>', line);
 }
@@ -55,15 +43,19 @@ void SerialLine::listen()
 void SerialLine::hear(const std::string &line)
 {
     note('<', line);
-    heard_.push_back(line);
-    if (!is_answer(line) || unanswered_.empty()) {
-        return;
-    }
+    heard_.push_back({line, is_answer(line) && !unanswered_.empty() ? answer(line) : no_refusal});
+}
+
+/* To the oldest line without one. */
+std::size_t SerialLine::answer(const std::string &line)
+{
     const Typed typed = unanswered_.front();
     unanswered_.pop_front();
-    if (!typed.origin.empty() && begins(line, "error:")) {
-        throw std::invalid_argument(typed.origin + ": " + typed.line + ": " + line);
+    if (!begins(line, "error:")) {
+        return no_refusal;
     }
+    refusals_.push_back({typed.line, typed.origin, typed.time_s, line, false});
+    return refusals_.size() - 1;
 }
 
 void SerialLine::forget()
@@ -76,8 +68,11 @@ void SerialLine::forget()
 bool SerialLine::expect(const std::string &begin)
 {
     for (std::size_t i = expected_; i < heard_.size(); ++i) {
-        if (begins(heard_[i], begin)) {
+        if (begins(heard_[i].line, begin)) {
             expected_ = i + 1;
+            if (heard_[i].refusal != no_refusal) {
+                refusals_[heard_[i].refusal].expected = true;
+            }
             return true;
         }
     }
@@ -88,7 +83,7 @@ std::string SerialLine::unread() const
 {
     std::string lines;
     for (std::size_t i = expected_; i < heard_.size(); ++i) {
-        lines += (lines.empty() ? "\"" : ", \"") + heard_[i] + "\"";
+        lines += (lines.empty() ? "\"" : ", \"") + heard_[i].line + "\"";
     }
     return lines.empty() ? "nothing" : lines;
 }

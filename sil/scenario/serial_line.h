@@ -19,14 +19,24 @@ class SerialLine
     {
     }
 
-    /* Types a line of the timeline: as it is, whatever the answer. */
-    void type(const std::string &line);
-    /* Types a command that must be obeyed; `origin` is where it was asked for. */
-    void type_command(const std::string &line, const std::string &origin);
+    /* Types a line; `origin` is where it was asked for, and for which time. */
+    void type(const std::string &line, const std::string &origin, double time_s);
 
-    /* After each control(): takes what the drive has written. Throws std::invalid_argument if it
-       has refused a command. */
+    /* After each control(): takes what the drive has written. */
     void listen();
+
+    /* A line that was answered with an error. */
+    struct Refusal {
+        std::string line, origin;
+        double time_s;
+        std::string answer;
+        bool expected; /* expect() has met the answer */
+    };
+
+    const std::vector<Refusal> &refusals() const
+    {
+        return refusals_;
+    }
 
     /* The drive has restarted: what was typed has no answer any more. */
     void forget();
@@ -44,18 +54,24 @@ class SerialLine
 
   private:
     struct Typed {
-        std::string line;
-        std::string origin; /* of a command that must be obeyed, else "" */
+        std::string line, origin;
+        double time_s;
     };
+    struct Heard {
+        std::string line;
+        std::size_t refusal; /* which of refusals_ it is, or no_refusal */
+    };
+    static constexpr std::size_t no_refusal = static_cast<std::size_t>(-1);
 
-    void send(const std::string &line, const std::string &origin);
+    std::size_t answer(const std::string &line);
     void hear(const std::string &line);
     void note(char direction, const std::string &line);
 
     sil::DriveBoard &board_;
     std::deque<Typed> unanswered_;
     std::string partial_; /* line of the drive that has not ended */
-    std::vector<std::string> heard_;
+    std::vector<Heard> heard_;
+    std::vector<Refusal> refusals_;
     std::size_t expected_ = 0; /* lines of heard_ that are behind the last expectation */
     std::string transcript_;
     bool begun_ = false; /* a period of the drive's has been */

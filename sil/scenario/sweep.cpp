@@ -77,7 +77,8 @@ double percentile(const std::vector<Result> &results, const WindowResult Result:
 {
     std::vector<double> values;
     for (const Result &result : results) {
-        values.push_back(result.failure.empty() ? (result.*window).metrics.*metric : Metrics::none);
+        const bool ran = result.not_as_described().empty();
+        values.push_back(ran ? (result.*window).metrics.*metric : Metrics::none);
     }
     return percentile_95(values);
 }
@@ -91,6 +92,18 @@ double reported_percentile(const std::vector<Result> &results, std::size_t index
                                                         : Metrics::none);
     }
     return percentile_95(values);
+}
+
+std::string unexpected(const std::vector<Result> &results)
+{
+    for (const Result &result : results) {
+        const Incident *fault = result.unexpected_fault();
+        const std::string what = fault != nullptr ? fault->text() : result.not_as_described();
+        if (!what.empty()) {
+            return what + format(" (seed %llu)", static_cast<unsigned long long>(result.seed));
+        }
+    }
+    return "";
 }
 
 bool is_bound(double bound)
@@ -163,8 +176,9 @@ SweepFigures figures_of(const SweepCase &one, const std::vector<Result> &results
     const auto holds = [](double value, double bound) {
         return !is_bound(bound) || value <= bound;
     };
-    figures.held = holds(figures.max_rad, one.max_rad) && holds(figures.rms_rad, one.rms_rad) &&
-                   holds(figures.rest_rad, one.rest_rad);
+    figures.unexpected = unexpected(results);
+    figures.held = figures.unexpected.empty() && holds(figures.max_rad, one.max_rad) &&
+                   holds(figures.rms_rad, one.rms_rad) && holds(figures.rest_rad, one.rest_rad);
     return figures;
 }
 
@@ -182,6 +196,7 @@ std::string sweep_line(const SweepCase &one, const SweepFigures &figures)
 {
     std::string verdict = !figures.bounded ? "reported" : figures.held ? "held" : "NOT HELD";
     verdict += figures.slip_full_steps == 0 ? "" : ", rotor lost";
+    verdict += figures.unexpected.empty() ? "" : ", " + figures.unexpected;
     return format("%-7s %-24s %+5.0f%%  %-32s %9.2g %9.2g %9.2g  %-22s %s\n", one.figure.c_str(),
                   one.parameter.c_str(), 100 * (one.scale - 1), one.paper.c_str(), figures.max_rad,
                   figures.rms_rad, figures.rest_rad, bounds(one).c_str(), verdict.c_str());
@@ -212,6 +227,7 @@ std::string sweep_json(const Sweep &sweep, const std::vector<SweepFigures> &figu
         row["bound_max_rad"] = one.max_rad;
         row["bound_rms_rad"] = one.rms_rad;
         row["bound_rest_rad"] = one.rest_rad;
+        row["unexpected"] = figures[i].unexpected.empty() ? Json() : Json(figures[i].unexpected);
         row["held"] = figures[i].bounded ? Json(figures[i].held) : Json();
         json["rows"].push_back(row);
     }

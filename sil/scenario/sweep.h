@@ -36,7 +36,8 @@ Sweep read_sweep(const Catalogue &catalogue, const std::filesystem::path &file);
 /* 95th percentiles over the seeds of one case. */
 struct SweepFigures {
     double max_rad, rms_rad, rest_rad, slip_full_steps;
-    bool bounded, held;
+    std::string unexpected; /* the first run's that faulted or was not as described; "": none */
+    bool bounded, held;     /* nothing is held if there is such a run */
 };
 
 SweepFigures figures_of(const SweepCase &one, const std::vector<Result> &results);

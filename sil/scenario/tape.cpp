@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "sil/board/typed_line.h"
+#include "sil/scenario/record.h"
 
 namespace scenario
 {
@@ -48,7 +49,8 @@ Tape::Tape(const std::vector<Event> &events, double period_s)
             const std::int64_t delay =
                 command.kind == DRIVE_COMMAND_SAVE ? 1 : sil::typed_delay(command.kind, period_s);
             entries_.push_back({command, acts_in, std::max(acts_in - delay, restart), delay,
-                                event.location.text()});
+                                event.location.text(),
+                                time_of(static_cast<double>(acts_in), period_s)});
         }
     }
     std::stable_sort(entries_.begin(), entries_.end(),
@@ -71,7 +73,7 @@ void Tape::type(std::int64_t n, std::uint32_t time_zero, SerialLine &line)
         if (entry.typed_in + entry.delay < entry.acts_in) {
             at_period = time_zero + static_cast<std::uint32_t>(entry.acts_in);
         }
-        line.type_command(sil::typed_line(entry.command, at_period), entry.origin);
+        line.type(sil::typed_line(entry.command, at_period), entry.origin, entry.time_s);
     }
 }
 

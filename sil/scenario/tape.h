@@ -29,6 +29,7 @@ class Tape
         std::int64_t typed_in;
         std::int64_t delay; /* from typing to acting, at least */
         std::string origin;
+        double time_s; /* of the event, or of the set-point */
     };
 
     std::vector<Entry> entries_;

@@ -32,6 +32,14 @@ std::string readable(double number)
     return format("%.10g", number);
 }
 
+std::string in_one_line(std::string text)
+{
+    for (char &letter : text) {
+        letter = static_cast<unsigned char>(letter) < ' ' || letter == '\x7f' ? '?' : letter;
+    }
+    return text;
+}
+
 std::string hexadecimal(std::uint64_t bits)
 {
     return format("%016llx", static_cast<unsigned long long>(bits));

@@ -17,6 +17,9 @@ std::string shortest(double number);
 /* For people: no more than 10 digits, no exponent where none is needed. */
 std::string readable(double number);
 
+/* With '?' for line feeds and the like, which names and texts of the user's may hold. */
+std::string in_one_line(std::string text);
+
 /* 16 hexadecimal digits. */
 std::string hexadecimal(std::uint64_t bits);
 

@@ -15,6 +15,7 @@ namespace
 {
 
 constexpr double longest_ramp_s = 600;
+constexpr std::int64_t most_incidents = 1000000;
 constexpr double largest_bound = 1e12; /* of an expectation; any finite number in practice */
 constexpr double largest_position_rad = 1e7;
 constexpr double largest_short_circuit_A = 100;
@@ -297,6 +298,37 @@ Window read_window(TableReader &reader, double duration_s)
     return window;
 }
 
+/* One fault, or an array of which one must have come. */
+std::vector<std::string> read_faults(TableReader &reader)
+{
+    const std::vector<std::string> faults = names_of(drive_fault_name, DRIVE_FAULTS);
+    reader.require("equals");
+    const Value *value = reader.any("equals");
+    if (value->kind != Value::Kind::array) {
+        std::size_t fault = 0;
+        reader.choice("equals", fault, faults);
+        return {faults[fault]};
+    }
+    std::vector<std::string> chosen;
+    for (const Value &item : value->items) {
+        if (item.kind != Value::Kind::text ||
+            std::find(faults.begin(), faults.end(), item.text) == faults.end()) {
+            reader.fail("equals", "expected " + one_of(item.text, faults));
+        }
+        chosen.push_back(item.text);
+    }
+    if (chosen.empty()) {
+        reader.fail("equals", "expected at least one fault");
+    }
+    return chosen;
+}
+
+/* What a run must not do unless just so much of it is expected; `fault` is the third of them. */
+bool is_count_of_incidents(const std::string &metric)
+{
+    return metric == "commands_refused" || metric == "commands_dropped";
+}
+
 Expectation read_expectation(const Value &table, const std::string &path, double duration_s)
 {
     TableReader reader(table, path);
@@ -312,11 +344,12 @@ Expectation read_expectation(const Value &table, const std::string &path, double
     expectation.window = read_window(reader, duration_s);
 
     if (expectation.metric == "fault") {
-        const std::vector<std::string> faults = names_of(drive_fault_name, DRIVE_FAULTS);
-        std::size_t fault = 0;
+        expectation.equals_text = read_faults(reader);
+    } else if (is_count_of_incidents(expectation.metric)) {
+        std::int64_t count = 0;
         reader.require("equals");
-        reader.choice("equals", fault, faults);
-        expectation.equals_text = faults[fault];
+        reader.integer("equals", count, 0, most_incidents);
+        expectation.equals = static_cast<double>(count);
     } else {
         const auto bound = [&](const char *key, std::optional<double> &target) {
             double value = 0;
@@ -360,10 +393,24 @@ std::string element(const std::string &array, std::size_t index)
 
 } // namespace
 
+const char *command_name(drive_command_kind kind)
+{
+    for (const CommandKind &known : command_kinds()) {
+        if (known.kind == kind) {
+            return known.name;
+        }
+    }
+    return "unknown";
+}
+
 std::string Expectation::bound() const
 {
-    if (equals_text) {
-        return "= " + *equals_text;
+    if (of_fault()) {
+        std::string names;
+        for (const std::string &name : equals_text) {
+            names += (names.empty() ? "= " : " or ") + name;
+        }
+        return names;
     }
     if (equals) {
         return "= " + readable(*equals);

@@ -42,14 +42,21 @@ struct Expectation {
     std::string metric;
     Window window;
     std::optional<double> min, max, equals;
-    std::optional<std::string> equals_text; /* of `fault` */
+    std::vector<std::string> equals_text; /* of `fault`: one of these */
 
+    bool of_fault() const
+    {
+        return !equals_text.empty();
+    }
     bool bounded() const
     {
-        return min || max || equals || equals_text;
+        return min || max || equals || of_fault();
     }
     std::string bound() const; /* "<= 0.001" */
 };
+
+/* As an event spells it. */
+const char *command_name(drive_command_kind kind);
 
 /* The arrays `event`, sorted by time, `expect` and `report` of a scenario; throw InputError. */
 std::vector<Event> read_events(TableReader &scenario, double duration_s);

@@ -15,7 +15,8 @@ namespace
 Cycles cycles_of(unsigned nominal, unsigned worst, unsigned waits, CodePlace place)
 {
     const unsigned flash = worst + waits;
-    return {nominal, place == CodePlace::flash ? flash : worst, flash};
+    const bool lies_there = place == CodePlace::flash || place == CodePlace::flash_by_intent;
+    return {nominal, lies_there ? flash : worst, flash};
 }
 
 template <typename Count> Count counted(std::size_t count)

@@ -29,8 +29,8 @@ struct TimedAccess {
 };
 
 /* Where code lies, as far as its cost goes: in the memory that is meant for it, in flash although
-   another is, or elsewhere. */
-enum class CodePlace : std::uint8_t { as_wanted, flash, elsewhere };
+   another is, the same but meant to, with what it calls, or elsewhere. */
+enum class CodePlace : std::uint8_t { as_wanted, flash, flash_by_intent, elsewhere };
 
 /* One line of the host's cache: this is looked up at every block. */
 struct alignas(64) BlockCost {

@@ -13,10 +13,10 @@ namespace
 {
 
 /* Of the image with the reference wiring: hal/stm32g474/pin_maps/nucleo_g474re.h, board.h. */
-constexpr double period_s = 1e-4, dead_time_s = 1e-6;
+constexpr double period_s = 1e-4, dead_time_s = 1e-6, leg_delay_s = 20e-9;
 constexpr int half_period_counts = 8500;
 constexpr double current_A_per_code = 12.0 / 4096, bus_V_per_code = 31.2 / 4096;
-constexpr double phase_voltage_V_per_code = 62.4 / 4096;
+constexpr double phase_voltage_V_per_code = 62.4 / 4096, current_offset_codes = 1;
 
 [[noreturn]] void refuse(const char *key, const std::string &given, const std::string &image)
 {
@@ -46,8 +46,11 @@ hal_facts facts_of(const plant::Config &config)
     facts.control_period_s = period_s;
     facts.pwm_half_period_counts = half_period_counts;
     facts.dead_time_s = dead_time_s;
+    facts.leg_delay_s = leg_delay_s;
+    facts.converter_codes = 4096;
     facts.current_A_per_code = current_A_per_code;
     facts.current_zero_code = 2048;
+    facts.current_offset_codes = current_offset_codes;
     facts.bus_V_per_code = bus_V_per_code;
     facts.phase_voltage_V_per_code = phase_voltage_V_per_code;
     facts.has_phase_voltages = true;

@@ -80,6 +80,8 @@ DriveMemory::DriveMemory(Machine &machine, const ImageMap &map)
     estimator_ = whole("drive.params.estimator.kind");
     teeth_ = whole("drive.settings.motor.rotor_teeth");
     underruns_ = whole("drive.planner.underruns");
+    dropped_ = whole("drive.commands.dropped");
+    dropped_kind_ = whole("drive.commands.dropped_kind");
     reference_turns_ = whole("drive.reference.now.position.turns");
     reference_fraction_ = whole("drive.reference.now.position.fraction");
     reference_speed_ = num("drive.reference.now.speed");
@@ -145,6 +147,8 @@ drive_signals DriveMemory::signals() const
     signals.resistance_est_ohm = x.resistance.number() * base_resistance_.number();
     signals.bus_V = bus_.number() * voltage_V;
     signals.reference_underruns = static_cast<std::uint32_t>(underruns_.bits());
+    signals.commands_dropped = static_cast<std::uint32_t>(dropped_.bits());
+    signals.dropped_kind = static_cast<drive_command_kind>(dropped_kind_.bits());
     return signals;
 }
 

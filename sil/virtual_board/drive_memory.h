@@ -46,7 +46,8 @@ class DriveMemory
     double angle_rad(const Place &turns, const Place &fraction) const;
 
     Place gains_, high_counts_[4], bridge_on_;
-    Place state_, fault_, synchronism_, period_, bus_, holding_, estimator_, teeth_, underruns_;
+    Place state_, fault_, synchronism_, period_, bus_, holding_, estimator_, teeth_, underruns_,
+        dropped_, dropped_kind_;
     Place reference_turns_, reference_fraction_, reference_speed_, reference_moving_;
     Place current_d_, current_q_, current_reference_d_, current_reference_q_, voltage_d_,
         voltage_q_;

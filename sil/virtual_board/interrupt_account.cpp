@@ -59,6 +59,8 @@ void InterruptAccount::set_stages(const std::vector<std::string> &names)
 void InterruptAccount::begin()
 {
     present_.assign(present_.size(), Cycles());
+    outside_now_ = 0;
+    excused_ = false;
 }
 
 void InterruptAccount::end()
@@ -69,6 +71,7 @@ void InterruptAccount::end()
         total += present_[i];
     }
     total_.add(total);
+    outside_fast_code_ += excused_ ? 0 : outside_now_;
     ++interrupts_;
 }
 

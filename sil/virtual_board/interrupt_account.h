@@ -57,7 +57,12 @@ class InterruptAccount
     }
     void count_outside_fast_code()
     {
-        ++outside_fast_code_;
+        ++outside_now_;
+    }
+    /* What the present interrupt executes may lie in slower memory. */
+    void excuse_place()
+    {
+        excused_ = true;
     }
     void latency(std::uint64_t cycles)
     {
@@ -90,7 +95,8 @@ class InterruptAccount
     std::vector<Column> stages_;
     Distribution latency_;
     std::uint64_t interrupts_ = 0, preemptions_ = 0, preempting_cycles_ = 0;
-    std::uint64_t outside_fast_code_ = 0;
+    std::uint64_t outside_fast_code_ = 0, outside_now_ = 0;
+    bool excused_ = false;
 };
 
 } // namespace virtual_board

@@ -101,7 +101,9 @@ inline void Machine::charge_control(const BlockCost &block, bool straight, bool 
         }
     }
     control_instructions_ += block.instructions;
-    if (block.place != CodePlace::as_wanted) {
+    if (block.place == CodePlace::flash_by_intent) {
+        account_.excuse_place();
+    } else if (block.place != CodePlace::as_wanted) {
         account_.count_outside_fast_code();
     }
 }
@@ -240,6 +242,9 @@ CodePlace Machine::place_of(std::uint32_t address) const
     const AddressRange &fast = description_.fast_code;
     if (fast.bytes == 0 || fast.contains(address)) {
         return CodePlace::as_wanted;
+    }
+    if (enabling_ == address) {
+        return CodePlace::flash_by_intent;
     }
     return description_.flash.contains(address) ? CodePlace::flash : CodePlace::elsewhere;
 }

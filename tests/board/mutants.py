@@ -151,6 +151,14 @@ MUTANTS = [
         "the flash outside of the parameter store",
     ),
     Mutant(
+        "the running program keeps the debugger out",
+        "clock.c",
+        "FLASH_ACR_DBG_SWEN | ",
+        "",
+        MOVE,
+        "DBG_SWEN cleared",
+    ),
+    Mutant(
         "a halt leaves the bridge closed",
         "pwm.c",
         "    DBGMCU->apb2fzr |= DBGMCU_APB2FZR_TIM1;\n",

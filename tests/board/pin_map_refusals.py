@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""What the compiler must refuse of a pin map of the STM32G474, and with which text.
+"""What the compiler must refuse of a pin map of the STM32G474, and of a motor on it, and with which
+text.
 
-usage: pin_map_refusals.py COMPILER ROOT CMSIS   exit 1 and one line for each map that passes, or
-                                                 is refused with another text
+usage: pin_map_refusals.py COMPILER ROOT CMSIS   exit 1 and one line for each that passes, or is
+                                                 refused with another text
 """
 
 import re
@@ -45,8 +46,17 @@ REFUSED = [
     (GATES, "BAUD", "300", "must be 9600...3000000"),
 ]
 
+# what becomes of the pin map's definition, and the motor it is then too small for
+MOTORS = [
+    ("BUS_V_PER_CODE", "(31.2 / 4096.0)", "bendjedia-2012", ""),
+    ("BUS_V_PER_CODE", "(31.2 / 4096.0)", "bendjedia-2012-48V", "1.29 x supply_V = 48.0"),
+    ("BUS_V_PER_CODE", "(62.4 / 4096.0)", "bendjedia-2012-48V", ""),
+    ("CURRENT_A_PER_CODE", "(7.52 / 4096.0)", "bendjedia-2012", ""),
+    ("CURRENT_A_PER_CODE", "(7.50 / 4096.0)", "bendjedia-2012", "rated_current_A = 3.0"),
+]
 
-def words(compiler, root, cmsis, pin_map):
+
+def words(compiler, root, cmsis, pin_map, sources=("pin_map_check.c", "pins.c")):
     """What the compiler says of a pin map; "" if nothing."""
     device, faults = (f'"{PORT}/{name}.h"' for name in ("device", "faults"))
     command = [compiler, *FLAGS, f"-I{root}", f"-isystem{cmsis}"]
@@ -57,7 +67,7 @@ def words(compiler, root, cmsis, pin_map):
         subprocess.run(
             [*command, str(root / PORT / name)], capture_output=True, text=True, check=False
         )
-        for name in ("pin_map_check.c", "pins.c")
+        for name in sources
     ]
     return "".join(one.stderr for one in found if one.returncode)
 
@@ -66,6 +76,23 @@ def changed(text, name, value):
     if re.fullmatch(r"\w+", name):
         return re.subn(rf"(?m)^(#define {name}) +\S+$", rf"\1 {value}", text)
     return text.replace(name, value, 1), text.count(name)
+
+
+def motors(compiler, root, cmsis, scratch):
+    """Yields a line for each motor that is not judged as expected."""
+    source = (root / PORT / "pin_maps" / f"{GATES}.h").read_text(encoding="utf-8")
+    trial, image = scratch / "trial.h", scratch / "image.c"
+    for name, value, motor, expected in MOTORS:
+        text, count = re.subn(rf"(?m)^(#define {name}) +\(.*\)$", rf"\1 {value}", source)
+        trial.write_text(text, encoding="utf-8")
+        told = {"root": root, "motor": root / f"sil/motors/{motor}.toml", "version": "0", "board": "stm32g474"}
+        told |= {"pin-map": trial, "numeric": "float", "flags": ""}
+        words_of = [word for key, what in told.items() for word in (f"--{key}", str(what))]
+        subprocess.run([sys.executable, root / "tools/board_image.py", *words_of, image], check=True)
+        said = words(compiler, root, cmsis, trial, [image])
+        refused = f"STEADYSTEP_MOTOR {motor}: " in said
+        if count != 1 or refused != bool(expected) or expected not in said or (said and not refused):
+            yield f"{motor}, {name} {value}: expected '{expected}'\n{said or 'compiles'}"
 
 
 def main(arguments):
@@ -87,7 +114,11 @@ def main(arguments):
             if count != 1 or "pin map: " not in said or expected not in said:
                 print(f"{pin_map}: {name} -> {value}: expected '{expected}'\n{said or 'compiles'}")
                 wrong += 1
-    print(f"{len(REFUSED) + 2 - wrong} of {len(REFUSED) + 2} as expected")
+        for line in motors(compiler, root, cmsis, Path(scratch)):
+            print(line)
+            wrong += 1
+    cases = len(REFUSED) + len(MOTORS) + 2
+    print(f"{cases - wrong} of {cases} as expected")
     return 1 if wrong else 0
 
 

@@ -11,6 +11,8 @@ add_test(NAME board.registers-self-test
 add_test(NAME board.leg-voltage
   COMMAND ${Python3_EXECUTABLE} ${board_tests}/leg_voltage_g071.py
           ${STEADYSTEP_HOST_CC} ${PROJECT_SOURCE_DIR})
+add_test(NAME board.flash-targets
+  COMMAND ${board_tests}/flash_targets.py ${PROJECT_BINARY_DIR})
 add_test(NAME board.stack
   COMMAND ${PROJECT_SOURCE_DIR}/tools/stack_bound $<TARGET_FILE:steadystep>)
 
@@ -27,6 +29,7 @@ add_test(NAME board.run
 add_test(NAME board.disturbances
   COMMAND ${host_build}/tests/stm32g071_disturbances $<TARGET_FILE:steadystep>)
 set_tests_properties(
-  board.registers board.registers-self-test board.leg-voltage board.stack board.run
+  board.registers board.registers-self-test board.leg-voltage board.flash-targets
+  board.stack board.run
   board.disturbances
   PROPERTIES LABELS board TIMEOUT 120)

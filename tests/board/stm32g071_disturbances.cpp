@@ -98,7 +98,7 @@ void converter_stops(const ElfImage &image)
 {
     Powered run(image);
     run.run_for(600 * ms);
-    const std::string ready = run.type("enable\n", 250 * ms);
+    const std::string ready = run.type("enable\n", 350 * ms);
     expect(count(ready, "ready:") == 1 && run.board.bridge_on(), "the drive holds the motor");
 
     /* Behind a control interrupt that has ended. */
@@ -167,7 +167,7 @@ void flash_is_written(const ElfImage &image)
     Powered run(image);
     run.run_for(600 * ms);
     expect(count(run.type("save\n", 300 * ms), "ok save") == 1, "save is obeyed, bridge open");
-    expect(count(run.type("enable\n", 250 * ms), "ready:") == 1 && run.board.bridge_on(),
+    expect(count(run.type("enable\n", 350 * ms), "ready:") == 1 && run.board.bridge_on(),
            "the bridge closes behind it");
     const std::string refused = run.type("save\n", 300 * ms);
     expect(count(refused, "error: ") == 1 && run.board.bridge_on(),
@@ -204,7 +204,7 @@ void program_leaves_memory(const ElfImage &image)
 {
     Powered run(image);
     run.run_for(600 * ms);
-    (void)run.type("enable\n", 250 * ms);
+    (void)run.type("enable\n", 350 * ms);
     const std::uint32_t vectors = *image.symbol("interrupt_code_start");
     const std::uint8_t nowhere[4] = {1, 0, 0, 0x30};
     std::copy(nowhere, nowhere + 4, run.machine.memory(vectors + 4 * pend_sv, 4));

@@ -19,7 +19,7 @@ namespace stm32g474_bench
 using namespace virtual_board;
 
 constexpr Ticks us = ticks_per_s / 1000000, ms = 1000 * us;
-constexpr Ticks enable_time = 250 * ms;
+constexpr Ticks enable_time = 350 * ms;
 
 /* sil/motors/bendjedia-2012.toml, the default motor of the image. */
 inline Stm32g474Config board_config()
@@ -163,9 +163,9 @@ class Powered
         return text + output();
     }
     /* Enables; whether the drive is ready then. */
-    bool enable()
+    bool enable(Ticks within = enable_time)
     {
-        return count(type("enable\n", enable_time), "ready:") == 1 && bridge_on();
+        return count(type("enable\n", within), "ready:") == 1 && bridge_on();
     }
 
     ElfImage elf;

@@ -92,6 +92,7 @@ namespace
 {
 
 constexpr int counts_per_turn = 4000;
+constexpr Ticks alignment_time = 6000 * ms; /* of an encoder, with the reference motor */
 
 /* Stored: feedback by an encoder, whose counts per turn are the build's to tell. */
 void ask_for_encoder(std::vector<std::uint8_t> &flash)
@@ -124,7 +125,7 @@ void encoder_counts(Expectations &expectations, const std::string &image)
     Powered run(image, config, ask_for_encoder);
     expectations.expect(count(run.start(), "settings: stored") == 1,
                         "with an encoder settings that ask for one are in force");
-    expectations.expect(run.enable(), "the drive holds the motor");
+    expectations.expect(run.enable(alignment_time), "the drive holds the motor");
     const double before = run.device.power_stage().plant().state().theta_rad;
     expectations.expect(count(run.type("move 3\n", 500 * ms), "ok move") == 1, "and moves it");
     const double moved = run.device.power_stage().plant().state().theta_rad - before;

@@ -27,7 +27,7 @@ class Table(unittest.TestCase):
         for figure in rows["0.5 µs", "1 A"] + rows["0.3 µs", "0 A"]:
             self.assertLess(figure, 15.0)
         without, held = rows["1 µs", "0 A"], rows["1 µs", "1 A"]
-        self.assertIsNone(without[1])
+        self.assertTrue(without[1] is None or without[1] > 25.0)
         self.assertLess(held[0], 70.0)
         self.assertLess(held[-1], 1.5)
 

@@ -5,9 +5,11 @@ usage: test_envelope.py PROGRAM ROOT
 import importlib.util
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
+import tomllib
 import unittest
 
 PROGRAM, ROOT = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
@@ -75,6 +77,7 @@ class Points(unittest.TestCase):
         with tempfile.TemporaryDirectory() as scratch:
             file = pathlib.Path(scratch, "point.toml")
             file.write_text(text, encoding="utf-8")
+            shutil.copy(HOME.file, scratch)
             (run,) = simulator.Simulator(PROGRAM).run([file], out=scratch)
             head, *rows = pathlib.Path(scratch, "point/trace.csv").read_text().splitlines()
         column = {name: i for i, name in enumerate(head.split(","))}
@@ -84,6 +87,14 @@ class Points(unittest.TestCase):
         self.assertAlmostEqual(before[column["omega_rad_s"]], 20.0, delta=0.3)
         self.assertAlmostEqual(rows[0][column["resistance_ohm"]], 0.7 * 0.37)
         self.assertEqual(run["metrics"]["all"]["fault"], "none")
+
+
+    def test_a_point_of_no_speed_rests_and_then_bears_the_load(self):
+        text = points.scenario_of(points.Point(points.PANELS[0], 0.0, 0.3, 0.1413), HOME, "bench")
+        (load,) = tomllib.loads(text)["event"]
+        self.assertEqual(load, {"time_s": points.AT_REST_s, "load_torque_Nm": 0.1413})
+        self.assertIn(0.0, points.speeds_of(HOME, quick=False))
+        self.assertIn(0.0, points.speeds_of(HOME, quick=True))
 
 
 class Program(unittest.TestCase):
@@ -100,12 +111,13 @@ class Program(unittest.TestCase):
             self.assertEqual(first.returncode, 0, first.stderr)
             whole = table.read_text(encoding="utf-8")
             rows = json.loads(whole)["rows"]
-            self.assertEqual([row["outcome"] for row in rows], ["locked"] * 9)
-            self.assertLess(max(row["error_deg"] for row in rows), 15)
+            self.assertEqual([row["outcome"] for row in rows], ["locked"] * 12)
+            self.assertLess(max(row["error_deg"] for row in rows if row["speed_rad_s"]), 15)
+            self.assertLess(max(row["error_deg"] for row in rows), 20)
             lines = journal.read_text(encoding="utf-8").splitlines()
             journal.write_text("\n".join(lines[:5]) + '\n{"key": "ab', encoding="utf-8")
             second = self.call(scratch, "--jobs", "1")
-            self.assertIn("5 of 9 points", second.stderr)
+            self.assertIn("5 of 12 points", second.stderr)
             self.assertEqual(table.read_text(encoding="utf-8"), whole)
             if importlib.util.find_spec("matplotlib"):
                 picture = pathlib.Path(scratch, "envelope.png").read_bytes()

@@ -111,13 +111,13 @@ invariant_ekf_gains motion_design(const motor_params &motor, double period = per
     return gains;
 }
 
-invariant_ekf_gains hold_design(const motor_params &motor, double current_A,
-                                invariant_ekf_hold tuning, double period = period_s)
+invariant_ekf_hold_gains hold_design(const motor_params &motor, double current_A,
+                                     double period = period_s)
 {
-    invariant_ekf_gains gains{};
+    invariant_ekf_hold_gains gains{};
     char error[DESIGN_ERROR_TEXT] = "";
-    TEST_ASSERT_TRUE_MESSAGE(
-        invariant_ekf_hold_design(&motor, period, current_A, tuning, &gains, error), error);
+    TEST_ASSERT_TRUE_MESSAGE(invariant_ekf_hold_design(&motor, period, current_A, &gains, error),
+                             error);
     return gains;
 }
 
@@ -126,13 +126,12 @@ void assert_relative(double tolerance, double expected, double actual, const cha
     TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(tolerance * std::abs(expected), expected, actual, name);
 }
 
-/* Spectral radius of one period of the estimation error: correct with the kept gains, predict. */
-double spectral_radius(const motor_params &motor, const invariant_ekf_gains &k, OperatingPoint at,
-                       int states, double period = period_s)
+/* The kept gains. */
+MatrixXd correction(const invariant_ekf_gains &k, double speed_rad_s)
 {
     /* The drive corrects the phase currents, so both axes share the mean of the two gains. */
     const double k_current = 0.5 * (k.k_current_d + k.k_current_q);
-    const double direction = std::clamp(at.speed_rad_s / k.angle_d_full_speed_rad_s, -1.0, 1.0);
+    const double direction = std::clamp(speed_rad_s / k.angle_d_full_speed_rad_s, -1.0, 1.0);
     MatrixXd correction = MatrixXd::Identity(STATES, STATES);
     correction(I_D, I_D) -= k_current;
     correction(I_Q, I_Q) -= k_current;
@@ -142,9 +141,18 @@ double spectral_radius(const motor_params &motor, const invariant_ekf_gains &k, 
     correction(LOAD, I_Q) -= k.k_load_q_Nm_A;
     correction(BIAS_Q, I_D) -= k.k_bias_d_V_A * direction;
     correction(BIAS_Q, I_Q) -= k.k_bias_q_V_A;
-    correction.row(LOAD) *= 1.0 - k.load_return;
-    const MatrixXd step =
-        transition(motor, at, states, period) * correction.topLeftCorner(states, states);
+    correction(LOAD, LOAD) -= k.load_return;
+    correction(ANGLE, LOAD) += k.angle_return_rad_Nm;
+    correction(BIAS_Q, LOAD) -= k.bias_return_V_Nm;
+    return correction;
+}
+
+/* Spectral radius of one period of the estimation error: correct, predict. */
+double spectral_radius(const motor_params &motor, const invariant_ekf_gains &k, OperatingPoint at,
+                       int states, double period = period_s)
+{
+    const MatrixXd step = transition(motor, at, states, period) *
+                          correction(k, at.speed_rad_s).topLeftCorner(states, states);
     return reference::spectral_radius(step);
 }
 
@@ -174,20 +182,86 @@ void hold_gains_are_the_steady_kalman_gain_at_1_rad_s()
 {
     const motor_params motor = reference::bendjedia_2012();
     const double current_noise = std::pow(0.03 * period_s / motor.inductance_H, 2);
+    const invariant_ekf_hold_gains holds = hold_design(motor, 1.5);
     const struct {
-        invariant_ekf_hold tuning;
+        const invariant_ekf_gains &gains;
         double load_walk;
-    } holds[] = {{INVARIANT_EKF_HOLD_QUIET, 1e-6}, {INVARIANT_EKF_HOLD_FOLLOWING, 4e-6}};
-    for (const auto &hold : holds) {
+    } cases[] = {{holds.quiet, 1e-6}, {holds.following, 6.25e-6}};
+    for (const auto &[gains, load_walk] : cases) {
         VectorXd q(5);
-        q << current_noise, current_noise, 1e-6, 1e-12, hold.load_walk;
+        q << current_noise, current_noise, 1e-6, 1e-12, load_walk;
         const MatrixXd k = kalman_gain(transition(motor, {1.0, 1.5}, 5), q, 9.7e-6, 32768);
-        const invariant_ekf_gains gains = hold_design(motor, 1.5, hold.tuning);
         assert_relative(1e-5, k(I_D, 0), gains.k_current_d, "i_d");
         assert_relative(1e-5, k(I_Q, 1), gains.k_current_q, "i_q");
         assert_relative(1e-5, k(SPEED, 1), gains.k_speed_q_rad_As, "w");
-        assert_relative(1e-5, k(ANGLE, 1), gains.k_angle_q_rad_A, "theta");
         assert_relative(1e-5, k(LOAD, 1), gains.k_load_q_Nm_A, "T_L");
+    }
+}
+
+/* What an error becomes in hold in so many periods, and the sum of its innovations' size. */
+struct Course {
+    VectorXd error;
+    double innovations;
+};
+
+Course course(const motor_params &motor, const invariant_ekf_gains &k, double current_A,
+              VectorXd error, int periods)
+{
+    const MatrixXd correct = correction(k, 0.0);
+    const MatrixXd predict = transition(motor, {0.0, current_A}, STATES);
+    double innovations = 0.0;
+    for (int i = 0; i < periods; i++) {
+        innovations += std::abs(error(I_Q));
+        error = (predict * correct * error).eval();
+    }
+    return {error, innovations};
+}
+
+/* The angle follows the flux: a load step leaves neither load nor displacement behind. */
+void a_load_step_leaves_nothing_behind()
+{
+    for (const motor_params &motor : reference::motors()) {
+        const double current = 0.5 * motor.rated_current_A;
+        const invariant_ekf_gains gains = hold_design(motor, current).following;
+        const double stiffness = motor.rotor_teeth * motor.torque_constant_Nm_A * current;
+        const VectorXd error =
+            course(motor, gains, current, VectorXd::Unit(STATES, LOAD), 5000).error;
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, error(LOAD));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, error(ANGLE) * stiffness);
+    }
+}
+
+/* What load and displacement have wrong together, in balance, shows in no current; the quiet hold
+   takes it back all the same, and still shows none. */
+void the_quiet_hold_returns_without_an_innovation()
+{
+    for (const motor_params &motor : reference::motors()) {
+        const double current = 0.5 * motor.rated_current_A;
+        invariant_ekf_gains gains = hold_design(motor, current).quiet;
+        const double stiffness = motor.rotor_teeth * motor.torque_constant_Nm_A * current;
+        gains.bias_return_V_Nm = 0.0;
+        VectorXd error = VectorXd::Zero(STATES);
+        error(LOAD) = 1.0;
+        error(ANGLE) = -1.0 / stiffness;
+        const Course quiet = course(motor, gains, current, error, 100);
+        const double w_h = std::sqrt(stiffness / motor.inertia_kgm2);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, std::exp(-100 * period_s * w_h / 3.0), quiet.error(LOAD));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.0, quiet.innovations / motor.rated_current_A);
+    }
+}
+
+/* The slower of the two modes of return and offset has 7 times the time of the return. */
+void a_quiet_hold_finds_an_offset_while_the_rotor_could_swing_fifteen_times()
+{
+    for (const motor_params &motor : reference::motors()) {
+        const double current = 0.5 * motor.rated_current_A;
+        const invariant_ekf_gains gains = hold_design(motor, current).quiet;
+        const double w_h = std::sqrt(motor.rotor_teeth * motor.torque_constant_Nm_A * current /
+                                     motor.inertia_kgm2);
+        const int periods = static_cast<int>(15 * 2 * M_PI / w_h / period_s);
+        const VectorXd error =
+            course(motor, gains, current, VectorXd::Unit(STATES, BIAS_Q), periods).error;
+        TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.0, error(BIAS_Q));
     }
 }
 
@@ -270,23 +344,24 @@ void angle_gain_without_its_sign_loses_one_direction()
  * offset of the voltage is constant in a held frame, so it is one of the errors at rest, where the
  * quiet hold learns it; a rotor that swings about the frame does not turn it. At a lasting speed,
  * which a held rotor has not, the quiet hold's return to its load may feed the angle error, with
- * 0.2 1/s.
+ * 0.2 1/s, and with 0.6 1/s where a stiff hold returns within 10 ms: at 1 rad/s such a rotor has
+ * left its quarter turn after 31 ms, and the error has grown by 2 %.
  */
 void no_error_grows_in_hold()
 {
     for (const motor_params &motor : reference::motors()) {
         for (const double period : {50e-6, 100e-6, 200e-6}) {
-            for (const auto tuning : {INVARIANT_EKF_HOLD_QUIET, INVARIANT_EKF_HOLD_FOLLOWING}) {
-                const double current = 0.5 * motor.rated_current_A;
-                const invariant_ekf_gains gains = hold_design(motor, current, tuning, period);
+            const double current = 0.5 * motor.rated_current_A;
+            const invariant_ekf_hold_gains hold = hold_design(motor, current, period);
+            for (const invariant_ekf_gains &gains : {hold.quiet, hold.following}) {
                 for (const double speed : {-5.0, -1.0, 0.0, 1.0, 5.0}) {
                     for (const double part : {0.1, 0.5, 1.0}) { /* of the current, ramping in */
                         const OperatingPoint at{speed, part * current};
-                        const bool offset = speed == 0.0 && tuning == INVARIANT_EKF_HOLD_QUIET;
+                        const bool offset = speed == 0.0 && gains.load_return > 0.0;
                         const int states = offset ? STATES : LOAD + 1;
                         const bool turns = speed != 0.0 && gains.load_return > 0.0;
                         const double radius = spectral_radius(motor, gains, at, states, period);
-                        TEST_ASSERT_TRUE(turns ? decay(radius, period) > -0.25
+                        TEST_ASSERT_TRUE(turns ? decay(radius, period) > -0.6
                                                : radius < 1.0 + 1e-6);
                     }
                 }
@@ -322,13 +397,19 @@ void assert_same_gains(const motor_params &motor, const motor_params &other, dou
 
     const double resistance_ratio = voltage_ratio / current_ratio;
     assert_relative(1e-9, a.k_bias_d_V_A, b.k_bias_d_V_A / resistance_ratio, "b");
-    for (const auto tuning : {INVARIANT_EKF_HOLD_QUIET, INVARIANT_EKF_HOLD_FOLLOWING}) {
-        const invariant_ekf_gains c = hold_design(motor, 1.5, tuning);
-        const invariant_ekf_gains d = hold_design(other, 1.5 * current_ratio, tuning);
+    const invariant_ekf_hold_gains hold = hold_design(motor, 1.5);
+    const invariant_ekf_hold_gains other_hold = hold_design(other, 1.5 * current_ratio);
+    for (const auto kind : {&invariant_ekf_hold_gains::quiet, &invariant_ekf_hold_gains::following,
+                            &invariant_ekf_hold_gains::unloaded}) {
+        const invariant_ekf_gains c = hold.*kind;
+        const invariant_ekf_gains d = other_hold.*kind;
         assert_relative(1e-5, c.k_current_d, d.k_current_d, "i_d, hold");
         assert_relative(1e-5, c.k_load_q_Nm_A, d.k_load_q_Nm_A * current_ratio / torque_ratio,
                         "T_L, hold");
+        assert_relative(1e-5, c.k_angle_q_rad_A, d.k_angle_q_rad_A * current_ratio, "theta, hold");
         assert_relative(1e-5, c.k_bias_q_V_A, d.k_bias_q_V_A / resistance_ratio, "b");
+        assert_relative(1e-5, c.bias_return_V_Nm, d.bias_return_V_Nm * torque_ratio / voltage_ratio,
+                        "return of b");
         assert_relative(1e-5, c.k_resistance_ohm_A2,
                         d.k_resistance_ohm_A2 * current_ratio * current_ratio / resistance_ratio,
                         "R");
@@ -374,6 +455,9 @@ int main()
     UNITY_BEGIN();
     RUN_TEST(motion_gains_are_the_steady_kalman_gain_at_5_rad_s);
     RUN_TEST(hold_gains_are_the_steady_kalman_gain_at_1_rad_s);
+    RUN_TEST(a_load_step_leaves_nothing_behind);
+    RUN_TEST(the_quiet_hold_returns_without_an_innovation);
+    RUN_TEST(a_quiet_hold_finds_an_offset_while_the_rotor_could_swing_fifteen_times);
     RUN_TEST(estimation_error_decays_at_every_speed_and_current_of_every_motor);
     RUN_TEST(estimation_error_of_the_reference_motor_decays_in_six_milliseconds);
     RUN_TEST(a_voltage_offset_is_found_at_every_speed_and_current_of_every_motor);

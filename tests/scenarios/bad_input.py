@@ -1,8 +1,10 @@
 """Bad input: one clear line that names file, line and key, exit code 2, and nothing written."""
 import os
 import pathlib
+import resource
+import subprocess
 
-from program import ROOT, SMALL, Checks, run, scratch
+from program import ROOT, SIL, SMALL, Checks, run, scratch
 
 CHECKS = Checks()
 MOTOR = (ROOT / "sil/motors/bendjedia-2012.toml").read_text(encoding="utf-8")
@@ -56,6 +58,11 @@ SCENARIOS = [
     ("duration zero", replaced("duration_s = 0.05", "duration_s = 0"), 3, ["duration_s"]),
     ("a setting that the drive refuses",
      replaced("hold_on_enable = false", "hold_current_A = 30.0"), 6, ["hold_current_A", "30"]),
+    ("a trip that the board cannot see",
+     replaced("hold_on_enable = false", "overcurrent_trip_A = 6.5"), 6,
+     ["overcurrent_trip_A 6.5 A: must be at most 5.994 A, the board measures"]),
+    ("a move that the back-EMF forbids", replaced("position_rad = 0.05", "position_rad = 3.0"), None,
+     ["cruise speed", "where the back-EMF takes up the supply"]),
     ("unknown motor", replaced("bendjedia-2012", "bendjedia-2013"), 2,
      ["unknown motor", "did you mean bendjedia-2012?"]),
     ("no motor", replaced('motor = "bendjedia-2012"\n', ""), None, ["motor: is missing"]),
@@ -123,6 +130,14 @@ SCENARIOS = [
      ["parameters", "expected a text"]),
     ("unknown base", 'base = "bendjedia-fig100"\n' + SMALL, 1,
      ["base", "did you mean bendjedia-fig10"]),
+    ("value without an end", replaced("duration_s = 0.05", "duration_s = [}"), 3,
+     ["not valid TOML"]),
+    ("brackets that close nothing", SMALL + "[[[\n", 21, ["not valid TOML"]),
+    ("table without a bottom", SMALL + "[" + "a." * 50000 + "a]\n", 21,
+     ["not valid TOML", "more than 16 parts"]),
+    ("arrays without a bottom", replaced("duration_s = 0.05", "duration_s = " + "[" * 50000), 3,
+     ["not valid TOML"]),
+    ("a line feed in a key", replaced("duration_s = 0.05", '"a\\nb" = 1'), None, ["duration_s"]),
     ("base of itself", 'base = "./scenario.toml"\n' + SMALL, 1, ["base", "itself"]),
 ]
 
@@ -168,6 +183,8 @@ ARGUMENTS = [
     ("wrong type", ["--set", "plant.resistance_scale=much"], ["resistance_scale", '"much"']),
     ("NaN", ["--set", "plant.bus_V=nan"], ["--set plant.bus_V=nan", "got nan"]),
     ("unknown key", ["--set", "drive.lay=pid"], ["drive.lay", "did you mean law?"]),
+    ("a divider too small for the supply", ["--set", "plant.bus_range_V=30"],
+     ["bendjedia-2012.toml:", "supply_V 24 V: must be at most 23.24 V, over-voltage"]),
     ("unknown law", ["--set", "drive.law=lqr"], ["--set drive.law=lqr", "state-feedback, pid"]),
     ("below a value", ["--set", "duration_s.x=1"], ["duration_s", "no keys"]),
     ("unknown motor", ["--set", "motor=kim-2017"], ["unknown motor", "kim-2016"]),
@@ -179,6 +196,14 @@ ARGUMENTS = [
      ["did you mean bendjedia-2012/pid?"]),
     ("unknown format", ["--numeric", "half"], ["--numeric", "half"]),
     ("negative seed", ["--seed", "-1"], ["--seed"]),
+    ("a seed beyond 64 bits", ["--seed", "99999999999999999999"],
+     ["--seed 99999999999999999999", "0...9223372036854775807"]),
+    ("a seed beyond 63 bits", ["--seed", "9223372036854775808"], ["0...9223372036854775807"]),
+    ("half a seed", ["--seed", "1.5"], ["--seed 1.5"]),
+    ("no seed", ["--seed", ""], ["--seed"]),
+    ("no seeds", ["--seeds", ""], ["--seeds"]),
+    ("no parameter set", ["--parameters", ""], ["--parameters"]),
+    ("a key without a bottom", ["--set", "a." * 50000 + "a=1"], ["more than 16 parts"]),
     ("seeds backwards", ["--seeds", "4-1"], ["--seeds 4-1", "A-B"]),
     ("seeds of letters", ["--seeds", "a-b"], ["--seeds a-b"]),
     ("seed and seeds", ["--seed", "1", "--seeds", "1-4"], ["--seed"]),
@@ -257,6 +282,58 @@ def output_folder(folder):
         CHECKS.that(result.stdout == "", f"--out {place}: nothing has run: {result.stdout}")
 
 
+def nowhere_to_write(folder):
+    """A full device, a closed one, a file system without room, no name at all."""
+    (folder / "scenario.toml").write_text(SMALL, encoding="utf-8")
+    (folder / "sweep.toml").write_text(
+        'description = "one"\n[[row]]\nfigure = "a"\nparameter = "km_scale"\nscales = [1.0]\n'
+        'scenario = "./scenario.toml"\npaper = "none"\n', encoding="utf-8")
+    campaign = ["campaign", "long-run", "--duration", "0.2"]
+    for command in (["run", "scenario.toml"], ["run", "scenario.toml", "--json"], ["list"],
+                    ["sweep", "./sweep.toml"], campaign, [*campaign, "--json"], ["--help"],
+                    ["--version"]):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            result = subprocess.run([SIL, *command], stdout=full, stderr=subprocess.PIPE, text=True,
+                                    cwd=folder, check=False)
+        CHECKS.that(result.returncode == 2, f"{command} > /dev/full: {result.returncode}")
+        CHECKS.that(result.stderr == "steadystep-sil: standard output: cannot be written: "
+                    "No space left on device\n", f"{command} > /dev/full: {result.stderr}")
+    result = subprocess.run(f"'{SIL}' run scenario.toml --out closed >&-", shell=True, text=True,
+                            stderr=subprocess.PIPE, cwd=folder, check=False)
+    CHECKS.that(result.returncode == 2 and "standard output: is closed" in result.stderr,
+                f"closed: {result.returncode} {result.stderr}")
+    for command in (["run", "scenario.toml"], ["sweep", "./sweep.toml"], campaign):
+        result = run(*command, "--out", "", cwd=folder)
+        CHECKS.that(result.returncode == 2 and "--out" in result.stderr and result.stdout == "",
+                    f"{command} --out '': {result.returncode} {result.stderr}")
+        full = subprocess.run(
+            [SIL, *command, "--out", "small"], capture_output=True, text=True, cwd=folder,
+            check=False, restore_signals=False,  # it would end by SIGXFSZ
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100)))
+        CHECKS.that(full.returncode == 2 and "cannot be written" in full.stderr
+                    and len(full.stderr.splitlines()) == 1,
+                    f"{command} without room: {full.returncode} {full.stderr}")
+    result = run(*campaign, "--seed", "1", "--write-scenario", "", cwd=folder)
+    CHECKS.that(result.returncode == 2, f"--write-scenario '': {result.returncode}")
+    result = run("campaign", "long-run", "--duration", "nan", cwd=folder)
+    CHECKS.that(result.returncode == 2 and "--duration" in result.stderr,
+                f"--duration nan: {result.returncode} {result.stderr}")
+
+
+def many_bases(folder):
+    """Each is held in memory while the ones below it are read."""
+    for depth in (16, 400):
+        (folder / "0.toml").write_text(SMALL, encoding="utf-8")
+        for i in range(depth):
+            (folder / f"{i + 1}.toml").write_text(f'base = "./{i}.toml"\n', encoding="utf-8")
+        result = run("run", f"{depth}.toml", cwd=folder)
+        good = depth == 16
+        CHECKS.that(result.returncode == (0 if good else 2), f"{depth} bases: {result.returncode}")
+        CHECKS.that(("base: expected at most 16" in result.stderr) != good
+                    and len(result.stderr.splitlines()) == (0 if good else 1),
+                    f"{depth} bases: {result.stderr}")
+
+
 def good_input(folder):
     """What the cases above break works when it is whole."""
     (folder / "scenario.toml").write_text(SMALL, encoding="utf-8")
@@ -284,8 +361,8 @@ def broken_expectation(folder):
                 f"broken: named with its bound: {line}")
 
 
-for part in (scenario_files, motor_files, parameter_sets, arguments, output_folder, good_input,
-             broken_expectation):
+for part in (scenario_files, motor_files, parameter_sets, arguments, output_folder, nowhere_to_write,
+             many_bases, good_input, broken_expectation):
     with scratch() as name:
         part(pathlib.Path(name))
 CHECKS.end()

@@ -1,6 +1,12 @@
 """Fixed point loses nothing: over the envelope's scenarios the rms of the estimate error in fixed
 point is that in double, within 0.05 electrical degrees over eight seeds.
 
+start-under-load ends in a hold that has found its load in motion, to within 2 % of it; where in that
+range is chance, and eight seeds scatter by 0.1 degrees between the formats, float and double too. So
+it is judged over 64. standstill-load scatters likewise and is
+judged over 256: eight seeds scatter by 0.07 degrees between float and double, 64 by 0.005, and 95 %
+of its runs within a bound want more.
+
 Left out: the slips, whose error is what the rotor does behind a fault; resistance-drift and
 current-offset, where friction and detent turn the last bit of a hold into tenths of a degree. Eight
 seeds scatter there by 0.2 degrees between float and double, too; over 64 the fixed-point drive
@@ -36,9 +42,12 @@ ELECTRICAL_DEGREE_RAD = math.pi / 180 / 50
 MUST_DEG = 0.05
 
 
+SEEDS = {"long-run": "1-32", "low-speed": "1-64", "start-under-load": "1-64", "standstill-load": "1-256"}
+
+
 def rms_deg(scenario, numeric):
     """Over all seeds and times."""
-    answer = run("run", scenario, "--numeric", numeric, "--seeds", "1-8", "--jobs", "1", "--json")
+    answer = run("run", scenario, "--numeric", numeric, "--seeds", SEEDS.get(scenario, "1-8"), "--jobs", "1", "--json")
     CHECKS.that(answer.returncode == 0, f"{scenario} {numeric} holds: {answer.stderr}")
     rows = [one["metrics"]["all"]["estimate_error_rms_rad"] for one in json.loads(answer.stdout)]
     return math.sqrt(sum(row * row for row in rows) / len(rows)) / ELECTRICAL_DEGREE_RAD

@@ -113,6 +113,16 @@ def a_drive_that_does_not_get_ready_fails(folder):
     CHECKS.that("did not become ready" in (summary_of(folder)["failure"] or ""), "in the summary")
 
 
+def a_rotor_that_is_turned_while_it_is_enabled_fails(folder):
+    """3 rad/s: the currents of its back-EMF in the windings that stage 2 joins, on both bridges."""
+    for model in ("bench", "ideal"):
+        result = run_small(folder, SMALL, "--set", f"plant.model={model}", "--set",
+                           "drive.calibrate_offsets=true", "--set", "plant.initial_omega_rad_s=5",
+                           "--set", "plant.inertia_scale=100")
+        CHECKS.that("did not become ready" in result.stdout and "offset-range" in result.stdout,
+                    f"{model}: {result.stdout}")
+
+
 def base_and_set_change_only_what_they_name(folder):
     run_small(folder, SMALL)
     plain = summary_of(folder)
@@ -218,13 +228,29 @@ def a_sweep_shows_the_error_and_the_window_it_is_asked_for(folder):
     CHECKS.that(rows[0]["position_error_max_rad"] == expected, f"{rows[0]} has {expected}")
 
 
+def a_creep_that_the_sensing_hides_is_reported(folder):
+    """One code of +-100 A is 48.8 mA, over 0.37 ohm and 0.157 N m/A 0.115 rad/s."""
+    motion = ("[{time_s=0.0,command='velocity',speed_rad_s=SPEED,acceleration_rad_s2=50.0,"
+              "jerk_rad_s3=1e5}]")
+    for speed, blind in (("0.1", 0.11507), ("0.2", None)):
+        done = run_small(folder, SMALL, "--set", "plant.current_range_A=100", "--set",
+                         "event=" + motion.replace("SPEED", speed), "--set", "duration_s=0.2")
+        told = summary_of(folder)["blind_below_rad_s"]
+        CHECKS.that(told is None if blind is None else abs(told - blind) < 1e-4,
+                    f"{speed} rad/s: {told}")
+        CHECKS.that(("blind: +-100 A for a 3 A motor: creep below 0.12 rad/s is out of reach"
+                     in done.stdout) == (blind is not None), f"{speed} rad/s: {done.stdout}")
+
+
 for check in (files_are_complete, trace_is_complete, metrics_agree_with_the_trace,
               enabling_is_recorded_on_request, events_act_at_their_time,
-              a_drive_that_does_not_get_ready_fails, base_and_set_change_only_what_they_name,
+              a_drive_that_does_not_get_ready_fails,
+              a_rotor_that_is_turned_while_it_is_enabled_fails, base_and_set_change_only_what_they_name,
               parameter_sets_lie_under_the_scenario,
               reports_are_figures_without_a_bound, json_takes_the_place_of_the_report,
               every_tenth_period_is_recorded_on_request, sweep_writes_its_table,
-              a_sweep_shows_the_error_and_the_window_it_is_asked_for):
+              a_sweep_shows_the_error_and_the_window_it_is_asked_for,
+              a_creep_that_the_sensing_hides_is_reported):
     with scratch() as name:
         check(pathlib.Path(name))
 CHECKS.end()

@@ -13,8 +13,15 @@ set(recorders ${STEADYSTEP_NUMERICS})
 list(TRANSFORM recorders PREPEND tests/target/record_input_)
 host_build(host_recorder host_build PROGRAMS record_input BYPRODUCTS ${recorders})
 
+# As on the boards, what no replay counts is made small: the largest just fits the core's flash.
+set(made_small drive/board_limits drive/commands drive/default_settings drive/drive drive/drive_hash
+  drive/encoder_aligning drive/fault_reason drive/motion_request drive/parameter_store drive/settings
+  estimator/encoder_alignment)
+list(TRANSFORM made_small REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/firmware/\\1.c")
 add_custom_target(replays) # what tools/cycles counts
 foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
+  set_source_files_properties(${made_small}
+    TARGET_DIRECTORY firmware_${numeric} PROPERTIES COMPILE_OPTIONS -Os)
   add_library(firmware_image_${numeric} OBJECT ${PROJECT_SOURCE_DIR}/hal/sil/firmware_image.c)
   target_link_libraries(firmware_image_${numeric} PUBLIC firmware_${numeric})
   target_compile_definitions(firmware_image_${numeric} PRIVATE FIRMWARE_IMAGE_NUMERIC=${numeric})

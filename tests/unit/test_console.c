@@ -1,5 +1,6 @@
 #include "firmware/application/console.h"
 
+#include <stdio.h>
 #include <string.h>
 #include <unity.h>
 
@@ -49,8 +50,9 @@ static void test_it_announces_the_firmware_and_why_it_started(void)
     assert_begins(heard, "version, ");
     TEST_ASSERT_NOT_NULL(strstr(heard, " on bench; settings: given resistance_ohm=0.37 "));
     TEST_ASSERT_NOT_NULL(strstr(heard, "rotor_teeth=50"));
-    TEST_ASSERT_NOT_NULL(strstr(heard, "law=state-feedback feedback=sensorless; "
-                                       "started by: crash: hard fault at 0x08001234\n"));
+    TEST_ASSERT_NOT_NULL(strstr(
+        heard, "law=state-feedback feedback=sensorless "
+               "blind_below_rad_s=0.00690436; started by: crash: hard fault at 0x08001234\n"));
     application_background(&bench.application);
     TEST_ASSERT_EQUAL_STRING("", bench_heard());
 }
@@ -223,11 +225,33 @@ static void test_what_the_drive_would_drop_is_refused(void)
     bench_period();
     TEST_ASSERT_EQUAL_INT(DRIVE_FAULT, drive->state);
     (void)bench_heard();
-    answers("move 1", "error: move refused: the drive is fault, disable clears it\n");
+    answers("move 1", "error: move refused: the drive is in fault, disable clears it\n");
     answers("enable", "error: enable refused: fault overcurrent: a phase current beyond 5.4 A; ");
     answers("velocity 1 acceleration_rad_s2=1 jerk_rad_s3=1", "error: velocity refused: ");
     answers("disable", "ok disable at=");
     answers("enable", "ok enable at=");
+}
+
+static void test_commands_that_a_fault_keeps_from_acting_are_told(void)
+{
+    char line[60];
+
+    enable();
+    (void)snprintf(line, sizeof line, "move 1 at=%u", (unsigned)drive->period + 40u);
+    answers(line, "ok move at=");
+    (void)snprintf(line, sizeof line, "hold at=%u", (unsigned)drive->period + 42u);
+    answers(line, "ok hold at=");
+    bench.samples.current_a = 4000;
+    bench_period();
+    TEST_ASSERT_EQUAL_INT(DRIVE_FAULT, drive->state);
+    bench_periods(20);
+    (void)bench_heard();
+    bench_periods(40);
+    TEST_ASSERT_EQUAL_STRING(
+        "warning: 1 command dropped: accepted, but not possible when the time to act came\n"
+        "warning: 1 command dropped: accepted, but not possible when the time to act came\n",
+        bench_heard());
+    TEST_ASSERT_NOT_NULL(strstr(bench_ask("state"), " dropped=2 "));
 }
 
 static void test_a_disable_for_later_leaves_the_one_that_waits(void)
@@ -468,6 +492,7 @@ int main(void)
     RUN_TEST(test_set_points_are_a_stream);
     RUN_TEST(test_what_is_not_understood_is_refused_with_what_was_expected);
     RUN_TEST(test_what_the_drive_would_drop_is_refused);
+    RUN_TEST(test_commands_that_a_fault_keeps_from_acting_are_told);
     RUN_TEST(test_a_disable_for_later_leaves_the_one_that_waits);
     RUN_TEST(test_a_stop_for_later_leaves_the_one_that_waits);
     RUN_TEST(test_a_disable_for_later_counts_from_its_period_on);

@@ -10,12 +10,20 @@ static struct per_unit base;
 static struct current_control_params params;
 static struct current_control control;
 
-/* A winding in the rotor frame, per-unit, at a speed in rad/s; the voltage acts at once. */
+/* A winding in a frame that turns, per-unit, at speeds in rad/s; the voltage acts at once. */
 static struct {
     double d, q;
-    double speed_rad_s;
+    double speed_rad_s;       /* of the rotor */
+    double frame_speed_rad_s; /* the same, but in a hold */
     double resistance_ohm;
 } winding;
+
+/* The rotor, and the frame with it. */
+static void turn(double speed_rad_s)
+{
+    winding.speed_rad_s = speed_rad_s;
+    winding.frame_speed_rad_s = speed_rad_s;
+}
 
 void setUp(void)
 {
@@ -24,7 +32,7 @@ void setUp(void)
     current_control_reset(&control);
     winding.d = 0.0;
     winding.q = 0.0;
-    winding.speed_rad_s = 0.0;
+    turn(0.0);
     winding.resistance_ohm = bench_params.resistance_ohm;
 }
 
@@ -32,14 +40,14 @@ void tearDown(void)
 {
 }
 
-/* L di/dt = u - R i - j N w L i - j Km w by the midpoint rule, good to 1e-5 of a step. */
+/* L di/dt = u - R i - j N w_f L i - j Km w by the midpoint rule, good to 1e-5 of a step. */
 static void run_winding(struct dq voltage)
 {
     const int steps = 10;
     const double time_s = PERIOD_S / steps;
     const double rate = time_s * base.resistance_ohm / bench_params.inductance_H;
     const double decay = time_s * winding.resistance_ohm / bench_params.inductance_H;
-    const double rotation = 50.0 * winding.speed_rad_s * time_s;
+    const double rotation = 50.0 * winding.frame_speed_rad_s * time_s;
     const double drive_d = rate * num_to_double(voltage.d);
     const double drive_q =
         rate * (num_to_double(voltage.q) - winding.speed_rad_s / base.speed_rad_s);
@@ -57,10 +65,10 @@ static struct dq step(double d, double q)
 {
     const struct dq reference = {num_from_double(d), num_from_double(q)};
     const struct dq current = {num_from_double(winding.d), num_from_double(winding.q)};
+    const struct rotation speed = {num_from_double(winding.frame_speed_rad_s / base.speed_rad_s),
+                                   num_from_double(winding.speed_rad_s / base.speed_rad_s)};
 
-    return current_control_step(&control, &params, reference, current,
-                                num_from_double(winding.speed_rad_s / base.speed_rad_s),
-                                NUM(LIMIT));
+    return current_control_step(&control, &params, reference, current, speed, NUM(LIMIT));
 }
 
 static void run(double d, double q, int periods)
@@ -104,7 +112,7 @@ static void test_a_step_on_one_axis_leaves_the_other_alone(void)
 
     for (unsigned i = 0; i < 2u; i++) {
         setUp();
-        winding.speed_rad_s = speeds[i];
+        turn(speeds[i]);
         run(0.1, 0.0, 100);
         for (int k = 0; k < 50; k++) {
             run(0.1, 0.25, 1);
@@ -120,11 +128,23 @@ static void test_a_step_on_one_axis_leaves_the_other_alone(void)
 /* The back-EMF is fed forward: no current flows while the integrator would learn it. */
 static void test_at_speed_no_current_flows_unasked(void)
 {
-    winding.speed_rad_s = 60.0;
+    turn(60.0);
     for (int k = 0; k < 30; k++) {
         run(0.0, 0.0, 1);
         TEST_ASSERT_DOUBLE_WITHIN(1e-4, 0.0, winding.q);
         TEST_ASSERT_DOUBLE_WITHIN(1e-4, 0.0, winding.d);
+    }
+}
+
+/* A held rotor swings in a frame at rest: a q current along its speed would drive the swing. */
+static void test_in_a_frame_at_rest_a_turning_rotor_makes_no_current(void)
+{
+    run(0.25, 0.0, 1500);
+    winding.speed_rad_s = 10.0;
+    for (int k = 0; k < 30; k++) {
+        run(0.25, 0.0, 1);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-4, 0.0, winding.q);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.25, winding.d);
     }
 }
 
@@ -179,11 +199,11 @@ static void test_q_gets_the_rest_of_the_circle(void)
 /* The rotor too fast for the supply: the q current cannot be had. */
 static void test_the_integrator_does_not_wind_up_over_a_thousand_saturated_periods(void)
 {
-    winding.speed_rad_s = 200.0;
+    turn(200.0);
     run(0.0, 0.5, 1000);
     TEST_ASSERT_TRUE(winding.q < 0.0);
     TEST_ASSERT_DOUBLE_WITHIN(2.0, 0.0, num_to_double(control.integral.q));
-    winding.speed_rad_s = 20.0;
+    turn(20.0);
     run(0.0, 0.25, 60);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.25, winding.q);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.0, winding.d);
@@ -204,6 +224,7 @@ int main(void)
     RUN_TEST(test_a_step_does_not_overshoot);
     RUN_TEST(test_a_step_on_one_axis_leaves_the_other_alone);
     RUN_TEST(test_at_speed_no_current_flows_unasked);
+    RUN_TEST(test_in_a_frame_at_rest_a_turning_rotor_makes_no_current);
     RUN_TEST(test_a_wrong_resistance_leaves_no_error_at_rest);
     RUN_TEST(test_the_voltage_vector_never_exceeds_its_limit);
     RUN_TEST(test_within_the_limit_each_axis_gets_what_it_wants);

@@ -264,6 +264,7 @@ static void impossible_motors_are_refused_by_name(void)
     struct pid_gains pid;
     struct steady_state_ekf_gains paper;
     struct invariant_ekf_gains gains;
+    struct invariant_ekf_hold_gains hold;
 
     for (unsigned i = 0; i < sizeof fields / sizeof fields[0]; i++) {
         for (unsigned k = 0; k < sizeof bad / sizeof bad[0]; k++) {
@@ -275,8 +276,7 @@ static void impossible_motors_are_refused_by_name(void)
             TEST_ASSERT_FALSE(pid_design(&motor, period_s, 200.0, 1500.0, &pid, error));
             TEST_ASSERT_FALSE(steady_state_ekf_design(&motor, period_s, &paper, error));
             TEST_ASSERT_FALSE(invariant_ekf_motion_design(&motor, period_s, &gains, error));
-            TEST_ASSERT_FALSE(invariant_ekf_hold_design(&motor, period_s, 1.5,
-                                                        INVARIANT_EKF_HOLD_QUIET, &gains, error));
+            TEST_ASSERT_FALSE(invariant_ekf_hold_design(&motor, period_s, 1.5, &hold, error));
             *fields[i] = good;
         }
     }
@@ -306,10 +306,9 @@ static void a_period_for_which_the_euler_model_swings_up_is_refused(void)
 
 static void a_hold_without_current_is_refused(void)
 {
-    struct invariant_ekf_gains gains;
+    struct invariant_ekf_hold_gains gains;
 
-    TEST_ASSERT_FALSE(
-        invariant_ekf_hold_design(&motor, period_s, 0.0, INVARIANT_EKF_HOLD_QUIET, &gains, error));
+    TEST_ASSERT_FALSE(invariant_ekf_hold_design(&motor, period_s, 0.0, &gains, error));
     TEST_ASSERT_EQUAL_STRING("hold current 0 A: must be above 0 A, and finite", error);
 }
 
@@ -390,34 +389,48 @@ static void motion_gains_are_the_optimum_found_for_the_reference_motor(void)
 
 static void quiet_hold_gains_of_the_reference_motor(void)
 {
-    struct invariant_ekf_gains gains;
+    struct invariant_ekf_hold_gains hold;
+    const struct invariant_ekf_gains *gains = &hold.quiet;
 
-    TEST_ASSERT_TRUE(
-        invariant_ekf_hold_design(&motor, period_s, 1.5, INVARIANT_EKF_HOLD_QUIET, &gains, error));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.63534, gains.k_current_d);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.65847, gains.k_current_q);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, -2.67109, gains.k_speed_q_rad_As);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-7, -0.0031749, gains.k_angle_q_rad_A);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.18360, gains.k_load_q_Nm_A);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -0.038814, gains.k_bias_q_V_A);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -0.011943, gains.k_resistance_ohm_A2);
-    TEST_ASSERT_TRUE(gains.k_angle_d_rad_A == 0.0 && gains.k_bias_d_V_A == 0.0);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.003327784, gains.load_return); /* 1 - exp(-0.1/30) */
-    TEST_ASSERT_TRUE(gains.load_settle == 0.0);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.015, gains.load_step_Nm);
+    TEST_ASSERT_TRUE(invariant_ekf_hold_design(&motor, period_s, 1.5, &hold, error));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.63534, gains->k_current_d);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.65847, gains->k_current_q);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, -2.67109, gains->k_speed_q_rad_As);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, -0.0038683, gains->k_angle_q_rad_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.18360, gains->k_load_q_Nm_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -0.011943, gains->k_resistance_ohm_A2);
+    TEST_ASSERT_TRUE(gains->k_angle_d_rad_A == 0.0 && gains->k_bias_d_V_A == 0.0);
+    TEST_ASSERT_TRUE(gains->k_bias_q_V_A == 0.0 && gains->load_settle == 0.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.009110304, gains->load_return); /* 1 - exp(-0.1/10.9) */
+    /* on the line J w_h^2 theta = -T_L, J w_h^2 = 50 x 0.157 x 1.5 N m/rad */
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, gains->load_return / 11.775, gains->angle_return_rad_Nm);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.001424492, gains->bias_return_V_Nm);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.025, hold.load_step_Nm);
 }
 
 static void a_hold_that_follows_leaves_the_offset_alone_and_lets_no_load_return(void)
 {
-    struct invariant_ekf_gains gains;
+    struct invariant_ekf_hold_gains hold;
+    const struct invariant_ekf_gains *gains = &hold.following;
 
-    TEST_ASSERT_TRUE(invariant_ekf_hold_design(&motor, period_s, 1.5, INVARIANT_EKF_HOLD_FOLLOWING,
-                                               &gains, error));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, -4.02955, gains.k_speed_q_rad_As);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-7, -0.0036143, gains.k_angle_q_rad_A);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.36652, gains.k_load_q_Nm_A);
-    TEST_ASSERT_TRUE(gains.k_bias_q_V_A == 0.0 && gains.load_return == 0.0);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.048770575, gains.load_settle); /* 1 - exp(-0.1/2) */
+    TEST_ASSERT_TRUE(invariant_ekf_hold_design(&motor, period_s, 1.5, &hold, error));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, -4.56487, gains->k_speed_q_rad_As);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.455858, gains->k_load_q_Nm_A);
+    TEST_ASSERT_TRUE(gains->k_bias_q_V_A == 0.0 && gains->bias_return_V_Nm == 0.0);
+    TEST_ASSERT_TRUE(gains->load_return == 0.0 && gains->angle_return_rad_Nm == 0.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.181269247, gains->load_settle); /* 1 - exp(-0.1/0.5) */
+    TEST_ASSERT_EQUAL_UINT32(291, hold.following_periods);            /* 8 / (275 rad/s) */
+}
+
+static void an_unloaded_hold_learns_the_offset_alone(void)
+{
+    struct invariant_ekf_hold_gains hold;
+    const struct invariant_ekf_gains *gains = &hold.unloaded;
+
+    TEST_ASSERT_TRUE(invariant_ekf_hold_design(&motor, period_s, 1.5, &hold, error));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -0.038814, gains->k_bias_q_V_A);
+    TEST_ASSERT_TRUE(gains->k_angle_q_rad_A == 0.0 && gains->k_load_q_Nm_A == 0.0);
+    TEST_ASSERT_TRUE(gains->bias_return_V_Nm == 0.0 && gains->angle_return_rad_Nm == 0.0);
 }
 
 int main(void)
@@ -448,5 +461,6 @@ int main(void)
     RUN_TEST(motion_gains_are_the_optimum_found_for_the_reference_motor);
     RUN_TEST(quiet_hold_gains_of_the_reference_motor);
     RUN_TEST(a_hold_that_follows_leaves_the_offset_alone_and_lets_no_load_return);
+    RUN_TEST(an_unloaded_hold_learns_the_offset_alone);
     return UNITY_END();
 }

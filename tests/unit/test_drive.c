@@ -11,6 +11,9 @@ static struct drive_settings settings;
 static struct bench_motor motor;
 static char error[DRIVE_ERROR_TEXT];
 
+static struct hal_facts encoder_facts;
+static struct hal board;
+
 /* The bridge over S(k)...S(k+1), and what is commanded for S(k+1)...S(k+2). */
 static struct {
     struct hal_outputs in_force;
@@ -26,6 +29,8 @@ void setUp(void)
     motor = (struct bench_motor){.motor = bench_params};
     memset(&bridge, 0, sizeof bridge);
     bridge.bus_V = 24.0;
+    board = fake_hal;
+    encoder_facts = bench_facts;
 }
 
 void tearDown(void)
@@ -34,7 +39,7 @@ void tearDown(void)
 
 static void power_up(void)
 {
-    TEST_ASSERT_TRUE_MESSAGE(drive_init(&drive, &fake_hal, &settings, error), error);
+    TEST_ASSERT_TRUE_MESSAGE(drive_init(&drive, &board, &settings, error), error);
 }
 
 static int32_t code(double x)
@@ -42,9 +47,16 @@ static int32_t code(double x)
     return (int32_t)(x + 8192.5) - 8192;
 }
 
+/* Of an encoder; on a board without one nobody asks. */
+static int32_t encoder_count(void)
+{
+    return (int32_t)floor(motor.angle_rad / TWO_PI * (double)encoder_facts.encoder_counts_per_turn);
+}
+
 static struct hal_samples sample(void)
 {
     return (struct hal_samples){
+        .encoder_count = encoder_count(),
         .current_a = (uint16_t)code(2048.0 + motor.i_a / bench_facts.current_A_per_code),
         .current_b = (uint16_t)code(2048.0 + motor.i_b / bench_facts.current_A_per_code),
         .bus_voltage = (uint16_t)code(bridge.bus_V / bench_facts.bus_V_per_code),
@@ -96,7 +108,7 @@ static void enable(void)
 {
     power_up();
     post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE});
-    run(OFFSET_SAMPLES + 301);
+    run(OFFSET_PERIODS + 301);
     TEST_ASSERT_EQUAL_STRING("operation-enabled", drive_state_name(drive.state));
 }
 
@@ -167,7 +179,7 @@ static void test_the_first_hold_aligns_the_rotor_and_finds_the_resistance(void)
     settings.hold_on_enable_s = 0.15;
     power_up();
     post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE});
-    run(OFFSET_SAMPLES + 1501);
+    run(OFFSET_PERIODS + 1501);
     TEST_ASSERT_EQUAL_STRING("operation-enabled", drive_state_name(drive.state));
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 1.5, signals().i_d_A);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.45, signals().resistance_est_ohm);
@@ -175,6 +187,61 @@ static void test_the_first_hold_aligns_the_rotor_and_finds_the_resistance(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.05, 0.45 * 1.5, signals().u_d_V);
     TEST_ASSERT_DOUBLE_WITHIN(0.05, 0.0, signals().u_q_V);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 24.0, signals().bus_V);
+}
+
+/* A bare NEMA 17, 0.54 times the torque and 29 times the agility of the reference motor. */
+static const struct motor_params light = {
+    .resistance_ohm = 2.1,
+    .inductance_H = 4.2e-3,
+    .torque_constant_Nm_A = 0.1886,
+    .viscous_friction_Nms_rad = 0.133e-3,
+    .inertia_kgm2 = 5.4e-6,
+    .rated_current_A = 1.5,
+    .supply_V = 24.0,
+    .rotor_teeth = 50,
+};
+
+static void enable_with_encoder(const struct motor_params *with, double angle_rad)
+{
+    encoder_facts.encoder_counts_per_turn = 4000;
+    board.facts = &encoder_facts;
+    drive_settings_default(&settings, with);
+    drive_settings_select_feedback(&settings, DRIVE_FEEDBACK_ENCODER);
+    settings.calibrate_offsets = false;
+    motor = (struct bench_motor){.motor = *with, .angle_rad = angle_rad};
+    power_up();
+    post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE});
+    run(2);
+    while (drive.state == DRIVE_ALIGNING) {
+        run(1);
+    }
+    TEST_ASSERT_EQUAL_STRING("operation-enabled", drive_state_name(drive.state));
+}
+
+/* Far from home; by how much the rotor stands off its count's middle the drive cannot see. */
+static void test_an_encoder_is_aligned_with_a_rotor_at_rest(void)
+{
+    for (int m = 0; m < 2; m++) {
+        const struct motor_params *with = m == 0 ? &bench_params : &light;
+
+        enable_with_encoder(with, 0.03);
+        TEST_ASSERT_FALSE(drive.aligns);
+        TEST_ASSERT_DOUBLE_WITHIN(0.6 * TWO_PI / 4000.0, motor.angle_rad, signals().theta_est_rad);
+        TEST_ASSERT_DOUBLE_WITHIN(0.6, 0.0, motor.speed_rad_s); /* swings by a count at most */
+        TEST_ASSERT_DOUBLE_WITHIN(0.02 * with->resistance_ohm, with->resistance_ohm,
+                                  signals().resistance_est_ohm);
+        TEST_ASSERT_TRUE(drive.hold.current == drive.params.hold.current);
+    }
+}
+
+/* Else the voltage of a current that turned with the frame stays for L / R: the rotor leads. */
+static void test_on_both_ways_of_the_alignment_the_rotor_stands_where_it_is_held(void)
+{
+    const num_t *mean = drive.alignment.deviation_on_way;
+
+    enable_with_encoder(&light, 0.0);
+    TEST_ASSERT_NUM_WITHIN(0.5 / 360.0, 0.0,
+                           mean[ALIGNMENT_UP_STRONG] - mean[ALIGNMENT_DOWN_STRONG]);
 }
 
 static void test_the_drive_knows_what_the_bridge_takes_away(void)
@@ -217,7 +284,7 @@ static void test_without_feed_forward_the_rotor_lags_by_twice_the_speed_over_the
     enable();
     move(1.5, 0.12);
     run(700);
-    const double lag_s = 2.0 / settings.law_bandwidth_rad_s;
+    const double lag_s = 2.0 / drive.settings.law_bandwidth_rad_s;
     TEST_ASSERT_DOUBLE_WITHIN(0.1 * lag_s * signals().omega_ref_rad_s,
                               lag_s * signals().omega_ref_rad_s, following_error_rad());
 }
@@ -325,6 +392,8 @@ int main(void)
     RUN_TEST(test_settings_out_of_range_are_refused_before_anything_is_designed);
     RUN_TEST(test_a_motor_slower_than_the_control_is_refused);
     RUN_TEST(test_the_first_hold_aligns_the_rotor_and_finds_the_resistance);
+    RUN_TEST(test_an_encoder_is_aligned_with_a_rotor_at_rest);
+    RUN_TEST(test_on_both_ways_of_the_alignment_the_rotor_stands_where_it_is_held);
     RUN_TEST(test_the_drive_knows_what_the_bridge_takes_away);
     RUN_TEST(test_without_adaptation_the_resistance_stays_as_it_was_told);
     RUN_TEST(test_a_move_is_followed_without_lag_and_ends_where_it_should);

@@ -153,11 +153,25 @@ static void test_the_load_that_is_told_is_where_it_begins(void)
 static void test_placing_moves_the_estimate_and_what_follows_from_it(void)
 {
     design(16384);
-    encoder_observer_place(&observer, &params, position_from_rad(2.0, bench_params.rotor_teeth));
+    encoder_observer_place(&observer, &params, position_from_rad(2.0, bench_params.rotor_teeth),
+                           observer.encoder.count);
     for (int k = 0; k < 50; k++) {
         run_period(0.0, 0.0);
     }
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 2.0, angle_rad());
+}
+
+static void test_a_rotor_that_is_placed_bears_what_its_current_holds(void)
+{
+    design(FINE);
+    for (int k = 0; k < 200; k++) {
+        run_period(1.0, 0.5);
+    }
+    const struct position quarter = {observer.estimate.rotor.position.turns,
+                                     observer.estimate.rotor.position.fraction + (1u << 30)};
+
+    encoder_observer_place(&observer, &params, quarter, observer.encoder.count);
+    TEST_ASSERT_DOUBLE_WITHIN(0.02, -1.0, load_Nm() / bench_params.torque_constant_Nm_A);
 }
 
 static void test_what_the_encoder_or_the_period_cannot_bear_is_refused(void)
@@ -184,6 +198,7 @@ int main(void)
     RUN_TEST(test_the_resistance_is_learned_in_the_hold_and_nowhere_else);
     RUN_TEST(test_the_load_that_is_told_is_where_it_begins);
     RUN_TEST(test_placing_moves_the_estimate_and_what_follows_from_it);
+    RUN_TEST(test_a_rotor_that_is_placed_bears_what_its_current_holds);
     RUN_TEST(test_what_the_encoder_or_the_period_cannot_bear_is_refused);
     return UNITY_END();
 }

@@ -10,6 +10,7 @@ static const double two_pi = 6.283185307179586476925;
 static const struct profile_drive drive = {.period_s = 1e-4,
                                            .rotor_teeth = 50,
                                            .speed_limit_rad_s = 200.0,
+                                           .speed_limit_reason = "limit of the drive",
                                            .acceleration_limit_rad_s2 = 12000.0};
 static const struct per_unit base = {.speed_rad_s = 150.0,
                                      .acceleration_rad_s2 = 6000.0,
@@ -33,7 +34,7 @@ static char error[DESIGN_ERROR_TEXT];
 
 void setUp(void)
 {
-    params = reference_design(&base, drive.period_s);
+    params = reference_design(&base, drive.period_s, 0.0);
     reference_reset(&reference, origin);
 }
 
@@ -235,7 +236,7 @@ static void test_the_speed_shown_is_right_to_1e_5_for_any_base(void)
 
         other.speed_rad_s = base_rad_s;
         other.turns_per_period = turns_of_rad(base_rad_s * drive.period_s);
-        params = reference_design(&other, drive.period_s);
+        params = reference_design(&other, drive.period_s, 0.0);
         reference_reset(&reference, origin);
         begin(&trapezoid);
         for (int k = 0; k <= 1001; k++) {
@@ -576,7 +577,7 @@ static void test_a_reset_in_full_motion_leaves_nothing_of_it(void)
         TEST_ASSERT_EQUAL_INT64(angle_of(elsewhere), angle_of(s.position));
         TEST_ASSERT_TRUE(s.speed == NUM(0.0) && s.acceleration == NUM(0.0) && !s.moving);
     }
-    TEST_ASSERT_EQUAL_UINT32(3, reference.rest_periods);
+    TEST_ASSERT_EQUAL_UINT32(3, reference.slow_periods);
 
     load(&smooth);
     reference_reset(&reference, elsewhere);
@@ -599,7 +600,7 @@ static void test_a_step_is_there_at_once(void)
     TEST_ASSERT_EQUAL_INT64(angle_of(position_from_rad(-0.03142, 50)), angle_of(s.position));
     TEST_ASSERT_FALSE(s.moving);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.0, num_to_double(s.speed));
-    TEST_ASSERT_EQUAL_UINT32(0, reference.rest_periods);
+    TEST_ASSERT_EQUAL_UINT32(0, reference.slow_periods);
 }
 
 static void test_each_step_hands_the_next_sample_on_as_the_present_one(void)
@@ -621,19 +622,43 @@ static void test_the_time_at_rest_is_counted_from_the_end_of_the_move(void)
 {
     step();
     step();
-    TEST_ASSERT_EQUAL_UINT32(2, reference.rest_periods);
+    TEST_ASSERT_EQUAL_UINT32(2, reference.slow_periods);
     begin(&trapezoid);
-    step(); /* the first phase begins: at S(k+1) nothing has moved yet */
-    TEST_ASSERT_EQUAL_UINT32(2, reference.rest_periods);
+    step();
     while (step().moving) {
-        TEST_ASSERT_EQUAL_UINT32(0, reference.rest_periods);
+        TEST_ASSERT_EQUAL_UINT32(0, reference.slow_periods);
     }
-    TEST_ASSERT_EQUAL_UINT32(0, reference.rest_periods);
     step();
-    TEST_ASSERT_EQUAL_UINT32(1, reference.rest_periods);
-    reference.rest_periods = UINT32_MAX;
+    TEST_ASSERT_EQUAL_UINT32(1, reference.slow_periods);
+    reference.slow_periods = UINT32_MAX;
     step();
-    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, reference.rest_periods);
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, reference.slow_periods);
+}
+
+static void test_a_slow_cruise_is_counted_and_what_is_slow_in_passing_is_not(void)
+{
+    struct reference_params creeping = params;
+    uint32_t cruise = 0;
+
+    creeping.creep = INT32_MAX;
+    for (int k = 0; k < 10; k++) {
+        reference_step(&reference, &creeping);
+    }
+    TEST_ASSERT_EQUAL_UINT32(10, reference.slow_periods);
+    load(&smooth);
+    while (!reference.next.moving) {
+        reference_step(&reference, &creeping);
+    }
+    reference_step(&reference, &creeping);
+    TEST_ASSERT_EQUAL_UINT32(0, reference.slow_periods);
+    while (reference.next.moving) {
+        const bool cruises = reference.phase == REFERENCE_CRUISE;
+
+        cruise += cruises ? 1u : 0u;
+        reference_step(&reference, &creeping);
+        TEST_ASSERT_EQUAL_UINT32(cruises ? cruise : 0u, reference.slow_periods);
+    }
+    TEST_ASSERT_TRUE(cruise > 100u);
 }
 
 /* FNV-1a over the positions of trapezoid, smooth move and a stop. */
@@ -789,6 +814,7 @@ int main(void)
     RUN_TEST(test_a_step_is_there_at_once);
     RUN_TEST(test_each_step_hands_the_next_sample_on_as_the_present_one);
     RUN_TEST(test_the_time_at_rest_is_counted_from_the_end_of_the_move);
+    RUN_TEST(test_a_slow_cruise_is_counted_and_what_is_slow_in_passing_is_not);
     RUN_TEST(test_the_positions_are_the_same_bits_in_every_number_format);
     RUN_TEST(test_a_move_out_of_range_is_refused_with_the_bound_it_breaks);
     RUN_TEST(test_a_refusal_names_the_value_and_the_bound);

@@ -31,7 +31,7 @@ static struct motion_state end; /* of the last plan */
 
 void setUp(void)
 {
-    params = reference_design(&base, 1e-4);
+    params = reference_design(&base, 1e-4, 0.0);
     reference_reset(&reference, origin);
 }
 
@@ -236,6 +236,7 @@ static void test_a_plan_takes_over_a_profile_in_any_phase(void)
     static const struct profile_drive drive = {.period_s = 1e-4,
                                                .rotor_teeth = 50,
                                                .speed_limit_rad_s = 200.0,
+                                               .speed_limit_reason = "limit of the drive",
                                                .acceleration_limit_rad_s2 = 12000.0};
     static const struct profile_move move = {.shape = PROFILE_SMOOTH,
                                              .position_rad = 3.0,

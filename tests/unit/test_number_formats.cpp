@@ -38,12 +38,12 @@ drive_command command(drive_command_kind kind, std::uint32_t at)
 /* Enabling, 10 rad with a load that comes and goes, rest under load, slowly back. */
 std::vector<drive_command> tape()
 {
-    drive_command move = command(DRIVE_COMMAND_MOVE_SMOOTH, 2100);
+    drive_command move = command(DRIVE_COMMAND_MOVE_SMOOTH, 2800);
     move.position_rad = 10.0;
     move.duration_s = 0.4;
     move.ramp_s = 0.1;
     move.jerk_s = 0.02;
-    drive_command back = command(DRIVE_COMMAND_MOVE_SMOOTH, 8100);
+    drive_command back = command(DRIVE_COMMAND_MOVE_SMOOTH, 8800);
     back.position_rad = 9.0;
     back.duration_s = 0.6;
     back.ramp_s = 0.1;
@@ -51,12 +51,22 @@ std::vector<drive_command> tape()
     return {command(DRIVE_COMMAND_ENABLE, 1), move, back};
 }
 
-double load_Nm(std::uint32_t period)
+/* What is posted before the interrupt of this period: the drive has to be ready for a move. */
+std::vector<drive_command> due(std::uint32_t period)
 {
-    return (period > 3000 && period < 4000) || period > 7000 ? 0.1 : 0.0;
+    std::vector<drive_command> commands;
+    for (const drive_command &each : tape())
+        if (each.at_period == period + 1)
+            commands.push_back(each);
+    return commands;
 }
 
-constexpr std::uint32_t periods = 15000;
+double load_Nm(std::uint32_t period)
+{
+    return (period > 3700 && period < 4700) || period > 7700 ? 0.1 : 0.0;
+}
+
+constexpr std::uint32_t periods = 15700;
 
 drive_settings settings()
 {
@@ -74,9 +84,9 @@ Recorded record()
     config.bridge.bus_V = bendjedia_2012.supply_V;
     sil::Board board(config, firmware_image_double, settings());
     Recorded recorded{board.facts(), {}, {}};
-    for (const drive_command &each : tape())
-        board.command(each);
     for (std::uint32_t k = 0; k < periods; k++) {
+        for (const drive_command &each : due(k))
+            board.command(each);
         board.plant().set_load_torque(load_Nm(k));
         board.control();
         recorded.samples.push_back(board.samples());
@@ -99,10 +109,10 @@ double difference_deg(const Recorded &recorded, const firmware_image &image)
     std::size_t count = 0;
     hal_sil_init(board.get(), &recorded.facts);
     TEST_ASSERT_TRUE_MESSAGE(image.init(drive, &board->board, &told, error), error);
-    for (const drive_command &each : tape())
-        TEST_ASSERT_TRUE_MESSAGE(image.command(drive, &each, error), error);
     for (std::size_t k = 0; k < recorded.samples.size(); k++) {
         drive_signals signals;
+        for (const drive_command &each : due(static_cast<std::uint32_t>(k)))
+            TEST_ASSERT_TRUE_MESSAGE(image.command(drive, &each, error), error);
         hal_sil_control_begins(board.get());
         image.control_cycle(drive, &recorded.samples[k]);
         image.background(drive);

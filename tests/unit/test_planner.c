@@ -499,7 +499,7 @@ static void test_what_is_out_of_range_is_refused_with_its_bound(void)
 
 static void test_with_a_known_encoder_zero_motion_is_refused_until_the_drive_is_ready(void)
 {
-    static const char refusal[] = "the drive is not ready and where it starts is known only then";
+    static const char refusal[] = "the drive is being enabled, wait until it is ready";
     const double rotor_rad = 6.283185307179586 * 1000.0 / 16384.0;
     struct hal_facts facts = bench_facts;
     struct hal hal = fake_hal;
@@ -517,8 +517,7 @@ static void test_with_a_known_encoder_zero_motion_is_refused_until_the_drive_is_
     must_refuse(set_point(0.0), refusal);
     run(1);
     must_refuse(move_to(0.1), refusal);
-    stop_now();
-    must_refuse(move_to(0.1), refusal);
+    must_refuse((struct drive_command){.kind = DRIVE_COMMAND_STOP}, refusal);
     while (signals().state != DRIVE_OPERATION_ENABLED) {
         must_refuse(retarget(0.1), refusal);
         run(1);
@@ -534,9 +533,36 @@ static void test_with_a_known_encoder_zero_motion_is_refused_until_the_drive_is_
     must_refuse(move_to(0.1), refusal); /* the state is still that before the disable */
 }
 
+/* 140 rad/s: 0.92 of 24 V over Km and what friction takes. */
+static void test_no_motion_is_taken_that_the_back_emf_forbids(void)
+{
+    static const char reason[] =
+        "must be at most 140 rad/s, where the back-EMF takes up the supply";
+    struct drive_command fast_retarget = retarget(100.0);
+    struct drive_command fast_move = move_to(100.0);
+    struct drive_command fast_sine = sine(10.0, 0.1);
+    char error[DRIVE_ERROR_TEXT];
+
+    fast_retarget.speed_rad_s = 141.0;
+    fast_move.duration_s = 1.0;
+    fast_move.ramp_s = 0.29; /* cruises at 140.8 rad/s */
+    fast_sine.amplitude_rad = 141.0 / 6.2831853;
+    fast_sine.frequency_Hz = 1.0;
+    const struct drive_command beyond[] = {velocity(-141.0), fast_retarget, fast_move, fast_sine};
+
+    for (size_t i = 0; i < sizeof beyond / sizeof beyond[0]; i++) {
+        TEST_ASSERT_FALSE(drive_command(&drive, &beyond[i], error));
+        TEST_ASSERT_TRUE_MESSAGE(strstr(error, reason) != NULL ||
+                                     strstr(error, "must be at least -140 rad/s") != NULL,
+                                 error);
+    }
+    must_post(velocity(139.0));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_no_motion_is_taken_that_the_back_emf_forbids);
     RUN_TEST(test_a_speed_begins_in_the_period_it_is_addressed_to);
     RUN_TEST(test_reversed_in_mid_change_and_stopped_without_a_kink);
     RUN_TEST(test_after_a_stop_of_a_speed_moves_start_where_it_came_to_rest);

@@ -13,6 +13,7 @@ void setUp(void)
     struct drive_settings settings;
 
     drive_settings_default(&settings, &bench_params);
+    settings.overcurrent_trip_A = 5.4;
     base = per_unit_base(&bench_params, PERIOD_S);
     params = protection_design(&base, &bench_facts, &settings);
     samples = (struct hal_samples){.current_a = 2048, .current_b = 2048, .bus_voltage = 3151};
@@ -108,7 +109,7 @@ static void test_of_several_faults_the_cause_is_named(void)
     TEST_ASSERT_EQUAL(DRIVE_FAULT_HARDWARE_OVERCURRENT, of_samples());
 }
 
-/* A trip of 90 or 200 A over converters of 6 A. */
+/* A trip that is not given, or 200 A over converters of 6 A. */
 static void test_a_bound_beyond_the_converters_is_none(void)
 {
     struct drive_settings settings;

@@ -13,7 +13,7 @@ static const struct standstill_hold_task task = {
     .ramp_s = 0.010,
     .delay_s = 0.015,
     .current_limit_A = 3.0,
-    .speed_gain_As_rad = 0.39,
+    .damping_As_rad = 0.78,
     .period_s = PERIOD_S,
 };
 
@@ -26,7 +26,7 @@ void setUp(void)
 {
     base = per_unit_base(&bench_params, PERIOD_S);
     params = standstill_hold_design(&base, &task);
-    standstill_hold_reset(&hold);
+    standstill_hold_reset(&hold, &params);
     reference = 0;
 }
 
@@ -160,7 +160,7 @@ static void test_the_torque_current_is_limited(void)
 static void test_a_reset_ends_the_hold_without_a_ramp(void)
 {
     hold_with_full_current();
-    standstill_hold_reset(&hold);
+    standstill_hold_reset(&hold, &params);
     TEST_ASSERT_FALSE(hold.active);
     TEST_ASSERT_TRUE(hold.i_d == NUM(0.0));
 }

@@ -1,6 +1,7 @@
 /* The states of the drive and what leads from one to the next, on a board where nothing moves. */
 #include <string.h>
 
+#include "firmware/drive/command_rules.h"
 #include "firmware/drive/state_machine.h"
 #include "tests/unit/fake_board.h"
 #include "tests/unit/num_assert.h"
@@ -47,6 +48,12 @@ static bool post(struct drive_command command)
 static void must_post(struct drive_command command)
 {
     TEST_ASSERT_TRUE_MESSAGE(post(command), error);
+}
+
+static void must_refuse(struct drive_command command, const char *reason)
+{
+    TEST_ASSERT_FALSE(post(command));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error, reason), error);
 }
 
 static void post_kind(enum drive_command_kind kind)
@@ -120,6 +127,13 @@ static void test_enabling_goes_through_offsets_and_alignment_to_operation(void)
     run(OFFSET_SAMPLES - 2u);
     is_in(DRIVE_CALIBRATING_OFFSETS, false);
     run(1);
+    is_in(DRIVE_CALIBRATING_OFFSETS, true);
+    for (int leg = 0; leg < HAL_LEGS; leg++) {
+        TEST_ASSERT_EQUAL_UINT(8500 / 2, outputs.high_counts[leg]);
+    }
+    run(OFFSET_PERIODS - OFFSET_SAMPLES - 1u);
+    is_in(DRIVE_CALIBRATING_OFFSETS, true);
+    run(1);
     is_in(DRIVE_ALIGNING, false);
     run(1);
     is_in(DRIVE_ALIGNING, true);
@@ -142,13 +156,38 @@ static void test_without_calibration_enabling_begins_with_the_alignment(void)
     is_in(DRIVE_OPERATION_ENABLED, true);
 }
 
+/* Drawn nearer by no current and led nowhere: an encoder whose counts stand has no zero. */
+static void test_an_encoder_whose_counts_do_not_follow_the_alignment_ends_it_in_a_fault(void)
+{
+    static struct hal_facts facts;
+    static struct hal board;
+
+    facts = bench_facts;
+    facts.encoder_counts_per_turn = 4000;
+    board = fake_hal;
+    board.facts = &facts;
+    drive_settings_select_feedback(&settings, DRIVE_FEEDBACK_ENCODER);
+    settings.calibrate_offsets = false;
+    TEST_ASSERT_TRUE_MESSAGE(drive_init(&drive, &board, &settings, error), error);
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(2);
+    is_in(DRIVE_ALIGNING, true);
+    for (uint32_t k = 0; k < 40000u && signals().state == DRIVE_ALIGNING; k++) {
+        run(1);
+    }
+    has_fault(DRIVE_FAULT_POSITION_NOT_FOUND);
+    post_kind(DRIVE_COMMAND_DISABLE);
+    run(1);
+    TEST_ASSERT_FALSE(drive.aligns);
+}
+
 static void test_without_hold_on_enable_operation_follows_the_calibration(void)
 {
     settings.hold_on_enable = false;
     power_up();
     post_kind(DRIVE_COMMAND_ENABLE);
-    run(OFFSET_SAMPLES - 1u);
-    is_in(DRIVE_CALIBRATING_OFFSETS, false);
+    run(OFFSET_PERIODS - 1u);
+    is_in(DRIVE_CALIBRATING_OFFSETS, true);
     run(2);
     is_in(DRIVE_OPERATION_ENABLED, true);
     TEST_ASSERT_FALSE(signals().holding);
@@ -320,8 +359,8 @@ static void test_finding_the_position_follows_the_offsets(void)
     settings.initial_position = DRIVE_INITIAL_POSITION_IMPULSES;
     power_up();
     post_kind(DRIVE_COMMAND_ENABLE);
-    run(OFFSET_SAMPLES - 1u);
-    is_in(DRIVE_CALIBRATING_OFFSETS, false);
+    run(OFFSET_PERIODS - 1u);
+    is_in(DRIVE_CALIBRATING_OFFSETS, true);
     run(1);
     is_in(DRIVE_FINDING_POSITION, true);
 }
@@ -349,8 +388,7 @@ static void test_finding_the_position_can_be_ended_at_once(void)
 static void test_motion_is_refused_until_the_position_is_found(void)
 {
     begin_finding();
-    TEST_ASSERT_FALSE(post(move_to(0.1)));
-    TEST_ASSERT_NOT_NULL(strstr(error, "where it starts is known only then"));
+    must_refuse(move_to(0.1), "the drive is being enabled, wait until it is ready");
 }
 
 /* What is found is the angle; the turn is that of the angle told. */
@@ -387,7 +425,12 @@ static void test_a_drive_can_be_disabled_from_everywhere(void)
     disabling_works_at_once();
 
     post_kind(DRIVE_COMMAND_ENABLE);
-    run(OFFSET_SAMPLES + 10u);
+    run(OFFSET_SAMPLES + 100u);
+    is_in(DRIVE_CALIBRATING_OFFSETS, true);
+    disabling_works_at_once();
+
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(OFFSET_PERIODS + 10u);
     is_in(DRIVE_ALIGNING, true);
     disabling_works_at_once();
 
@@ -427,6 +470,7 @@ static void test_after_disabling_the_drive_can_be_enabled_and_moved_again(void)
     post_kind(DRIVE_COMMAND_DISABLE);
     run(1);
     post_kind(DRIVE_COMMAND_ENABLE);
+    run(1);
     must_post(move_to(0.1));
     run(MOVE_AND_REST);
     is_in(DRIVE_OPERATION_ENABLED, true);
@@ -506,6 +550,22 @@ static void test_an_offset_out_of_range_is_a_fault(void)
     has_fault(DRIVE_FAULT_OFFSET_RANGE);
 }
 
+static void test_the_second_stage_of_the_offsets_is_protected_as_operation_is(void)
+{
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(OFFSET_SAMPLES + 10u);
+    is_in(DRIVE_CALIBRATING_OFFSETS, true);
+    samples.current_b = 4095;
+    run(1);
+    has_fault(DRIVE_FAULT_OVERCURRENT);
+    post_kind(DRIVE_COMMAND_DISABLE);
+    samples = samples_at_rest;
+    run(1);
+    post_kind(DRIVE_COMMAND_ENABLE); /* begins with the first stage again */
+    run(OFFSET_SAMPLES - 1u);
+    is_in(DRIVE_CALIBRATING_OFFSETS, false);
+}
+
 static void test_a_disabled_drive_needs_no_supply(void)
 {
     samples.bus_voltage = 0;
@@ -566,13 +626,19 @@ static void test_an_estimate_that_is_not_finite_opens_the_bridge_in_the_same_per
 static void test_a_fault_is_cleared_by_disabling_only(void)
 {
     enable();
+    must_post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE, .at_period = 5});
     samples.flags = HAL_FLAG_DEADLINE_MISSED;
     run(1);
     samples.flags = 0;
-    post_kind(DRIVE_COMMAND_ENABLE);
+    must_refuse((struct drive_command){.kind = DRIVE_COMMAND_ENABLE},
+                "enable refused: fault deadline-missed: a control interrupt has ended too late; "
+                "disable clears it");
     run(10);
     has_fault(DRIVE_FAULT_DEADLINE_MISSED);
-    post_kind(DRIVE_COMMAND_STOP);
+    TEST_ASSERT_EQUAL_UINT32(1, signals().commands_dropped);
+    TEST_ASSERT_EQUAL(DRIVE_COMMAND_ENABLE, signals().dropped_kind);
+    must_refuse((struct drive_command){.kind = DRIVE_COMMAND_STOP},
+                "stop refused: the drive is in fault, disable clears it");
     run(10);
     has_fault(DRIVE_FAULT_DEADLINE_MISSED);
     post_kind(DRIVE_COMMAND_DISABLE);
@@ -713,6 +779,7 @@ static void test_a_stop_cut_off_by_a_disable_does_not_block_later_moves(void)
     post_kind(DRIVE_COMMAND_DISABLE);
     run(1);
     post_kind(DRIVE_COMMAND_ENABLE);
+    run(1);
     must_post(move_to(0.1));
     run(MOVE_AND_REST);
     the_reference_is_at(0.1);
@@ -728,17 +795,148 @@ static void test_a_stop_at_rest_is_harmless(void)
     the_reference_is_at(0.1);
 }
 
-static void test_a_move_before_the_drive_is_ready_is_not_made_and_leaves_no_trace(void)
+static void test_a_move_before_the_drive_is_ready_is_refused_and_leaves_no_trace(void)
 {
+    must_refuse(move_to(0.1), "move refused: the drive is switch-on-disabled, enable it first");
     post_kind(DRIVE_COMMAND_ENABLE);
+    must_refuse(move_to(0.1), "move refused: the drive is being enabled, wait until it is ready");
     run(10);
-    must_post(move_to(0.1));
-    run(OFFSET_SAMPLES + HOLD_PERIODS + 10u);
+    must_refuse(move_to(0.1), "move refused: the drive is being enabled, wait until it is ready");
+    run(OFFSET_PERIODS + HOLD_PERIODS + 10u);
     is_in(DRIVE_OPERATION_ENABLED, true);
     the_reference_is_at(0.0);
     must_post(move_to(0.2));
     run(MOVE_AND_REST);
     the_reference_is_at(0.2);
+}
+
+/* ---- what is legal when ---- */
+
+/* A bit for each state, in its order: legal. */
+static void is_legal_in(enum drive_command_kind kind, const char *states)
+{
+    for (int i = 0; i < DRIVE_STATES; i++) {
+        enum drive_state state = (enum drive_state)i;
+
+        TEST_ASSERT_EQUAL_MESSAGE(states[i] == '1', command_rules_obeyed(kind, state),
+                                  drive_state_name(state));
+    }
+}
+
+static void test_what_is_legal_when_stands_in_one_table(void)
+{
+    is_legal_in(DRIVE_COMMAND_ENABLE, "111110");
+    is_legal_in(DRIVE_COMMAND_DISABLE, "111111");
+    is_legal_in(DRIVE_COMMAND_SAVE, "111111");
+    for (enum drive_command_kind kind = DRIVE_COMMAND_HOLD; kind < DRIVE_COMMAND_SAVE; kind++) {
+        is_legal_in(kind, "000010");
+    }
+}
+
+static void test_a_command_is_judged_by_the_state_that_it_will_find(void)
+{
+    struct drive_command move = move_to(0.1);
+
+    enable();
+    must_post((struct drive_command){.kind = DRIVE_COMMAND_DISABLE, .at_period = 1000});
+    move.at_period = 500;
+    must_post(move);
+    move.at_period = 1000;
+    must_refuse(move, "move refused: a disable acts in period 1000, enable the drive behind it");
+    must_post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE, .at_period = 1001});
+    move.at_period = 3000;
+    must_refuse(move, "move refused: the drive is being enabled, wait until it is ready");
+    move.at_period = 500; /* but in its turn, behind the enable */
+    must_refuse(move, "move refused: the drive is being enabled, wait until it is ready");
+    must_post((struct drive_command){.kind = DRIVE_COMMAND_STOP, .at_period = 500});
+}
+
+static void test_a_command_asked_for_before_the_drive_was_ready_is_refused_behind_it(void)
+{
+    const struct drive_command move = move_to(0.1);
+
+    enable();
+    TEST_ASSERT_EQUAL_UINT32(0, drive.state_since);
+    run(20);
+    TEST_ASSERT_FALSE(drive_command_asked_in(&drive, &move, UINT32_MAX, error));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error, "being enabled"), error);
+    TEST_ASSERT_TRUE_MESSAGE(drive_command_asked_in(&drive, &move, 0, error), error);
+}
+
+static void test_what_waits_for_the_end_of_a_move_is_dropped_when_a_fault_ends_it(void)
+{
+    enable();
+    must_post(move_to(0.1));
+    must_post(move_to(0.2));
+    must_post(move_to(0.3));
+    run(100);
+    samples.flags = HAL_FLAG_DEADLINE_MISSED;
+    run(1);
+    has_fault(DRIVE_FAULT_DEADLINE_MISSED);
+    TEST_ASSERT_EQUAL_UINT32(0, signals().commands_dropped);
+    run(2);
+    TEST_ASSERT_EQUAL_UINT32(2, signals().commands_dropped);
+    run(100);
+    TEST_ASSERT_EQUAL_UINT32(2, signals().commands_dropped);
+}
+
+/* Two at once and one later; a fault comes first. */
+static void test_what_a_fault_keeps_from_acting_is_dropped_in_its_period_and_counted(void)
+{
+    struct drive_command later = {.kind = DRIVE_COMMAND_HOLD};
+
+    enable();
+    run(10);
+    must_post(move_to(0.1));
+    must_post(move_to(0.2));
+    later.at_period = drive.period + 100u;
+    must_post(later);
+    samples.flags = HAL_FLAG_DEADLINE_MISSED;
+    run(1); /* loads the first */
+    has_fault(DRIVE_FAULT_DEADLINE_MISSED);
+    TEST_ASSERT_EQUAL_UINT32(0, signals().commands_dropped);
+    run(1);
+    TEST_ASSERT_EQUAL_UINT32(1, signals().commands_dropped);
+    TEST_ASSERT_EQUAL(DRIVE_COMMAND_MOVE_TRAPEZOID, signals().dropped_kind);
+    run(97);
+    TEST_ASSERT_EQUAL_UINT32(1, signals().commands_dropped);
+    run(1);
+    TEST_ASSERT_EQUAL_UINT32(2, signals().commands_dropped);
+    TEST_ASSERT_EQUAL(DRIVE_COMMAND_HOLD, signals().dropped_kind);
+}
+
+static void test_what_is_so_already_or_flushed_is_not_counted(void)
+{
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(10);
+    post_kind(DRIVE_COMMAND_ENABLE); /* it is on its way */
+    run(10);
+    TEST_ASSERT_EQUAL_UINT32(0, signals().commands_dropped);
+    enable();
+    must_post(move_to(0.1));
+    must_post(move_to(0.2));
+    post_kind(DRIVE_COMMAND_STOP);
+    run(10);
+    must_post(move_to(0.1));
+    must_post(move_to(0.2));
+    post_kind(DRIVE_COMMAND_DISABLE);
+    run(10);
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(10);
+    post_kind(DRIVE_COMMAND_ENABLE); /* it is already */
+    run(10);
+    TEST_ASSERT_EQUAL_UINT32(0, signals().commands_dropped);
+}
+
+static void test_a_move_that_does_not_begin_where_the_reference_is_is_dropped_and_counted(void)
+{
+    enable();
+    must_post(move_to(0.1));
+    drive.commands.entry[1].profile.start.fraction++;
+    run(10);
+    TEST_ASSERT_EQUAL_UINT32(1, signals().commands_dropped);
+    TEST_ASSERT_EQUAL(DRIVE_COMMAND_MOVE_TRAPEZOID, signals().dropped_kind);
+    the_reference_is_at(0.0);
 }
 
 static void test_a_hold_command_holds_without_the_delay(void)
@@ -754,6 +952,7 @@ static void test_a_hold_command_holds_without_the_delay(void)
 static void test_the_drive_holds_by_itself_15_ms_after_a_move(void)
 {
     enable();
+    drive.params.reference.creep = 0;
     must_post(move_to(0.003)); /* near, for a board where nothing moves */
     run(1);
     while (signals().reference_moving || reference_busy(&drive.reference)) {
@@ -795,6 +994,7 @@ int main(void)
     RUN_TEST(test_a_drive_powers_up_disabled_and_stays_so);
     RUN_TEST(test_enabling_goes_through_offsets_and_alignment_to_operation);
     RUN_TEST(test_without_calibration_enabling_begins_with_the_alignment);
+    RUN_TEST(test_an_encoder_whose_counts_do_not_follow_the_alignment_ends_it_in_a_fault);
     RUN_TEST(test_without_hold_on_enable_operation_follows_the_calibration);
     RUN_TEST(test_without_either_the_drive_is_ready_at_once);
     RUN_TEST(test_the_hold_current_is_in_when_the_alignment_ends);
@@ -820,6 +1020,7 @@ int main(void)
     RUN_TEST(test_a_fault_while_aligning_opens_the_bridge_too);
     RUN_TEST(test_a_supply_that_is_missing_on_enable_is_a_fault_before_the_bridge_is_on);
     RUN_TEST(test_an_offset_out_of_range_is_a_fault);
+    RUN_TEST(test_the_second_stage_of_the_offsets_is_protected_as_operation_is);
     RUN_TEST(test_a_disabled_drive_needs_no_supply);
     RUN_TEST(test_an_estimate_out_of_range_opens_the_bridge_in_the_same_period);
     RUN_TEST(test_no_limit_lets_the_speed_pass_what_the_sampling_can_follow);
@@ -837,7 +1038,14 @@ int main(void)
     RUN_TEST(test_after_a_stop_moves_can_be_queued_again);
     RUN_TEST(test_a_stop_cut_off_by_a_disable_does_not_block_later_moves);
     RUN_TEST(test_a_stop_at_rest_is_harmless);
-    RUN_TEST(test_a_move_before_the_drive_is_ready_is_not_made_and_leaves_no_trace);
+    RUN_TEST(test_a_move_before_the_drive_is_ready_is_refused_and_leaves_no_trace);
+    RUN_TEST(test_what_is_legal_when_stands_in_one_table);
+    RUN_TEST(test_a_command_is_judged_by_the_state_that_it_will_find);
+    RUN_TEST(test_a_command_asked_for_before_the_drive_was_ready_is_refused_behind_it);
+    RUN_TEST(test_what_a_fault_keeps_from_acting_is_dropped_in_its_period_and_counted);
+    RUN_TEST(test_what_waits_for_the_end_of_a_move_is_dropped_when_a_fault_ends_it);
+    RUN_TEST(test_what_is_so_already_or_flushed_is_not_counted);
+    RUN_TEST(test_a_move_that_does_not_begin_where_the_reference_is_is_dropped_and_counted);
     RUN_TEST(test_a_hold_command_holds_without_the_delay);
     RUN_TEST(test_the_drive_holds_by_itself_15_ms_after_a_move);
     RUN_TEST(test_a_move_too_fast_is_refused_and_the_next_one_starts_where_the_last_ended);

@@ -21,6 +21,21 @@ constexpr std::uint32_t dma1 = 0x40020000, dmamux = 0x40020800, lpuart = 0x40008
 constexpr std::uint32_t iwdg = 0x40003000, comp = 0x40010200, opamp = 0x40010300;
 constexpr std::uint32_t dac3 = 0x50001000;
 
+/* A write that the chip refuses with this text. */
+inline void expect_refused(FakeChip &chip, const char *text, std::uint32_t address,
+                           std::uint32_t value)
+{
+    try {
+        chip.write(address, value);
+    } catch (const Refusal &refusal) {
+        if (std::string(refusal.what()).find(text) == std::string::npos) {
+            TEST_FAIL_MESSAGE(refusal.what());
+        }
+        return;
+    }
+    TEST_FAIL_MESSAGE(text);
+}
+
 struct Bench {
     explicit Bench(Stm32g474Config config = make_config()) : device(chip, config)
     {
@@ -43,7 +58,7 @@ struct Bench {
     {
         chip.write(rcc + 0x58, 0x10000400 | 0x1f); /* PWR, TIM2, 3, 4, 6 */
         chip.write(pwr + 0x80, 0);
-        chip.write(flash_registers, 0x704);
+        chip.write(flash_registers, 0x40704);
         chip.write(rcc, 0x10500);
         chip.run_for(2000 * microsecond);
         chip.write(rcc + 0x0c, 3 | 5 << 4 | 85 << 8 | 1 << 24);
@@ -152,15 +167,7 @@ struct Bench {
 
     void refused(const char *text, std::uint32_t address, std::uint32_t value)
     {
-        try {
-            chip.write(address, value);
-        } catch (const Refusal &refusal) {
-            if (std::string(refusal.what()).find(text) == std::string::npos) {
-                TEST_FAIL_MESSAGE(refusal.what());
-            }
-            return;
-        }
-        TEST_FAIL_MESSAGE(text);
+        expect_refused(chip, text, address, value);
     }
 
     FakeChip chip;

@@ -1,4 +1,5 @@
 /* Clocks, flash, watchdog and the refusals of registers, against RM0440. */
+#include "sil/virtual_board/peripherals/stm32g071_board.h"
 #include "tests/virtual_board/device_bench.h"
 
 void setUp()
@@ -38,7 +39,7 @@ void test_the_clock_needs_wait_states_boost_and_the_step_over_half_speed()
 {
     Bench bench;
     bench.start_clocks();
-    bench.refused("LATENCY", flash_registers, 0x703);
+    bench.refused("LATENCY", flash_registers, 0x40703);
     bench.refused("supply range", pwr + 0x80, 0x100);
     bench.refused("reserved", pwr + 0x80, 0x1); /* R1MODE is bit 8 */
     bench.refused("while the PLL is on", rcc + 0x0c, 3 | 4 << 4 | 85 << 8 | 1 << 24);
@@ -47,7 +48,7 @@ void test_the_clock_needs_wait_states_boost_and_the_step_over_half_speed()
     Bench slow;
     slow.chip.write(rcc + 0x58, 1 << 28);
     slow.chip.write(pwr + 0x80, 0);
-    slow.chip.write(flash_registers, 0x704);
+    slow.chip.write(flash_registers, 0x40704);
     slow.chip.write(rcc + 0x0c, 2 | 3 << 4 | 85 << 8 | 1 << 24);
     slow.chip.write(rcc, 0x1000500);
     slow.refused("not ready", rcc + 0x08, 8 << 4 | 3);
@@ -93,7 +94,7 @@ void unlock(Bench &bench)
 /* ACR with the data cache off: nothing is written while it is on. */
 void data_cache_off(Bench &bench)
 {
-    bench.chip.write(flash_registers, 0x304);
+    bench.chip.write(flash_registers, 0x40304);
 }
 
 bool busy(Bench &bench)
@@ -116,7 +117,7 @@ void test_flash_erases_in_22_ms_programs_in_85_us_and_keeps_its_contents()
     bench.chip.write(flash_registers + 0x14, 2 | 124 << 3 | 1 << 11 | 1 << 16);
     TEST_ASSERT_TRUE(flash.busy_until(page) == bench.chip.now() + 22000 * microsecond);
     TEST_ASSERT_TRUE(flash.busy_until(0x08000000) == bench.chip.now()); /* the other bank */
-    bench.refused("DCEN", flash_registers, 0x704);
+    bench.refused("DCEN", flash_registers, 0x40704);
     bench.chip.run_for(22000 * microsecond - 1);
     TEST_ASSERT_TRUE(busy(bench));
     bench.chip.run_for(1);
@@ -135,6 +136,23 @@ void test_flash_erases_in_22_ms_programs_in_85_us_and_keeps_its_contents()
     TEST_ASSERT_EQUAL_HEX8(0x55, flash.memory()[page - Flash::base + 7]);
     bench.device.reset("software");
     TEST_ASSERT_EQUAL_HEX8(0x44, flash.memory()[page - Flash::base]);
+}
+
+void test_the_debugger_stays_on_over_every_write_of_the_flash_s_access_control()
+{
+    Bench bench;
+    TEST_ASSERT_EQUAL_HEX32(0x40600, bench.chip.read(flash_registers)); /* RM0440: reset value */
+    bench.refused("DBG_SWEN", flash_registers, 0x704);
+    bench.start_clocks();
+    bench.refused("DBG_SWEN", flash_registers, 0x304);
+
+    FakeChip small;
+    G071Board board(small, bench::config(), 115200.0);
+    small.mappings = board.mappings();
+    board.reset("power-on");
+    TEST_ASSERT_EQUAL_HEX32(0x40600, small.read(flash_registers)); /* RM0444: reset value */
+    expect_refused(small, "DBG_SWEN", flash_registers, 0x302);
+    small.write(flash_registers, 0x40302);
 }
 
 void expect_store_refused(Bench &bench, const char *text, std::uint32_t address, unsigned size)
@@ -250,6 +268,7 @@ int main()
     RUN_TEST(test_a_block_without_its_clock_an_unknown_offset_and_a_half_access_are_refused);
     RUN_TEST(test_the_cause_of_a_reset_stays_until_it_is_removed);
     RUN_TEST(test_flash_erases_in_22_ms_programs_in_85_us_and_keeps_its_contents);
+    RUN_TEST(test_the_debugger_stays_on_over_every_write_of_the_flash_s_access_control);
     RUN_TEST(test_flash_refuses_what_silicon_refuses);
     RUN_TEST(test_cells_that_a_reset_cut_off_raise_the_nmi_until_they_are_erased);
     RUN_TEST(test_the_watchdog_resets_after_its_time);

@@ -5,6 +5,8 @@ import tomllib
 from typing import NamedTuple
 
 from comparison.simulator import ROOT, SCENARIOS, Refused, toml_document
+from motor_parameters import NotAMotor, parameters_of
+from spread.call import write_files
 
 PARAMETERS = ROOT / "sil/parameters"
 HOME_MOTOR = "bendjedia-2012"
@@ -90,30 +92,27 @@ class Motor(NamedTuple):
 
 
 def read_motor(name_or_path):
-    """A name of sil/motors or a path."""
+    """A name of sil/motors or a path, which has a / or ends in .toml."""
     path = pathlib.Path(name_or_path)
-    if path.suffix != ".toml":
+    if path.suffix != ".toml" and "/" not in str(name_or_path):
         path = ROOT / "sil/motors" / f"{name_or_path}.toml"
     try:
-        values = tomllib.loads(path.read_text(encoding="utf-8"))
-        resistance, inductance = values["resistance_ohm"], values["inductance_H"]
-        constant, teeth = values["torque_constant_Nm_A"], values["rotor_teeth"]
-        current, supply = values["rated_current_A"], values["supply_V"]
-        torque = constant * current
-        # (R I + Km w)^2 + (N w L I)^2 = U^2, solved for w.
-        a = constant**2 + (teeth * inductance * current) ** 2
-        b = resistance * current * constant
-        c = (resistance * current) ** 2 - supply**2
-        if c >= 0:
-            raise Refused(f"{path}: the supply of {supply:g} V does not drive the rated current")
-        speed = (-b + math.sqrt(b * b - a * c)) / a
-        return Motor(values["id"], path.resolve(), teeth, torque, speed,
-                     torque / values["inertia_kgm2"], current, resistance / (teeth * inductance),
-                     supply / constant)
-    except OSError as error:
-        raise Refused(f"{path}: {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, KeyError, TypeError) as error:
-        raise Refused(f"{path}: not a motor file: {error}") from error
+        values = parameters_of(path)
+    except NotAMotor as error:
+        raise Refused(str(error)) from error
+    constant, teeth = values["torque_constant_Nm_A"], values["rotor_teeth"]
+    resistance, inductance = values["resistance_ohm"], values["inductance_H"]
+    current, supply = values["rated_current_A"], values["supply_V"]
+    torque = constant * current
+    # (R I + Km w)^2 + (N w L I)^2 = U^2, solved for w.
+    a = constant**2 + (teeth * inductance * current) ** 2
+    b = resistance * current * constant
+    c = (resistance * current) ** 2 - supply**2
+    if c >= 0:
+        raise Refused(f"{path}: the supply of {supply:g} V does not drive the rated current")
+    speed = (-b + math.sqrt(b * b - a * c)) / a
+    return Motor(path.stem, path.resolve(), teeth, torque, speed, torque / values["inertia_kgm2"],
+                 current, resistance / (teeth * inductance), supply / constant)
 
 
 def read_scenario(name):
@@ -173,11 +172,12 @@ def scaled_table(table, scales):
 
 
 def scaled_scenario(move, motor, home):
-    """The scenario of `move` for another motor, as text. Its expectations are the home motor's."""
+    """The scenario of `move` for another motor, as text of a file beside the motor's. Its
+    expectations would be the home motor's."""
     scales = scales_of(move, motor, home)
     document = read_scenario(move.scenario)
     document.pop("expect", None)
-    document["motor"] = str(motor.file)
+    document["motor"] = f"./{motor.file.name}"
     document["description"] = f"Comparison, {move.title}, carried over to {motor.id}"
     document["duration_s"] = scaled_value("_s", document["duration_s"], scales)
     document["settling_band_rad"] = scaled_value(
@@ -189,19 +189,24 @@ def scaled_scenario(move, motor, home):
             f"loads x {scales.torque:.4g}\n" + toml_document(document))
 
 
-def scenarios_for(moves, motor, folder):
-    """Name or path of each move's scenario for this motor; another motor's are written to
-    `folder`."""
+def files_for(moves, motor):
+    """(name or path of each move's scenario, {name: text} of the files that this takes): none for
+    the home motor."""
     home = read_motor(HOME_MOTOR)
     if motor.id == home.id and motor.file == home.file:
-        return {move.name: move.scenario for move in moves}
-    folder.mkdir(parents=True, exist_ok=True)
-    files = {}
-    for move in moves:
-        file = folder / f"{move.scenario}.toml"
-        file.write_text(scaled_scenario(move, motor, home), encoding="utf-8")
-        files[move.name] = str(file.resolve())
-    return files
+        return {move.name: move.scenario for move in moves}, {}
+    files = {f"{move.scenario}.toml": scaled_scenario(move, motor, home) for move in moves}
+    files[motor.file.name] = motor.file.read_text(encoding="utf-8")
+    return {move.name: f"./{move.scenario}.toml" for move in moves}, files
+
+
+def scenarios_for(moves, motor, folder):
+    """Name or path of each move's scenario for this motor; another motor's are written to
+    `folder`, beside a copy of it."""
+    places, files = files_for(moves, motor)
+    write_files(folder, files)
+    return {name: str((folder / place).resolve()) if files else place
+            for name, place in places.items()}
 
 
 def parameters_for(law, motor, folder=None):

@@ -200,7 +200,7 @@ def page(comparison, *, pictures, cycles, ablation, command, version, numeric, h
     parts = [
         f"<h1>Position laws compared: {html.escape(comparison.motor.id)}</h1>",
         f'<p class="quiet">{html.escape(version)}; made by <code>{html.escape(command)}</code></p>',
-        f"<p>{best_of(comparison, nominal)}</p>",
+        f"<p>{best_of(comparison, nominal)} {html.escape(comparison.untuned())}</p>",
         f"<h2>Figures, plant {nominal.name}</h2>",
         grouped_table(names, main_columns(comparison, nominal), home_law, colours),
         refusals(comparison),

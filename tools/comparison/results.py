@@ -102,5 +102,15 @@ class Comparison:
                      if len({place[i] for place in places}) < len(all_of_them)]
             yield name, "; ".join(where), text
 
+    def untuned(self):
+        """A sentence on the laws whose parameters were not tuned for this motor; ""."""
+        notes = {}
+        for entry in self.entries:
+            if entry.note:
+                notes.setdefault(entry.note, []).append(entry.name)
+        told = [f"{', '.join(names)}: {note}" for note, names in notes.items()]
+        return (f"Not tuned for {self.motor.id}, so no statement about these laws on it: "
+                f"{'; '.join(told)}." if told else "")
+
     def cell(self, entry, plant, move):
         return self.cells[entry.name, plant.name, move.name]

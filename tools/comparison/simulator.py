@@ -3,39 +3,39 @@ import argparse
 import json
 import pathlib
 import re
-import shlex
-import subprocess
+
+from spread.answer import Refused
+from spread.machine import Local
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 DEFAULT_PROGRAM = ROOT / "build/sil/steadystep-sil"
 SCENARIOS = ROOT / "sil/scenarios"
-LONGEST_RUN_s = 900  # of one call; some hundred times what it takes
-
-
-class Refused(Exception):
-    """The simulator or the drive refuses its input; the text says what and why."""
+REFUSED_CODE = 2  # any other that is not expected is a defect, not an answer
 
 
 class Simulator:
-    def __init__(self, program=DEFAULT_PROGRAM, numeric="float"):
-        self.program = pathlib.Path(program)
+    def __init__(self, program=DEFAULT_PROGRAM, numeric="float", machine=None):
+        """`machine`: where it runs (spread.machine); None: here."""
+        self.program = pathlib.Path(program).absolute()
+        self.machine = machine or Local()
         self.numeric = numeric
         if not self.program.is_file():
             raise Refused(f"{self.program}: not found; build the preset sil first (tools/demo does)")
 
-    def _call(self, arguments, accepted=(0, 1)):
-        try:
-            done = subprocess.run([self.program, "--scenarios", SCENARIOS, *map(str, arguments)],
-                                  capture_output=True, text=True, check=False,
-                                  timeout=LONGEST_RUN_s)
-        except subprocess.TimeoutExpired as error:
-            raise Refused(f"{shlex.join(map(str, arguments))}: no end after {LONGEST_RUN_s} s"
-                          ) from error
-        if done.returncode not in accepted:
-            lines = done.stderr.strip().splitlines()
-            text = lines[-1] if lines else f"ended with code {done.returncode}"
+    def call(self, arguments, accepted=(0, 1), files=None, returns=()):
+        """Answer of a call (spread.machine); Refused if its input is refused."""
+        answer = self.machine.call(self.program, arguments, files, returns)
+        if answer.code not in (*accepted, REFUSED_CODE):
+            raise ChildProcessError(f"{self.program.name} ended with code {answer.code}: "
+                                    f"{answer.err.strip()[-300:]}")
+        if answer.code not in accepted:
+            lines = answer.err.strip().splitlines()
+            text = lines[-1] if lines else f"ended with code {answer.code}"
             raise Refused(text.removeprefix("steadystep-sil: ").replace(f"{ROOT}/", ""))
-        return done.stdout
+        return answer
+
+    def _call(self, arguments, accepted=(0, 1), files=None):
+        return self.call(arguments, accepted, files).out
 
     def version(self):
         return self._call(["--version"]).strip()
@@ -47,8 +47,13 @@ class Simulator:
         words = [line.split() for line in lines if line.startswith("  ")]
         return {name: gains for name, *gains in words}
 
-    def run(self, scenarios, parameters=None, settings=None, seeds=(1, 1), out=None):
-        """Summaries of all scenarios and seeds, as summary.json has them; Refused if refused."""
+    def motors(self, names):
+        """What `check-motor` says of motors by name or path: parameters, what follows, doubts."""
+        return json.loads(self._call(["check-motor", "--json", *names]))
+
+    def run(self, scenarios, parameters=None, settings=None, seeds=(1, 1), out=None, files=None):
+        """Summaries of all scenarios and seeds, as summary.json has them; Refused if refused.
+        `files`: text by name; scenarios among them are named "./name.toml"."""
         command = ["run", *scenarios, "--numeric", self.numeric, "--jobs", 1, "--json"]
         if parameters:
             command += ["--parameters", parameters]
@@ -58,7 +63,7 @@ class Simulator:
                     ["--seeds", f"{seeds[0]}-{seeds[1]}"])
         if out:
             command += ["--out", out]
-        return json.loads(self._call(command))
+        return json.loads(self._call(command, files=files))
 
     def run_each(self, scenarios, **how):
         """For each scenario its summaries, or the Refused that stands in their place."""

@@ -113,6 +113,7 @@ def as_json(comparison, version, numeric):
                 rows.append({"law": entry.name, "plant": plant.name, "move": move.name,
                              "parameters": entry.parameters.parent.name + "/"
                              + entry.parameters.stem if entry.parameters else None,
+                             "tuned": not entry.note,
                              "set": entry.settings, "lost": cell.lost or None,
                              "refused": cell.refused or None, **cell.figures,
                              "reproduce": cell.reproduce})

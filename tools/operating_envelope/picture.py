@@ -47,7 +47,7 @@ def panel_map(axes, rows, title, font_size, labelled=(True, True)):
              font_size)
     axes.set_xlim(-0.5, len(speeds) - 0.5)
     axes.set_ylim(-0.5, len(loads) - 0.5)
-    axes.set_xticks(range(len(speeds)), [f"{speed:.3g}" for speed in speeds],
+    axes.set_xticks(range(len(speeds)), [f"{speed:.3g}" if speed else "rest" for speed in speeds],
                     rotation=90 if font_size < 6 else 0)
     axes.set_yticks(range(len(loads)), [f"{100 * load:.0f}" for load in loads])
     axes.tick_params(length=0, labelsize=max(6.5, font_size), labelbottom=labelled[0],

@@ -4,13 +4,14 @@ from typing import NamedTuple
 from comparison.simulator import toml_document
 
 # Shares of the speed at which the back-EMF alone takes the supply, and of the rated torque.
-SPEEDS = (0.0065, 0.013, 0.033, 0.065, 0.13, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
+SPEEDS = (0.0, 0.0065, 0.013, 0.033, 0.065, 0.13, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
 LOADS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
-QUICK_SPEEDS = (0.033, 0.3, 0.7)
+QUICK_SPEEDS = (0.0, 0.033, 0.3, 0.7)
 QUICK_LOADS = (0.0, 0.3, 0.6)
 
 ACCELERATION = 0.2  # of what the rated torque gives the rotor: three times the inertia can follow
 JERK_TIME_s = 5e-3
+AT_REST_s = 1.0     # at no speed: a hold that is going to swing does so within it
 AT_SPEED_s = 0.1    # from the end of the acceleration to the load step
 WINDOW_s = 0.3      # from the load step on: what is judged
 
@@ -58,25 +59,31 @@ def points_of(motor, panels, quick):
             for speed in speeds_of(motor, quick)]
 
 
-def scenario_of(point, motor, plant):
-    """Up to speed, a while there, then the load, which opposes the motion."""
+def up_to_speed(point, motor):
+    """(events, time of the load); at no speed the drive rests."""
+    if point.speed_rad_s == 0:
+        return [], AT_REST_s
     acceleration = rounded(ACCELERATION * motor.rated_acceleration_rad_s2)
     jerk = rounded(acceleration / JERK_TIME_s)
     up_s = point.speed_rad_s / acceleration + JERK_TIME_s
-    load_s = round(up_s + AT_SPEED_s, 3)
+    event = {"time_s": 0.0, "command": "velocity", "speed_rad_s": point.speed_rad_s,
+             "acceleration_rad_s2": acceleration, "jerk_rad_s3": jerk}
+    return [event], round(up_s + AT_SPEED_s, 3)
+
+
+def scenario_of(point, motor, plant):
+    """Up to speed or at rest, a while there, then the load, against the motion. Text of a file
+    that stands beside the motor's."""
+    events, load_s = up_to_speed(point, motor)
     end_s = round(load_s + WINDOW_s, 3)
     window = [load_s, end_s]
     return toml_document({
         "description": f"envelope: {point.panel.title}, {point.speed_rad_s:g} rad/s, "
                        f"{point.load_Nm:g} Nm",
-        "motor": str(motor.file),
+        "motor": f"./{motor.file.name}",
         "duration_s": end_s,
         "plant": {"model": plant, **point.panel.settings},
-        "event": [
-            {"time_s": 0.0, "command": "velocity", "speed_rad_s": point.speed_rad_s,
-             "acceleration_rad_s2": acceleration, "jerk_rad_s3": jerk},
-            {"time_s": load_s, "load_torque_Nm": point.load_Nm},
-        ],
+        "event": [*events, {"time_s": load_s, "load_torque_Nm": point.load_Nm}],
         "report": [
             {"metric": "estimate_error_max_rad", "window": window},
             {"metric": "estimate_error_rms_rad", "window": window},

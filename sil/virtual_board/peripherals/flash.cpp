@@ -10,7 +10,7 @@ namespace
 
 enum : std::uint32_t { ACR = 0x00, KEYR = 0x08, SR = 0x10, CR = 0x14, ECCR = 0x18, OPTR = 0x20 };
 enum : std::uint32_t { PG = 1u << 0, PER = 1u << 1, STRT = 1u << 16, LOCK = 1u << 31 };
-enum : std::uint32_t { DCEN = 1u << 10, ECCD = 1u << 31, BK_ECC = 1u << 21 };
+enum : std::uint32_t { DCEN = 1u << 10, DBG_SWEN = 1u << 18, ECCD = 1u << 31, BK_ECC = 1u << 21 };
 enum : std::uint32_t { EOP = 1u << 0, ERRORS = 0xc3fau, BSY = 1u << 16, EOPIE = 1u << 24 };
 
 constexpr Ticks erase_time = ticks_per_s / 1000 * 22;
@@ -62,6 +62,7 @@ void Flash::put(std::uint32_t offset, std::uint32_t value, Master)
 {
     switch (offset) {
     case ACR:
+        require((value & DBG_SWEN) != 0, offset, value, debugger_off);
         require((value & at(ACR) & 0x200u) == 0 || (value & 0x800u) == 0, offset, value,
                 "ICRST while the instruction cache is enabled");
         require((value & at(ACR) & 0x400u) == 0 || (value & 0x1000u) == 0, offset, value,

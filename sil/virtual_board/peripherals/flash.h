@@ -19,6 +19,9 @@ class Flash : public RegisterBlock, public FlashMemory
     static constexpr std::uint32_t base = 0x08000000, bytes = 512 * 1024, page_bytes = 2048;
     static constexpr std::uint32_t bank_bytes = bytes / 2;
     static constexpr unsigned interrupt_line = 4;
+    /* Why ACR.DBG_SWEN, 1 after reset, is not to be cleared. */
+    static constexpr const char *debugger_off =
+        "DBG_SWEN cleared: no debugger reaches the running program, it could not be flashed again";
 
     Flash(Chip &chip, Rcc &rcc);
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "sil/virtual_board/peripherals/flash.h"
 #include "sil/virtual_board/peripherals/stm32g071_blocks.h"
 
 namespace virtual_board
@@ -8,6 +9,7 @@ namespace virtual_board
 namespace
 {
 
+enum : std::uint32_t { DBG_SWEN = 1u << 18 };
 enum : std::uint32_t { ACR = 0x00, KEYR = 0x08, SR = 0x10, CR = 0x14 };
 enum : std::uint32_t { PG = 1u << 0, PER = 1u << 1, STRT = 1u << 16, LOCK = 1u << 31 };
 enum : std::uint32_t { EOP = 1u << 0, ERRORS = 0xc3fau, BSY = 1u << 16 };
@@ -48,6 +50,7 @@ std::uint32_t G071Flash::fetch(std::uint32_t offset, Master)
 void G071Flash::put(std::uint32_t offset, std::uint32_t value, Master)
 {
     if (offset == ACR) {
+        require((value & DBG_SWEN) != 0, offset, value, Flash::debugger_off);
         keep(ACR, value);
         tree_.wait_states = field(value, 0, 3);
         tree_.check();

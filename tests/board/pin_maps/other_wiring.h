@@ -48,7 +48,7 @@
 #define AMPLIFIER_GAIN     32
 #define CURRENT_A_CHANNEL  13
 #define CURRENT_B_CHANNEL  18
-#define CURRENT_A_PER_CODE (3.0 / 4096.0)
+#define CURRENT_A_PER_CODE (30.0 / 4096.0)
 #define CURRENT_ZERO_CODE  2000
 
 #define OVERCURRENT_COMPARATORS(COMPARATOR)                                                        \

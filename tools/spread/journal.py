@@ -1,6 +1,16 @@
 """Finished points, a line of JSON each, so that a map goes on where it was cut off."""
 import hashlib
 import json
+import os
+
+
+def append(file, lines):
+    """Behind what the file holds; a line that was cut off is ended first."""
+    with open(file, "ab+") as stream:
+        size = stream.seek(0, os.SEEK_END)
+        stream.seek(max(0, size - 1))
+        start = "\n" if stream.read(1) not in (b"", b"\n") else ""
+        stream.write((start + "".join(f"{line}\n" for line in lines)).encode())
 
 
 class Journal:
@@ -32,5 +42,4 @@ class Journal:
     def put(self, scenario, result):
         key = self.key(scenario)
         self.found[key] = result
-        with open(self.file, "a", encoding="utf-8") as file:
-            file.write(json.dumps({"key": key, "result": result}) + "\n")
+        append(self.file, [json.dumps({"key": key, "result": result})])

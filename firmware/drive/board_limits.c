@@ -1,0 +1,120 @@
+#include "firmware/drive/board_limits.h"
+
+#include "firmware/control/modulation_limit.h"
+#include "firmware/design/refusal.h"
+#include "firmware/design/text.h"
+
+enum { REASON_TEXT = 100, DIGITS = 4 };
+
+static double smaller(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static double current_range_A(const struct hal_facts *facts)
+{
+    return BOARD_CURRENT_RANGE_A((int32_t)facts->converter_codes, facts->current_zero_code,
+                                 facts->current_A_per_code);
+}
+
+/* "<before><range> <unit><behind>" is the reason. */
+static bool refuse(const char *quantity, double value, double limit, const char *unit,
+                   const char *before, double range, const char *behind,
+                   char error[DRIVE_ERROR_TEXT])
+{
+    char reason[REASON_TEXT];
+    struct text text = text_in(reason, sizeof reason);
+
+    text_put(&text, before);
+    text_number(&text, range, DIGITS);
+    text_put(&text, " ");
+    text_put(&text, unit);
+    text_put(&text, behind);
+    return design_refuse_limit(error, (struct refusal){.quantity = quantity,
+                                                       .value = value,
+                                                       .relation = "at most",
+                                                       .limit = limit,
+                                                       .unit = unit,
+                                                       .reason = reason});
+}
+
+static bool check_supply(double supply_V, const struct hal_facts *facts,
+                         char error[DRIVE_ERROR_TEXT])
+{
+    const double limit_V = BOARD_SUPPLY_LIMIT_V(facts->converter_codes, facts->bus_V_per_code);
+
+    return supply_V <= limit_V ||
+           refuse("supply_V", supply_V, limit_V, "V",
+                  "over-voltage is 1.29 times as much, and the board measures up to ",
+                  (double)(facts->converter_codes - 1u) * facts->bus_V_per_code, "", error);
+}
+
+static bool check_rated_current(double rated_A, double range_A, char error[DRIVE_ERROR_TEXT])
+{
+    const double limit_A = RATED_CURRENT_SHARE * range_A;
+
+    return rated_A <= limit_A || refuse("rated_current_A", rated_A, limit_A, "A", "0.8 of the +-",
+                                        range_A, " that the board measures", error);
+}
+
+static bool check_current_limit(double current_A, double range_A, char error[DRIVE_ERROR_TEXT])
+{
+    const double limit_A = CURRENT_LIMIT_SHARE * range_A;
+
+    return current_A <= limit_A ||
+           refuse("current_limit_A", current_A, limit_A, "A", "0.98 of the +-", range_A,
+                  " that the board measures", error);
+}
+
+bool board_limits_apply(struct drive_settings *settings, const struct hal_facts *facts,
+                        char error[DRIVE_ERROR_TEXT])
+{
+    const double rated_A = settings->motor.rated_current_A;
+    const double range_A = current_range_A(facts);
+    const bool trip_given = settings->overcurrent_trip_A == settings->overcurrent_trip_A;
+    /* a limit equal to the rated current is its default: what was given is the motor */
+    const bool limit_given =
+        settings->current_limit_A < rated_A || settings->current_limit_A > rated_A;
+
+    if (!trip_given) {
+        settings->overcurrent_trip_A =
+            smaller(OVERCURRENT_SHARE * rated_A, CURRENT_LIMIT_SHARE * range_A);
+    }
+    return check_supply(settings->motor.supply_V, facts, error) &&
+           (limit_given ? check_current_limit(settings->current_limit_A, range_A, error)
+                        : check_rated_current(rated_A, range_A, error)) &&
+           (settings->overcurrent_trip_A <= range_A ||
+            refuse("overcurrent_trip_A", settings->overcurrent_trip_A, range_A, "A",
+                   "the board measures +-", range_A, "", error));
+}
+
+/* MODULATION_MAX of the supply = R i + Km w, with the current Kv w / Km of the friction. */
+static double supplied_speed_rad_s(const struct motor_params *motor)
+{
+    const double friction_V_s_rad =
+        motor->resistance_ohm * motor->viscous_friction_Nms_rad / motor->torque_constant_Nm_A;
+
+    return MODULATION_MAX * motor->supply_V / (motor->torque_constant_Nm_A + friction_V_s_rad);
+}
+
+struct speed_limit board_limits_speed(const struct drive_settings *settings)
+{
+    const struct motor_params *motor = &settings->motor;
+    const double supplied_rad_s = supplied_speed_rad_s(motor);
+    const double default_rad_s = SPEED_LIMIT_SHARE * motor->supply_V / motor->torque_constant_Nm_A;
+    const bool widened = settings->speed_limit_rad_s > default_rad_s;
+
+    return widened || settings->speed_limit_rad_s < supplied_rad_s
+               ? (struct speed_limit){settings->speed_limit_rad_s, "limit of the drive"}
+               : (struct speed_limit){supplied_rad_s, "where the back-EMF takes up the supply"};
+}
+
+double drive_blind_speed_rad_s(const struct drive_settings *settings, const struct hal_facts *facts)
+{
+    const double offset_A = facts->current_offset_codes * facts->current_A_per_code;
+    const double resistance_ohm = settings->motor.resistance_ohm + facts->bridge_resistance_ohm;
+
+    return settings->feedback == DRIVE_FEEDBACK_ENCODER
+               ? 0.0
+               : offset_A * resistance_ohm / settings->motor.torque_constant_Nm_A;
+}

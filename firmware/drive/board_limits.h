@@ -1,0 +1,62 @@
+/*
+ * What a board's sensing and the supply allow of a motor and its settings: refused where it cannot
+ * work, and stated where the drive is blind. At start-up only.
+ */
+#ifndef STEADYSTEP_BOARD_LIMITS_H
+#define STEADYSTEP_BOARD_LIMITS_H
+
+#include "firmware/drive/drive_interface.h"
+#include "hal/hal.h"
+
+/* Shares of the nominal supply beyond which the protection opens the bridge. */
+#define BUS_VOLTAGE_MIN 0.5
+#define BUS_VOLTAGE_MAX 1.29
+
+/* Default overcurrent trip / rated current. */
+#define OVERCURRENT_SHARE 1.8
+
+/* Default speed limit / the speed whose back-EMF is the supply. */
+#define SPEED_LIMIT_SHARE 1.3
+
+/* Of the range in which the board measures currents: the rated current, above which the trip needs
+   room, unless a current limit is given; a limit that is given, and the default trip. */
+#define RATED_CURRENT_SHARE 0.8
+#define CURRENT_LIMIT_SHARE 0.98
+
+/* The supply, V, whose over-voltage a board's last code but one still shows. */
+#define BOARD_SUPPLY_LIMIT_V(codes, V_per_code)                                                    \
+    (((double)(codes)-2.0) * (V_per_code) / BUS_VOLTAGE_MAX)
+
+/* The largest current, A, that in both directions leaves a code beyond it. */
+#define BOARD_CURRENT_RANGE_A(codes, zero_code, A_per_code)                                        \
+    (((double)(2 * (zero_code) < (codes) ? (zero_code) : (codes)-1 - (zero_code)) - 1.0) *         \
+     (A_per_code))
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * Puts in force what follows from motor and board: overcurrent_trip_A, if it is not given. false:
+ * over-voltage or overcurrent could never be seen; what was given, the limit and the reason are in
+ * `error`.
+ */
+bool board_limits_apply(struct drive_settings *settings, const struct hal_facts *facts,
+                        char error[DRIVE_ERROR_TEXT]);
+
+/* The speed at which reference speeds end, and why there. */
+struct speed_limit {
+    double rad_s;
+    const char *reason;
+};
+
+/* The speed at which back-EMF and friction leave nothing of the supply, or speed_limit_rad_s if
+   that is less, or beyond its default: then motion that lags for want of voltage is what is asked
+   for. */
+struct speed_limit board_limits_speed(const struct drive_settings *settings);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

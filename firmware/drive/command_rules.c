@@ -1,0 +1,105 @@
+#include "firmware/drive/command_rules.h"
+
+#include "firmware/design/refusal.h"
+#include "firmware/design/text.h"
+#include "firmware/drive/fault_reason.h"
+
+const uint8_t command_rules_states[DRIVE_COMMANDS] = {
+    [DRIVE_COMMAND_ENABLE] = OBEYED_OUTSIDE_FAULT,
+    [DRIVE_COMMAND_DISABLE] = OBEYED_IN_ANY_STATE,
+    [DRIVE_COMMAND_HOLD] = OBEYED_IN_OPERATION,
+    [DRIVE_COMMAND_MOVE_TRAPEZOID] = OBEYED_IN_OPERATION,
+    [DRIVE_COMMAND_MOVE_SMOOTH] = OBEYED_IN_OPERATION,
+    [DRIVE_COMMAND_STEP] = OBEYED_IN_OPERATION,
+    [DRIVE_COMMAND_STOP] = OBEYED_IN_OPERATION,
+    [DRIVE_COMMAND_SINE] = OBEYED_IN_OPERATION,
+    [DRIVE_COMMAND_SET_POINT] = OBEYED_IN_OPERATION,
+    [DRIVE_COMMAND_VELOCITY] = OBEYED_IN_OPERATION,
+    [DRIVE_COMMAND_RETARGET] = OBEYED_IN_OPERATION,
+    [DRIVE_COMMAND_SAVE] = OBEYED_IN_ANY_STATE, /* but not while a sine or set-points go on */
+};
+
+/* As a refusal calls it. */
+static const char *name_of(enum drive_command_kind kind)
+{
+    static const char *const names[DRIVE_COMMANDS] = {
+        [DRIVE_COMMAND_ENABLE] = "enable",       [DRIVE_COMMAND_DISABLE] = "disable",
+        [DRIVE_COMMAND_HOLD] = "hold",           [DRIVE_COMMAND_MOVE_TRAPEZOID] = "move",
+        [DRIVE_COMMAND_MOVE_SMOOTH] = "move",    [DRIVE_COMMAND_STEP] = "step",
+        [DRIVE_COMMAND_STOP] = "stop",           [DRIVE_COMMAND_SINE] = "sine",
+        [DRIVE_COMMAND_SET_POINT] = "set-point", [DRIVE_COMMAND_VELOCITY] = "velocity",
+        [DRIVE_COMMAND_RETARGET] = "retarget",   [DRIVE_COMMAND_SAVE] = "save",
+    };
+
+    return names[kind];
+}
+
+/* Ready only since the command was asked for: it is as if it had been posted before. */
+static bool ready_only_since(const struct drive *drive, uint32_t asked_in)
+{
+    const uint32_t since = *(const volatile uint32_t *)&drive->state_since;
+    const uint32_t now = *(const volatile uint32_t *)&drive->period;
+
+    return now - since < now - asked_in;
+}
+
+/* It acts in its turn, behind an enable that waits for a disable; a stop overtakes both. */
+static bool acts_behind_enable(const struct drive *drive, enum drive_command_kind kind)
+{
+    return kind != DRIVE_COMMAND_STOP && drive->commands.disable.posted &&
+           command_queue_enable_waits(&drive->commands);
+}
+
+/* Of the steps of enabling, any one stands for all. */
+static enum drive_state state_found(const struct drive *drive, const struct drive_command *command,
+                                    uint32_t asked_in)
+{
+    const enum drive_state state = drive_state_by(drive, command->at_period);
+    const bool on_its_way =
+        state == DRIVE_SWITCH_ON_DISABLED
+            ? command_queue_enable_waits(&drive->commands)
+            : state == DRIVE_OPERATION_ENABLED &&
+                  (ready_only_since(drive, asked_in) || acts_behind_enable(drive, command->kind));
+
+    return on_its_way ? DRIVE_CALIBRATING_OFFSETS : state;
+}
+
+static void explain(struct text *text, const struct drive *drive, enum drive_command_kind kind,
+                    enum drive_state found)
+{
+    if (found == DRIVE_FAULT && kind == DRIVE_COMMAND_ENABLE) {
+        text_put(text, "fault ");
+        fault_reason_put(text, drive);
+        text_put(text, "; disable clears it");
+    } else if (found == DRIVE_FAULT) {
+        text_put(text, "the drive is in fault, disable clears it");
+    } else if (found != DRIVE_SWITCH_ON_DISABLED) {
+        text_put(text, "the drive is being enabled, wait until it is ready");
+    } else if (drive->commands.disable.posted) {
+        text_put(text, "a disable acts in period ");
+        text_unsigned(text, drive->commands.disable.at_period);
+        text_put(text, ", enable the drive behind it");
+    } else {
+        text_put(text, "the drive is switch-on-disabled, enable it first");
+    }
+}
+
+bool command_rules_check(const struct drive *drive, const struct drive_command *command,
+                         uint32_t asked_in, char error[DRIVE_ERROR_TEXT])
+{
+    const enum drive_state found = state_found(drive, command, asked_in);
+    struct text text;
+
+    if (command->kind == DRIVE_COMMAND_SAVE && drive->planner.motion != PLANNER_IDLE) {
+        return design_refuse(error, "save refused: writing takes longer than sine and set-points "
+                                    "can wait for their continuation; stop first");
+    }
+    if (command_rules_obeyed(command->kind, found)) {
+        return true;
+    }
+    text = text_in(error, DRIVE_ERROR_TEXT);
+    text_put(&text, name_of(command->kind));
+    text_put(&text, " refused: ");
+    explain(&text, drive, command->kind, found);
+    return false;
+}

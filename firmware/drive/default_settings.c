@@ -1,0 +1,107 @@
+#include "firmware/drive/default_settings.h"
+
+#include "firmware/design/feedback_linearisation_design.h"
+#include "firmware/design/hold_check.h"
+#include "firmware/design/loop_bandwidth.h"
+#include "firmware/design/mechanical_control_design.h"
+#include "firmware/estimator/encoder_observer.h"
+
+/* Of the rated current. */
+#define HOLD_CURRENT_SHARE 0.5
+
+/* Where the hold does not bear that: down to 6 % of it. */
+#define HOLD_CURRENT_STEP  0.7
+#define HOLD_CURRENT_STEPS 8
+
+static double smaller(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static void put(double *setting, double value)
+{
+    if (*setting != *setting) {
+        *setting = value;
+    }
+}
+
+static bool fast(const struct drive_settings *settings)
+{
+    return settings->law == POSITION_LAW_FEEDBACK_LINEARISATION &&
+           settings->feedback == DRIVE_FEEDBACK_ENCODER;
+}
+
+static double law_bandwidth_max(const struct drive_settings *settings, double period_s)
+{
+    switch (settings->law) {
+    case POSITION_LAW_FEEDBACK_LINEARISATION:
+        return LINEARISED_LAW_BANDWIDTH_PERIOD_MAX / period_s;
+    case POSITION_LAW_STMMS: /* without current control the winding's lag counts, too */
+        return smaller(mechanical_control_bandwidth_max(period_s),
+                       winding_lag_bandwidth_max(&settings->motor));
+    case POSITION_LAW_STMMS_PLUS:
+    case POSITION_LAW_FOC:
+        return mechanical_control_bandwidth_max(period_s);
+    default:
+        return settings->current_bandwidth_rad_s / CURRENT_OVER_POSITION_BANDWIDTH_MIN;
+    }
+}
+
+static double law_bandwidth_wanted(const struct drive_settings *settings)
+{
+    const bool stiff = settings->law == POSITION_LAW_FEEDBACK_LINEARISATION ||
+                       settings->law == POSITION_LAW_STATE_FEEDBACK;
+
+    return fast(settings) ? 900.0 : stiff ? 300.0 : 200.0;
+}
+
+static bool bears(const struct drive_settings *settings, double period_s, double hold_current_A)
+{
+    const struct hold_task task = {
+        .motor = &settings->motor,
+        .period_s = period_s,
+        .hold_current_A = hold_current_A,
+        .bandwidth_rad_s = settings->hold_bandwidth_rad_s,
+        .current_bandwidth_rad_s = settings->current_bandwidth_rad_s,
+    };
+    char limit[DESIGN_ERROR_TEXT];
+    double damping_As_rad;
+
+    return !hold_damping_design(&task, &damping_As_rad, limit) || /* refused for itself, then */
+           hold_control_check(&task, limit);
+}
+
+/* Half the rated current, or what of it the hold's own check passes. */
+static double hold_current(const struct drive_settings *settings, double period_s)
+{
+    double current_A = HOLD_CURRENT_SHARE * settings->motor.rated_current_A;
+
+    for (int step = 0; step < HOLD_CURRENT_STEPS && !bears(settings, period_s, current_A); step++) {
+        current_A *= HOLD_CURRENT_STEP;
+    }
+    return current_A;
+}
+
+/* With the default law of an encoder 2000, else 1500, and twice what a stiff hold swings with. */
+static double current_bandwidth(const struct drive_settings *settings, double period_s)
+{
+    const double hold_current_A = settings->hold_current_A == settings->hold_current_A
+                                      ? settings->hold_current_A
+                                      : HOLD_CURRENT_SHARE * settings->motor.rated_current_A;
+    const double swing = 2.0 * hold_frequency(&settings->motor, hold_current_A);
+    const double least = fast(settings) ? 2000.0 : 1500.0;
+
+    return smaller(swing > least ? swing : least, CURRENT_BANDWIDTH_PERIOD_MAX / period_s);
+}
+
+void default_settings_apply(struct drive_settings *settings, double period_s)
+{
+    put(&settings->current_bandwidth_rad_s, current_bandwidth(settings, period_s));
+    put(&settings->law_bandwidth_rad_s,
+        smaller(law_bandwidth_wanted(settings), law_bandwidth_max(settings, period_s)));
+    put(&settings->observer_bandwidth_rad_s,
+        smaller(fast(settings) ? 1400.0 : 1000.0, ENCODER_OBSERVER_PERIOD_MAX / period_s));
+    put(&settings->hold_current_A, hold_current(settings, period_s));
+    put(&settings->hold_bandwidth_rad_s, hold_bandwidth(&settings->motor, settings->hold_current_A,
+                                                        settings->current_bandwidth_rad_s));
+}

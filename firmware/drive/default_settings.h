@@ -1,0 +1,14 @@
+/* The settings that are not given and follow from motor, feedback, law and control period. */
+#ifndef STEADYSTEP_DEFAULT_SETTINGS_H
+#define STEADYSTEP_DEFAULT_SETTINGS_H
+
+#include "firmware/drive/drive_interface.h"
+
+/*
+ * Puts in force what is not given (NaN) of law_bandwidth_rad_s, current_bandwidth_rad_s,
+ * observer_bandwidth_rad_s, hold_current_A and hold_bandwidth_rad_s, each within what the period
+ * and the motor bear.
+ */
+void default_settings_apply(struct drive_settings *settings, double period_s);
+
+#endif

@@ -1,0 +1,137 @@
+#include "firmware/drive/offset_calibration.h"
+
+static int32_t whole(double value)
+{
+    return (int32_t)(value < 1e9 ? value : 1e9);
+}
+
+struct offset_calibration_params offset_calibration_design(const struct hal_facts *facts,
+                                                           const struct motor_params *motor,
+                                                           const struct per_unit *base)
+{
+    const double share = facts->leg_delay_s / facts->control_period_s;
+    const double resistance_ohm = motor->resistance_ohm + facts->bridge_resistance_ohm;
+    const double delay_codes = motor->supply_V * share / resistance_ohm / facts->current_A_per_code;
+    const double finer = (double)facts->converter_codes / 4096.0;
+    const double shift_codes = OFFSET_SHIFT_CODES_MAX * finer + delay_codes;
+    const double drop_V = motor->resistance_ohm * facts->current_A_per_code;
+
+    return (struct offset_calibration_params){
+        .delay = {whole(delay_codes * OFFSET_SAMPLES), -1},
+        .shift_max = {whole(shift_codes * OFFSET_SAMPLES), INT32_MAX},
+        .deviation_max = whole(OFFSET_DEVIATION_CODES_MAX * finer * OFFSET_SAMPLES),
+        .drop = coef_from_double(drop_V / base->voltage_V * NUM_CODE_SCALE),
+    };
+}
+
+void offset_calibration_reset(struct offset_calibration *calibration)
+{
+    const struct offset_channel zero = {.sum = 0};
+
+    for (int n = 0; n < OFFSET_CHANNELS; n++) {
+        calibration->channel[n] = zero;
+    }
+    calibration->samples = 0;
+    calibration->bridge_on = false;
+}
+
+static int32_t magnitude(int32_t value)
+{
+    return value < 0 ? -value : value;
+}
+
+static void add(struct offset_calibration *calibration, const int32_t code[OFFSET_CHANNELS])
+{
+    const int32_t samples = ++calibration->samples;
+
+    for (int n = 0; n < OFFSET_CHANNELS; n++) {
+        struct offset_channel *channel = &calibration->channel[n];
+
+        channel->sum += code[n];
+        if (samples <= 0) {
+            channel->sum = 0;
+            channel->deviation = 0;
+        } else if (samples == OFFSET_REFERENCE_SAMPLES) {
+            channel->reference = channel->sum / OFFSET_REFERENCE_SAMPLES;
+        } else if (samples > OFFSET_REFERENCE_SAMPLES) {
+            channel->deviation += magnitude(code[n] - channel->reference);
+        }
+    }
+}
+
+/* Whether what a channel has read is that of a sensor. Leaves the sum that counts, and after stage
+   1 what stage 2 is compared with. */
+static bool judge(struct offset_channel *channel, const struct offset_calibration_params *params,
+                  int kind, bool bridge_on)
+{
+    if (magnitude(channel->sum) > OFFSET_CODES_MAX * OFFSET_SAMPLES) {
+        return false;
+    }
+    if (bridge_on) {
+        const int32_t difference = channel->sum - channel->sum_off;
+        const int32_t shift = magnitude(difference);
+
+        if (shift > params->shift_max[kind] || channel->deviation > channel->deviation_max) {
+            return false;
+        }
+        if (shift > params->delay[kind]) {
+            return true;
+        }
+        channel->sum = channel->sum_off;
+        channel->flowing = difference;
+    } else {
+        channel->sum_off = channel->sum;
+        channel->deviation_max = params->deviation_max + 2 * channel->deviation;
+    }
+    return true;
+}
+
+/* The last sample of a stage has been added. */
+static bool end_stage(struct offset_calibration *calibration,
+                      const struct offset_calibration_params *params)
+{
+    for (int n = 0; n < OFFSET_CHANNELS; n++) {
+        if (!judge(&calibration->channel[n], params, n / 2, calibration->bridge_on)) {
+            return false;
+        }
+    }
+    if (!calibration->bridge_on) {
+        calibration->bridge_on = true;
+        calibration->samples = -OFFSET_SETTLING_SAMPLES;
+    }
+    return true;
+}
+
+__attribute__((noinline)) static num_t mean_offset(int32_t sum, coef_t per_code)
+{
+    return num_mul(num_from_code(sum, per_code), NUM(1.0 / OFFSET_SAMPLES));
+}
+
+enum offset_result offset_calibration_step(struct offset_calibration *calibration,
+                                           const struct offset_calibration_params *params,
+                                           const struct measurement_params *scales,
+                                           const struct hal_samples *samples,
+                                           struct channels *offset)
+{
+    const int32_t code[OFFSET_CHANNELS] = {
+        samples->current_a - scales->current_zero_code,
+        samples->current_b - scales->current_zero_code,
+        samples->phase_voltage_a,
+        samples->phase_voltage_b,
+    };
+
+    /* a period behind the last sample: what follows the calibration costs enough by itself */
+    if (calibration->samples == OFFSET_SAMPLES) {
+        offset->current.a = mean_offset(calibration->channel[0].sum, scales->current);
+        offset->current.b = mean_offset(calibration->channel[1].sum, scales->current);
+        offset->voltage.a = mean_offset(calibration->channel[2].sum, scales->phase_voltage) -
+                            mean_offset(calibration->channel[0].flowing, params->drop);
+        offset->voltage.b = mean_offset(calibration->channel[3].sum, scales->phase_voltage) -
+                            mean_offset(calibration->channel[1].flowing, params->drop);
+        return OFFSETS_FOUND;
+    }
+    add(calibration, code);
+    return calibration->samples < OFFSET_SAMPLES || end_stage(calibration, params)
+               ? OFFSETS_PENDING
+               : OFFSETS_OUT_OF_RANGE;
+}

@@ -1,0 +1,161 @@
+/* What the campaign of random motors says of a run. */
+#include <string>
+
+#include "sil/scenario/campaign.h"
+#include "unity.h"
+
+using namespace scenario;
+
+namespace
+{
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double degree_rad = pi / 180 / 50; /* electrical, of 50 teeth */
+constexpr double full_step_rad = pi / 2 / 50;
+constexpr double count_rad = 2 * pi / 4000;
+constexpr std::size_t rows = 10000; /* a second of operation */
+constexpr std::size_t settled = rows - 2500;
+
+/* A run of a second whose rotor stands where reference and estimate have it. */
+class Course
+{
+  public:
+    explicit Course(int encoder_counts = 0) : record_(1e-4)
+    {
+        scenario_.motor.params.rotor_teeth = 50;
+        scenario_.plant.sensors.encoder_counts_per_turn = encoder_counts;
+        result_.scenario = &scenario_;
+        result_.all.metrics.fault = "none";
+        for (Row &row : course_) {
+            row[DRIVE_STATE] = DRIVE_OPERATION_ENABLED;
+        }
+    }
+
+    Course &with(Column column, std::size_t first, std::size_t last, double value)
+    {
+        for (std::size_t row = first; row < last; ++row) {
+            course_[row][column] = value;
+        }
+        return *this;
+    }
+    Course &with_detent()
+    {
+        scenario_.plant.imperfections.detent_4 = 0.05;
+        return *this;
+    }
+    Course &with_fault(std::size_t row)
+    {
+        result_.all.metrics.fault = "stalled";
+        return with(DRIVE_STATE, row, rows, DRIVE_FAULT);
+    }
+    Course &with_failure()
+    {
+        result_.failure = "a move was refused";
+        return *this;
+    }
+
+    CampaignOutcome outcome()
+    {
+        record_.append(Row{}); /* of the enabling */
+        record_.start_time_here();
+        for (const Row &row : course_) {
+            record_.append(row);
+        }
+        return motors_campaign.judge(result_, record_);
+    }
+    std::string verdict()
+    {
+        return outcome().verdict;
+    }
+
+  private:
+    Scenario scenario_;
+    Result result_;
+    std::vector<Row> course_ = std::vector<Row>(rows);
+    Record record_;
+};
+
+void expect(const char *verdict, Course &course)
+{
+    TEST_ASSERT_EQUAL_STRING(verdict, course.verdict().c_str());
+}
+
+void a_rotor_where_it_belongs_is_held()
+{
+    Course plain;
+    expect("held", plain);
+    Course swings;
+    expect("held", swings.with(THETA_EST, 100, 200, 44 * degree_rad));
+}
+
+void the_estimate_decides_between_commutation_and_a_silent_loss()
+{
+    Course off, lost;
+    expect("commutation beyond 45 degrees", off.with(THETA_EST, 100, 101, 46 * degree_rad));
+    expect("lost silently", lost.with(THETA_EST, 100, 101, 91 * degree_rad));
+}
+
+void a_fault_is_a_fault_and_what_is_estimated_behind_it_says_nothing()
+{
+    Course fault;
+    fault.with_fault(500).with(THETA_EST, 500, rows, 1e3);
+    const CampaignOutcome outcome = fault.outcome();
+    TEST_ASSERT_EQUAL_STRING("fault stalled", outcome.verdict.c_str());
+    TEST_ASSERT_EQUAL_DOUBLE(0, outcome.figures[0]);
+    Course refused;
+    expect("failed", refused.with_failure());
+}
+
+void the_end_is_judged_to_a_sixteenth_of_a_step_and_a_fifth_with_detent()
+{
+    for (const double share : {0.99, 1.01}) {
+        const char *const verdict = share < 1 ? "held" : "position at the end";
+        Course plain, detent;
+        expect(verdict, plain.with(THETA, settled, settled + 1, share * full_step_rad / 16)
+                            .with(THETA_EST, settled, settled + 1, share * full_step_rad / 16));
+        expect(verdict,
+               detent.with_detent().with(THETA_REF, rows - 1, rows, share * full_step_rad / 5));
+        Course counted(4000);
+        expect(verdict,
+               counted.with(THETA_REF, settled, rows, share * (full_step_rad / 16 + count_rad)));
+    }
+    Course earlier;
+    expect("held", earlier.with(THETA_REF, 0, settled - 1, full_step_rad));
+}
+
+/* Three quarters of a count of 4,000 are 3.4 degrees; with 40,000 three degrees are more. */
+void ready_is_wrong_with_a_zero_that_is_off()
+{
+    for (const int counts : {4000, 40000}) {
+        const double allowed_rad = counts == 4000 ? 0.75 * count_rad : 3 * degree_rad;
+        for (const double share : {0.99, 1.01}) {
+            Course course(counts);
+            expect(share < 1 ? "held" : "wrong ready",
+                   course.with(THETA_EST, 0, 5, share * allowed_rad));
+        }
+    }
+    Course sensorless, later(4000);
+    expect("held", sensorless.with(THETA_EST, 0, 5, 20 * degree_rad));
+    expect("held", later.with(THETA_EST, 20, 25, 20 * degree_rad));
+}
+
+} // namespace
+
+void setUp()
+{
+}
+
+void tearDown()
+{
+}
+
+int main()
+{
+    UNITY_BEGIN();
+    RUN_TEST(a_rotor_where_it_belongs_is_held);
+    RUN_TEST(the_estimate_decides_between_commutation_and_a_silent_loss);
+    RUN_TEST(a_fault_is_a_fault_and_what_is_estimated_behind_it_says_nothing);
+    RUN_TEST(the_end_is_judged_to_a_sixteenth_of_a_step_and_a_fifth_with_detent);
+    RUN_TEST(ready_is_wrong_with_a_zero_that_is_off);
+    return UNITY_END();
+}

@@ -1,0 +1,1 @@
+"""Does every motor hold: motor x plant x move x feedback."""

@@ -1,0 +1,1 @@
+"""How tools spread the runs of the simulator: on this machine's cores, or over a cluster."""
