@@ -78,6 +78,19 @@ static num_t error_of(const struct drive *drive, const struct rotor *rotor)
     return position_difference(drive->reference.next.position, rotor->position);
 }
 
+/* A hold that has lost its grip drives the rotor on: the position law catches it, if it may. */
+static enum synchronism judge_grip(struct drive *drive, const struct rotor *rotor)
+{
+    const enum synchronism verdict = synchronism_monitor_judge_grip(
+        &drive->synchronism_monitor, &drive->synchronism_monitor_params, error_of(drive, rotor));
+
+    if (verdict != SYNCHRONISM_SURE) {
+        standstill_hold_leave(&drive->hold, 0u);
+        position_law_reset(&drive->law);
+    }
+    return verdict;
+}
+
 /* One of the steps of a block. */
 static enum synchronism step(struct drive *drive, const struct rotor *rotor)
 {
@@ -108,9 +121,7 @@ static enum synchronism step(struct drive *drive, const struct rotor *rotor)
         return synchronism_monitor_judge_following(monitor, params, error_of(drive, rotor),
                                                    drive->reference.next.speed - rotor->speed);
     case JUDGE_GRIP:
-        return drive->hold.active
-                   ? synchronism_monitor_judge_grip(monitor, params, error_of(drive, rotor))
-                   : SYNCHRONISM_SURE;
+        return drive->hold.active ? judge_grip(drive, rotor) : SYNCHRONISM_SURE;
     case DOUBT:
         return doubt(drive);
     default:

@@ -125,7 +125,21 @@ static void anchor(struct encoder_alignment *alignment, int32_t count)
 
 void encoder_alignment_start(struct encoder_alignment *alignment, int32_t count)
 {
-    *alignment = (struct encoder_alignment){.stage = ALIGNMENT_DRAWING};
+    alignment->stage = ALIGNMENT_DRAWING;
+    alignment->way = ALIGNMENT_UP_WEAK;
+    alignment->stop = 0u;
+    alignment->offset = 0;
+    alignment->moved = 0;
+    alignment->deviation = 0;
+    alignment->rotor = 0;
+    alignment->zero = NUM(0.0);
+    for (int way = 0; way < ALIGNMENT_WAYS; way++) {
+        alignment->deviation_on_way[way] = NUM(0.0);
+    }
+    for (int angle = 0; angle < ANGLES; angle++) {
+        alignment->zero_at[angle] = NUM(0.0);
+    }
+    go_to(alignment, 0);
     anchor(alignment, count);
 }
 

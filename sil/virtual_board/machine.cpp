@@ -74,9 +74,11 @@ void Machine::load(const ElfImage &image)
     }
     stack_limit_ = image.symbol("stack_bottom");
     stack_top_ = image.symbol("stack_top");
-    enabling_.reset();
-    if (const auto step = image.symbol("encoder_aligning_step")) {
-        enabling_ = *step & ~1u; /* tests/board/interrupt_in_ccm.py */
+    enabling_.clear();
+    for (const char *name : {"encoder_aligning_step", "offset_calibration_step"}) {
+        if (const auto step = image.symbol(name)) {
+            enabling_.push_back(*step & ~1u); /* tests/board/interrupt_in_ccm.py */
+        }
     }
     account_.set_stages(costs_.stages);
     entry_stage_ = stage_named(costs_.stages, "sampling");

@@ -243,7 +243,7 @@ CodePlace Machine::place_of(std::uint32_t address) const
     if (fast.bytes == 0 || fast.contains(address)) {
         return CodePlace::as_wanted;
     }
-    if (enabling_ == address) {
+    if (std::find(enabling_.begin(), enabling_.end(), address) != enabling_.end()) {
         return CodePlace::flash_by_intent;
     }
     return description_.flash.contains(address) ? CodePlace::flash : CodePlace::elsewhere;

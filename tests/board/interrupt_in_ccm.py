@@ -21,7 +21,7 @@ from arm_image import call_graph  # noqa: E402
 from arm_image.image import Image  # noqa: E402
 
 INTERRUPTS = ["control_interrupt", "deadline_guard_interrupt"]
-ENABLING = {"encoder_aligning_step"}  # and what it alone calls
+ENABLING = {"encoder_aligning_step", "offset_calibration_step"}  # and what they alone call
 CCM = range(0x10000000, 0x10008000)
 FLASH = range(0x08000000, 0x08080000)
 VENEER = re.compile(r"__(.+)_veneer")

@@ -33,6 +33,10 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
   # Their reference is minutes of double in software; on the core the replays `feedback-linearisation`
   # and `references` run the same code.
   list(FILTER unit_tests EXCLUDE REGEX "test_(detent_compensation|motion_plan)\\.c$")
+  # Likewise; moreover this core has no board with an encoder. The M4F's is left to --full.
+  if(STEADYSTEP_CORE STREQUAL m0plus)
+    list(FILTER unit_tests EXCLUDE REGEX "test_encoder_alignment\\.c$")
+  endif()
   # An application, its test's board and the stack of the design take more than 16 KB.
   set(large_tests application console)
   # In fixed point each test runs on one core: the M4F has the long ones, the M0+ all others.
@@ -58,7 +62,8 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
     target_link_options(${target} PRIVATE -fno-lto)
     add_test(NAME target.unit.${name}.${numeric} COMMAND ${target})
     set(labels target)
-    if(name MATCHES "^(invariant_ekf|motion|sliding_mode)$" AND numeric STREQUAL fixed)
+    if((name MATCHES "^(invariant_ekf|motion|sliding_mode)$" AND numeric STREQUAL fixed)
+       OR name STREQUAL encoder_alignment)
       list(APPEND labels full)
     endif()
     set_tests_properties(target.unit.${name}.${numeric}
