@@ -23,13 +23,17 @@ static const double playing_rad_per_period = 0.6;
  */
 #define TORQUE_SCALE 32.0
 #define TRAVEL_SCALE 64.0
-#define TRAVEL_MAX   NUM(1.9)
+#define TRAVEL_MAX   0x7ffffff /* 2^-32 turn */
 
 #define MEAN_PACE     UNIT(MEAN_PER_TURN / TRAVEL_SCALE)
 #define LEARNING_PACE UNIT(2.0 * LEARNING_PER_TURN * TORQUE_SCALE / TRAVEL_SCALE)
 
 /* Electrical turns; below half a turn. */
 #define LAG_MAX NUM(0.49)
+
+/* Play in electrical turns, each way: of counts, and of noise. */
+static const double play_counts = 1.0;
+static const double play_min = 1.0 / 64.0;
 
 /* Per-unit speed; its eightfold is within the number range. */
 #define SPEED_MAX 3.9
@@ -55,9 +59,12 @@ detent_compensation_design(const struct detent_compensation_task *task)
     const double limit = DETENT_SHARE_MAX * sqrt_2 * motor->rated_current_A / base->current_A;
     /* three time constants of the observer, half a period of its sampling, one of the prediction */
     const double lag_periods = 3.0 / (bandwidth * task->period_s) + 1.5;
+    const double counts = task->counts_per_turn > 0u ? play_counts * (double)motor->rotor_teeth /
+                                                           (double)task->counts_per_turn
+                                                     : 0.0;
 
     return (struct detent_compensation_params){
-        .travel = coef_from_double(TRAVEL_SCALE * base->turns_per_period),
+        .play = angle_from_turns(num_from_double(counts > play_min ? counts : play_min)),
         .lag = coef_from_double(lag_periods * base->turns_per_period),
         .learning = fade_out(learning_share * bandwidth / electrical_rad_s),
         .playing = fade_out(playing_rad_per_period / (electrical_rad_s * task->period_s)),
@@ -90,6 +97,28 @@ void detent_compensation_reset(struct detent_compensation *detent)
 {
     detent->mean = NUM(0.0);
     detent->torque = NUM(0.0);
+    detent->followed = false;
+}
+
+/* Way of the angle beyond its play, behind which a shaft would follow; scaled. */
+static num_t travelled(struct detent_compensation *detent,
+                       const struct detent_compensation_params *params, angle_t angle)
+{
+    if (!detent->followed) {
+        detent->followed = true;
+        detent->follower = angle;
+    }
+    const int32_t away = (int32_t)(angle - detent->follower);
+    const int32_t way = away > params->play    ? away - params->play
+                        : away < -params->play ? away + params->play
+                                               : 0;
+    const int32_t magnitude = way < 0 ? -way : way;
+    const int32_t limited = magnitude < TRAVEL_MAX ? magnitude : TRAVEL_MAX;
+    const num_t quarter = turns_from_angle(limited << 4); /* of TRAVEL_SCALE */
+    const num_t half = quarter + quarter;
+
+    detent->follower += (angle_t)way;
+    return half + half;
 }
 
 static struct sincos doubled(struct sincos x)
@@ -125,7 +154,7 @@ void detent_compensation_step(struct detent_compensation *detent,
                               struct sincos frame, num_t speed, num_t load_torque)
 {
     const num_t pace = num_abs(num_limit(speed, NUM(SPEED_MAX)));
-    const num_t travel = num_clamp(num_mul_coef(pace, params->travel), NUM(0.0), TRAVEL_MAX);
+    const num_t travel = travelled(detent, params, angle);
     const num_t lag = num_limit(num_mul_coef(speed, params->lag), LAG_MAX);
     const num_t residual = num_limit(load_torque - detent->mean, params->residual_limit);
     const num_t step = num_mul(num_mul_unit(residual, LEARNING_PACE), travel);

@@ -36,12 +36,15 @@ void standstill_hold_enter(struct standstill_hold *hold, angle_t reference)
     hold->active = true;
     hold->frame = sincos_of(reference);
     hold->speed = NUM(0.0);
+    hold->leads = false;
 }
 
-void standstill_hold_follow(struct standstill_hold *hold, angle_t reference, num_t speed)
+void standstill_hold_follow(struct standstill_hold *hold, angle_t reference, num_t speed,
+                            bool goes_on)
 {
     hold->frame = sincos_of(reference);
     hold->speed = speed;
+    hold->leads = goes_on;
 }
 
 num_t standstill_hold_step(struct standstill_hold *hold,
@@ -53,9 +56,10 @@ num_t standstill_hold_step(struct standstill_hold *hold,
     return hold->i_d;
 }
 
-void standstill_hold_leave(struct standstill_hold *hold, uint32_t slow_periods)
+void standstill_hold_leave(struct standstill_hold *hold, uint32_t slow_periods, bool moving)
 {
     hold->active = hold->active && slow_periods > 0u;
+    hold->leads = hold->leads || moving;
 }
 
 void standstill_hold_consider(struct standstill_hold *hold,

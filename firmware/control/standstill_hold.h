@@ -32,6 +32,7 @@ struct standstill_hold {
     bool active;
     struct sincos frame; /* of the reference; of the middle of a period where it creeps */
     num_t speed;         /* of the frame: 0 at rest */
+    bool leads;          /* the frame moves, or has not come to rest yet */
     num_t current;       /* the design's, but while enabling: to which i_d* ramps in */
     num_t i_d;
 };
@@ -59,7 +60,8 @@ void standstill_hold_enter(struct standstill_hold *hold, angle_t reference);
  * The frame of a reference that creeps: its angle in the middle of the period, and its speed. It
  * turns by less than a degree electrical in a period, and counts as at rest for as long.
  */
-void standstill_hold_follow(struct standstill_hold *hold, angle_t reference, num_t speed);
+void standstill_hold_follow(struct standstill_hold *hold, angle_t reference, num_t speed,
+                            bool goes_on);
 
 /* One period: ramps the d current in or out and returns it. */
 num_t standstill_hold_step(struct standstill_hold *hold,
@@ -69,7 +71,7 @@ num_t standstill_hold_step(struct standstill_hold *hold,
  * At the end of a period: the hold ends with it if the reference moves (`slow_periods` is 0). So no
  * interrupt pays for both the hold and the position law.
  */
-void standstill_hold_leave(struct standstill_hold *hold, uint32_t slow_periods);
+void standstill_hold_leave(struct standstill_hold *hold, uint32_t slow_periods, bool moving);
 
 /*
  * Enters the hold if the reference has been slow for long enough and the rotor has come near it:

@@ -17,6 +17,7 @@ static const double drift_rad_s = 1.0;
  * supply. */
 static const double resonance_share = 0.125;
 static const double creep_back_emf = 0.026;
+static const double creep_lag_rad = 0.02;
 
 enum { CURRENT, SPEED, ANGLE, INTEGRAL, CONTROL_STATES, VOLTAGE = 3 };
 enum { LOAD = 3, OFFSET, ESTIMATION_STATES };
@@ -38,6 +39,13 @@ double hold_creep_speed(const struct motor_params *motor, double hold_current_A)
     const double blind = creep_back_emf * motor->supply_V / motor->torque_constant_Nm_A;
 
     return below_resonance < blind ? below_resonance : blind;
+}
+
+double hold_creep_acceleration(const struct motor_params *motor, double hold_current_A)
+{
+    const double w_h = hold_frequency(motor, hold_current_A);
+
+    return creep_lag_rad * w_h * w_h / motor->rotor_teeth;
 }
 
 bool hold_damping_design(const struct hold_task *task, double *damping_As_rad,

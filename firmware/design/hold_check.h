@@ -44,6 +44,7 @@ struct hold_task {
  * back-EMF is 2.6 % of the supply and shows a load that the hold cannot see.
  */
 double hold_creep_speed(const struct motor_params *motor, double hold_current_A);
+double hold_creep_acceleration(const struct motor_params *motor, double hold_current_A);
 
 /*
  * Default of the bandwidth, rad/s: 200 or a quarter of w_h, whichever is more, but no more than the

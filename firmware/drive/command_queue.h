@@ -77,6 +77,7 @@ struct command_queue {
     volatile uint32_t read;
     volatile uint8_t attention; /* enum command_queue_attention */
     uint32_t wake;              /* period in which something else may be due */
+    uint32_t looked;            /* period in which it was last looked at */
     struct urgent_command disable;
     struct urgent_command stop;
     uint32_t stop_acted_in; /* period of the last stop; the interrupt's */

@@ -195,14 +195,14 @@ compensate_detent(struct drive *drive, const struct estimate *estimate, struct p
     next->rotor.load_torque = estimate->rotor.load_torque + drive->detent.torque;
 }
 
-/* To the middle of the period in which the next answer acts, S(k+2)...S(k+3). Apart: rare. */
+/* To the middle of the periods in which the frame acts, S(k+2)...S(k+6). Apart: rare. */
 __attribute__((noinline)) static void lead_rotor(struct drive *drive)
 {
     const struct reference_sample *reference = &drive->reference.next;
     const int32_t half_turn = half_period_rotation(&drive->params.model, reference->speed);
 
-    standstill_hold_follow(&drive->hold, reference->position.fraction + 3u * (angle_t)half_turn,
-                           reference->speed);
+    standstill_hold_follow(&drive->hold, reference->position.fraction + 6u * (angle_t)half_turn,
+                           reference->speed, reference->moving);
 }
 
 /* The hold ends where the reference moves, but takes its frame along with one that creeps, until
@@ -212,9 +212,10 @@ IN_PLACE void leave_or_lead(struct drive *drive)
     if (!drive->hold.active) {
         return;
     }
-    standstill_hold_leave(&drive->hold, drive->reference.slow_periods);
-    if (drive->hold.active && !drive->aligns &&
-        (drive->reference.next.moving || drive->hold.speed != NUM(0.0))) {
+    standstill_hold_leave(&drive->hold, drive->reference.slow_periods,
+                          drive->reference.next.moving);
+    if (drive->hold.active && drive->hold.leads && led_hold_leads(drive->period) &&
+        drive->commands.looked != drive->period) {
         lead_rotor(drive);
     }
 }
@@ -292,7 +293,7 @@ IN_PLACE struct hal_outputs control_current(struct drive *drive, const struct es
 
 IN_PLACE struct hal_outputs control(struct drive *drive, const struct estimate *estimate)
 {
-    reference_step(&drive->reference, &drive->params.reference);
+    reference_step(&drive->reference, &drive->params.reference, drive->hold.active);
     return drive->params.in_full ? control_in_full(drive, estimate)
                                  : control_current(drive, estimate);
 }
@@ -325,9 +326,9 @@ IN_PLACE const struct estimate *observe(struct drive *drive, const struct sample
         winding = drive->prepared;
     }
     actuation_observe(&drive->actuation, winding.voltage);
-    return estimator_step(&drive->estimator, &drive->params.estimator, &winding,
-                          drive->encoder_count,
-                          (struct rotor_hold){drive->hold.active, &drive->hold.speed});
+    return estimator_step(
+        &drive->estimator, &drive->params.estimator, &winding, drive->encoder_count,
+        (struct rotor_hold){drive->hold.active, &drive->hold.leads, drive->period});
 }
 
 /* The bridge is on and stays on for this period: what it needs of estimate and duties. */

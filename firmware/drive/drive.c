@@ -50,11 +50,14 @@ static bool holds(const struct drive_settings *settings)
 }
 
 /* Up to where the hold takes its frame along; nothing but this estimator knows a led rotor. */
-static double creep_speed(const struct drive_settings *settings)
+static struct creep_limits creep_limits(const struct drive_settings *settings)
 {
-    return settings->hold_at_rest && settings->estimator == DRIVE_ESTIMATOR_INVARIANT_EKF
-               ? hold_creep_speed(&settings->motor, settings->hold_current_A)
-               : 0.0;
+    if (!settings->hold_at_rest || settings->estimator != DRIVE_ESTIMATOR_INVARIANT_EKF) {
+        return (struct creep_limits){0.0, 0.0};
+    }
+    return (struct creep_limits){
+        hold_creep_speed(&settings->motor, settings->hold_current_A),
+        hold_creep_acceleration(&settings->motor, settings->hold_current_A)};
 }
 
 /* Each estimator's design apart: its locals are not on the stack below the others' deepest call. */
@@ -195,6 +198,9 @@ static bool design_law(struct drive *drive, const struct drive_settings *setting
         .base = &drive->base,
         .period_s = period_s,
         .observer_bandwidth_rad_s = settings->observer_bandwidth_rad_s,
+        .counts_per_turn = settings->feedback == DRIVE_FEEDBACK_ENCODER
+                               ? drive->board->facts->encoder_counts_per_turn
+                               : 0u,
     };
 
     struct learned_parameters learned;
@@ -314,7 +320,10 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
     params->initial_position =
         position_from_rad(settings->initial_angle_rad + settings->initial_angle_error_rad,
                           settings->motor.rotor_teeth);
-    params->reference = reference_design(&drive->base, period_s, creep_speed(settings));
+    const struct creep_limits creep = creep_limits(settings);
+
+    params->reference = reference_design(&drive->base, period_s, creep);
+    drive->creep_rad_s = creep.speed_rad_s;
     params->current_control = current_control_design(&settings->motor, &drive->base, period_s,
                                                      settings->current_bandwidth_rad_s);
     params->modulator = modulator_design(facts->pwm_half_period_counts);

@@ -195,6 +195,7 @@ static void continue_motion(struct drive *drive)
     }
     plan = free_plan(drive);
     motion_plan_begin(plan, &p->end, p->epoch);
+    plan->creeps = p->creeps;
     if (continue_plan(p, plan)) {
         p->last = plan;
         reference_continue(r, plan);
@@ -244,6 +245,7 @@ static void stop(struct drive *drive)
     plan = free_plan(drive);
     if (begin_plan(drive, plan, at_period)) {
         motion_plan_speed(plan, &p->end, 0.0, &p->limits);
+        plan->creeps = p->creeps;
         offer(drive, &(struct take_over){.at_period = at_period, .plan = plan}, PLANNER_IDLE);
     }
 }
@@ -263,12 +265,35 @@ static enum planner_motion begin_motion(struct planner *p, struct motion_plan *p
     return p->motion;
 }
 
+/* Electrical turns per period. */
+static double creep_speed(const struct drive *drive)
+{
+    return drive->creep_rad_s / drive->base.speed_rad_s * drive->base.turns_per_period;
+}
+
+/* Its cruise, or the peak of a sine; of set-points nobody knows. */
+static bool creeps(const struct queued_command *command, double creep_speed)
+{
+    const struct motion_request *request = &command->request;
+
+    switch (command->kind) {
+    case DRIVE_COMMAND_VELOCITY:
+        return request->speed <= creep_speed && request->speed >= -creep_speed;
+    case DRIVE_COMMAND_SET_POINT:
+        return false;
+    default:
+        return request->limits.speed <= creep_speed;
+    }
+}
+
 static enum planner_motion plan_command(struct planner *p, struct motion_plan *plan,
-                                        const struct queued_command *command)
+                                        const struct queued_command *command, double creep_speed)
 {
     const struct motion_request *request = &command->request;
 
     p->limits = request->limits;
+    p->creeps = creeps(command, creep_speed);
+    plan->creeps = p->creeps;
     switch (command->kind) {
     case DRIVE_COMMAND_VELOCITY:
         motion_plan_speed(plan, &p->end, request->speed, &p->limits);
@@ -324,7 +349,7 @@ static void take_command(struct drive *drive)
     }
     plan = free_plan(drive);
     if (begin_plan(drive, plan, at_period)) {
-        const enum planner_motion motion = plan_command(p, plan, command);
+        const enum planner_motion motion = plan_command(p, plan, command, creep_speed(drive));
 
         p->motion = PLANNER_IDLE; /* what has been going on ends */
         offer(drive,

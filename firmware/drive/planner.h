@@ -46,6 +46,7 @@ struct planner {
     uint32_t lead_periods;       /* DRIVE_LEAD_s; doubled by each offer that came too late, up to
                                     DRIVE_LEAD_MAX_s, until one is accepted or a reset */
     struct motion_limits limits; /* of the motion in force */
+    bool creeps;                 /* that motion does */
     struct sine sine;
     struct set_points set_points;
     bool set_points_open;

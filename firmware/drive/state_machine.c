@@ -158,6 +158,7 @@ static void take_commands(struct drive *drive)
     struct queued_command *command;
 
     queue->attention = COMMAND_QUEUE_CALLS;
+    queue->looked = drive->period;
     synchronism_wait(drive);
     if (command_queue_take_urgent(queue, &queue->disable, drive->period)) {
         disable(drive);

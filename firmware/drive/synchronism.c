@@ -52,7 +52,7 @@ void synchronism_start(struct drive *drive)
 {
     if (drive->params.monitors_synchronism) {
         drive->synchronism_step = TAKE;
-        drive->synchronism_due = drive->period;
+        drive->synchronism_due = drive->period + SYNCHRONISM_BLOCK_PERIODS;
         drive->estimator.invariant.innovation_sum = NUM(0.0);
     }
 }
@@ -85,7 +85,7 @@ static enum synchronism judge_grip(struct drive *drive, const struct rotor *roto
         &drive->synchronism_monitor, &drive->synchronism_monitor_params, error_of(drive, rotor));
 
     if (verdict != SYNCHRONISM_SURE) {
-        standstill_hold_leave(&drive->hold, 0u);
+        standstill_hold_leave(&drive->hold, 0u, false);
         position_law_reset(&drive->law);
     }
     return verdict;

@@ -162,9 +162,9 @@ static void adapt_resistance(struct invariant_ekf *ekf, const struct invariant_e
 
 /* Which of the sets of gains serves this period of the hold. */
 static const struct invariant_ekf_gain_set *
-hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_params *params, num_t frame_speed)
+hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_params *params, bool leads)
 {
-    const num_t load_step = frame_speed != NUM(0.0) ? params->led_load_step : params->load_step;
+    const num_t load_step = leads ? params->led_load_step : params->load_step;
     const num_t away = away_from_settled_load(ekf);
     const num_t change = num_abs(away);
 
@@ -194,16 +194,16 @@ void invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_pa
 {
     const bool holding = hold.active;
     const struct invariant_ekf_gain_set *gain =
-        holding ? hold_gains(ekf, params, *hold.speed) : &params->moving;
+        holding ? hold_gains(ekf, params, *hold.leads) : &params->moving;
     const struct phases driving = {voltage.a - ekf->bias.a, voltage.b - ekf->bias.b};
     const struct predicted predicted = predict(ekf, params, driving);
     const struct dq innovation = correct(ekf, params, gain, &predicted, current, holding);
 
     ekf->innovation_sum += innovation.d;
-    if (holding) {
-        adapt_resistance(ekf, params, gain, innovation.d);
-    } else {
+    if (!holding) {
         settle(ekf);
+    } else if (!*hold.leads || led_hold_learns(hold.period)) {
+        adapt_resistance(ekf, params, gain, innovation.d);
     }
     estimate_look_ahead(&ekf->estimate, &params->model);
 }

@@ -68,6 +68,7 @@ void motion_plan_begin(struct motion_plan *plan, const struct motion_state *from
     plan->segments = 0;
     plan->handover = PLAN_SEGMENTS + 1u;
     plan->endless = false;
+    plan->creeps = false;
     plan->lands = false;
 }
 

@@ -46,6 +46,7 @@ struct motion_plan {
     uint32_t segments;
     uint32_t handover; /* segments before the continuation; PLAN_SEGMENTS + 1: there is none */
     bool endless;      /* the last segment goes on for ever */
+    bool creeps;       /* is part of a motion that is never faster than creep, or ends in one */
     bool lands;        /* ends at `target`, else where it comes to rest */
     struct position target;
     struct motion_segment segment[PLAN_SEGMENTS];

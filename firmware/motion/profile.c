@@ -93,6 +93,7 @@ static bool scale(struct profile *profile, const struct profile_drive *drive,
     } else {
         profile->acceleration = 2 * in_2_64(acceleration / 2.0);
     }
+    profile->creeps = (speed < 0.0 ? -speed : speed) * turn_rad_s <= drive->creep_rad_s;
     profile->rounding_speed =
         in_2_64(distance_left(distance, profile->acceleration * (int64_t)to_speed, at_speed) / all);
     return true;

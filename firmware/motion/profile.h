@@ -43,6 +43,7 @@ struct profile_drive {
     double speed_limit_rad_s;         /* of the cruise */
     const char *speed_limit_reason;   /* where it comes from */
     double acceleration_limit_rad_s2; /* of the ramps */
+    double creep_rad_s;               /* up to where a move creeps */
 };
 
 /* A planned move. */
@@ -56,6 +57,7 @@ struct profile {
     uint32_t jerk_periods;
     uint32_t acceleration_periods; /* at constant acceleration */
     uint32_t cruise_periods;
+    bool creeps; /* never faster than that */
 };
 
 /*

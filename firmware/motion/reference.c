@@ -9,7 +9,7 @@
 #define JERK_SCALE         1024.0
 
 struct reference_params reference_design(const struct per_unit *base, double period_s,
-                                         double creep_rad_s)
+                                         struct creep_limits creep)
 {
     const double speed = 1.0 / base->turns_per_period;
     const double acceleration =
@@ -20,8 +20,9 @@ struct reference_params reference_design(const struct per_unit *base, double per
     params.speed_remainder = coef_from_double(speed - coef_to_double(params.speed));
     params.acceleration = coef_from_double(acceleration / ACCELERATION_SCALE);
     params.jerk = coef_from_double(acceleration / JERK_SCALE);
-    params.creep =
-        (int32_t)(creep_rad_s / base->speed_rad_s * base->turns_per_period * 4294967296.0);
+    params.creep_speed = num_from_double(creep.speed_rad_s / base->speed_rad_s);
+    params.creep_acceleration =
+        num_from_double(creep.acceleration_rad_s2 / base->acceleration_rad_s2);
     return params;
 }
 
@@ -70,6 +71,7 @@ bool reference_load(struct reference *r, struct profile *profile)
     r->profile = profile;
     r->phase = REFERENCE_QUEUED;
     r->at.speed = profile->rounding_speed;
+    r->creeps = profile->creeps;
     r->stopped = false;
     return true;
 }
@@ -155,7 +157,6 @@ static void come_to_rest(struct reference *r)
     begin(r, REFERENCE_REST, 0, 0);
     r->stop_requested = false;
     r->at.speed = 0;
-    r->slow_periods = 0;
     place(r, r->stopped ? (struct position){r->at.turns, (angle_t)(r->at.fraction >> 32)}
                         : r->profile->target);
 }
@@ -167,7 +168,6 @@ static void rest_behind_plan(struct reference *r)
     begin(r, REFERENCE_REST, 0, 0);
     r->stop_requested = false;
     r->at.speed = 0;
-    r->slow_periods = 0;
     place(r, here);
 }
 
@@ -183,6 +183,7 @@ __attribute__((noinline)) static void begin_next_segment(struct reference *r)
     if (r->segment == r->plan->handover && continuation != NULL) {
         r->continuation = NULL;
         r->plan = continuation;
+        r->creeps = continuation->creeps;
         r->segment = 0;
     }
     if (r->segment == 0u) {
@@ -226,6 +227,7 @@ static inline __attribute__((always_inline)) void begin_next_phase_of_profile(st
         begin_jerk(r, REFERENCE_JERK_TO_REST, profile->jerk, profile->jerk_sixth);
     } else {
         come_to_rest(r);
+        r->slow_periods = ended == REFERENCE_LOADED ? 0u : r->slow_periods; /* a step */
     }
 }
 
@@ -249,6 +251,7 @@ bool reference_take_over(struct reference *r, const struct motion_plan *plan)
         return false;
     }
     r->plan = plan;
+    r->creeps = plan->creeps;
     r->segment = 0;
     r->continuation = NULL;
     r->phase = REFERENCE_PLANNED;
@@ -282,30 +285,24 @@ void reference_skip(struct reference *r, uint32_t periods)
     }
 }
 
-static inline bool cruises(const struct reference *r)
+/* Rests or creeps: with a rotor that is held, its ramps too, in motion the cruise alone. */
+static inline bool is_slow(const struct reference_sample *sample,
+                           const struct reference_params *params, bool creeps, bool held)
 {
-    return r->phase == REFERENCE_CRUISE ||
-           (r->phase == REFERENCE_PLANNED && r->at.acceleration == 0 && r->jerk == 0);
+    return !sample->moving ||
+           (creeps && num_abs(sample->speed) < params->creep_speed &&
+            num_abs(sample->acceleration) <= (held ? params->creep_acceleration : NUM(0.0)));
 }
 
-/* A cruise at up to the creep speed. What is slow in passing is not. */
-static inline bool creeps(const struct reference *r, const struct reference_params *params)
+void reference_step(struct reference *r, const struct reference_params *params, bool held)
 {
-    const int32_t speed = (int32_t)(r->at.speed >> 32);
-
-    return cruises(r) && speed <= params->creep && speed >= -params->creep;
-}
-
-void reference_step(struct reference *r, const struct reference_params *params)
-{
-    if (r->periods_left > 0u) {
-        advance(r);
-        r->slow_periods =
-            (r->phase == REFERENCE_CRUISE || r->phase == REFERENCE_PLANNED) && creeps(r, params)
-                ? r->slow_periods + 1u
-                : 0u;
+    if (!is_slow(&r->next, params, r->creeps, held)) {
+        r->slow_periods = 0u;
     } else if (r->slow_periods < UINT32_MAX) {
         r->slow_periods++;
+    }
+    if (r->periods_left > 0u) {
+        advance(r);
     }
     if (r->phase == REFERENCE_QUEUED) {
         r->phase = REFERENCE_LOADED;

@@ -28,7 +28,8 @@ struct reference_params {
     coef_t speed_remainder; /* what a coef_t of 16 bits leaves of it */
     coef_t acceleration;    /* per 2^-6 turn/period^2 */
     coef_t jerk;            /* per 2^-10 turn/period^3 */
-    int32_t creep;          /* 2^-32 turn/period: a cruise up to here is slow; 0: none is */
+    num_t creep_speed;      /* what moves below is slow; 0: nothing is */
+    num_t creep_acceleration;
 };
 
 struct reference_sample {
@@ -56,11 +57,12 @@ enum reference_phase {
 struct reference {
     struct reference_sample now;  /* at S(k) */
     struct reference_sample next; /* at S(k+1) */
-    uint32_t slow_periods;        /* since it came to rest or to creep, at S(k+1); saturates */
+    uint32_t slow_periods;        /* since it came to rest or to creep, at S(k); saturates */
 
     struct profile *profile; /* the one taken over */
     enum reference_phase phase;
     uint32_t periods_left; /* of the phase */
+    bool creeps;           /* the profile or plan does */
     bool stop_requested;
     bool stopped;           /* comes to rest where it may, not at the target */
     struct motion_state at; /* S(k+1) */
@@ -73,8 +75,14 @@ struct reference {
     const struct motion_plan *volatile continuation; /* NULL: has not come */
 };
 
+/* Up to where a reference creeps. */
+struct creep_limits {
+    double speed_rad_s;
+    double acceleration_rad_s2;
+};
+
 struct reference_params reference_design(const struct per_unit *base, double period_s,
-                                         double creep_rad_s);
+                                         struct creep_limits creep);
 
 /*
  * Change of the per-unit acceleration in a control period, from S(k+1) on. The range is 2^-11 turn
@@ -142,7 +150,7 @@ void reference_skip(struct reference *r, uint32_t periods);
  */
 void reference_stop(struct reference *reference);
 
-/* One control period on. */
-void reference_step(struct reference *reference, const struct reference_params *params);
+/* One control period on; `held`: the rotor is, and stays so while the reference creeps. */
+void reference_step(struct reference *reference, const struct reference_params *params, bool held);
 
 #endif

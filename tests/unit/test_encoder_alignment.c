@@ -58,9 +58,9 @@ void setUp(void)
     rotor.friction = 0.0;
     rotor.load = 0.0;
     rotor.load_begins_s = 0.0;
-    rotor.load_ends_s = INFINITY;
+    rotor.load_ends_s = (double)INFINITY;
     rotor.loaded_ways = ~0u;
-    rotor.stop = INFINITY;
+    rotor.stop = (double)INFINITY;
     rotor.detent[0] = rotor.detent[1] = rotor.detent[2] = 0.0;
     rotor.detent_phase = 0.0;
     rotor.encoder_phase = 0.01;

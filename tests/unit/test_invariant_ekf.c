@@ -70,13 +70,13 @@ static double estimated_resistance_ohm(void)
     return num_to_double(ekf.estimate.winding.resistance) * base.resistance_ohm;
 }
 
-static const num_t at_rest = NUM(0.0);
+static const bool leads = false;
 
 static void step(struct bench_vector voltage, struct bench_vector current, bool in_hold)
 {
     invariant_ekf_step(&ekf, &params, bench_phases(current.a, current.b, base.current_A),
                        bench_phases(voltage.a, voltage.b, base.voltage_V),
-                       (struct rotor_hold){in_hold, &at_rest});
+                       (struct rotor_hold){in_hold, &leads, 0u});
 }
 
 static void period(struct bench_vector voltage, bool in_hold)

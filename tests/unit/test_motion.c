@@ -34,7 +34,7 @@ static char error[DESIGN_ERROR_TEXT];
 
 void setUp(void)
 {
-    params = reference_design(&base, drive.period_s, 0.0);
+    params = reference_design(&base, drive.period_s, (struct creep_limits){0.0, 0.0});
     reference_reset(&reference, origin);
 }
 
@@ -79,7 +79,7 @@ static struct profile plan(const struct profile_move *move)
 
 static struct reference_sample step(void)
 {
-    reference_step(&reference, &params);
+    reference_step(&reference, &params, false);
     return reference.next;
 }
 
@@ -236,7 +236,7 @@ static void test_the_speed_shown_is_right_to_1e_5_for_any_base(void)
 
         other.speed_rad_s = base_rad_s;
         other.turns_per_period = turns_of_rad(base_rad_s * drive.period_s);
-        params = reference_design(&other, drive.period_s, 0.0);
+        params = reference_design(&other, drive.period_s, (struct creep_limits){0.0, 0.0});
         reference_reset(&reference, origin);
         begin(&trapezoid);
         for (int k = 0; k <= 1001; k++) {
@@ -635,30 +635,74 @@ static void test_the_time_at_rest_is_counted_from_the_end_of_the_move(void)
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, reference.slow_periods);
 }
 
-static void test_a_slow_cruise_is_counted_and_what_is_slow_in_passing_is_not(void)
+/* The smooth move: with a held rotor its begin and end creep, else its cruise alone could. */
+static void creep_is_counted(bool held, double speed, double acceleration)
 {
     struct reference_params creeping = params;
-    uint32_t cruise = 0;
+    uint32_t slow = 0;
+    uint32_t most = 0;
 
-    creeping.creep = INT32_MAX;
+    creeping.creep_speed = num_from_double(speed);
+    creeping.creep_acceleration = num_from_double(acceleration);
     for (int k = 0; k < 10; k++) {
-        reference_step(&reference, &creeping);
+        reference_step(&reference, &creeping, held);
     }
     TEST_ASSERT_EQUAL_UINT32(10, reference.slow_periods);
     load(&smooth);
+    reference.creeps = true;
     while (!reference.next.moving) {
-        reference_step(&reference, &creeping);
+        reference_step(&reference, &creeping, held);
     }
-    reference_step(&reference, &creeping);
-    TEST_ASSERT_EQUAL_UINT32(0, reference.slow_periods);
     while (reference.next.moving) {
-        const bool cruises = reference.phase == REFERENCE_CRUISE;
+        const struct reference_sample *next = &reference.next;
+        const bool slowly = num_abs(next->speed) < creeping.creep_speed;
+        const bool gently =
+            num_abs(next->acceleration) <= (held ? creeping.creep_acceleration : NUM(0.0));
 
-        cruise += cruises ? 1u : 0u;
-        reference_step(&reference, &creeping);
-        TEST_ASSERT_EQUAL_UINT32(cruises ? cruise : 0u, reference.slow_periods);
+        slow = slowly && gently ? reference.slow_periods + 1u : 0u;
+        most = slow > most ? slow : most;
+        reference_step(&reference, &creeping, held);
+        TEST_ASSERT_EQUAL_UINT32(slow, reference.slow_periods);
     }
-    TEST_ASSERT_TRUE(cruise > 100u);
+    TEST_ASSERT_TRUE(most > 3u);
+    TEST_ASSERT_TRUE(most < 4000u);
+}
+
+static void test_a_held_rotor_stays_so_while_the_reference_is_slow_and_gentle(void)
+{
+    creep_is_counted(true, 0.05, 0.001);
+}
+
+static void test_a_moving_rotor_is_slow_in_a_slow_cruise_alone(void)
+{
+    creep_is_counted(false, 3.9, 0.001);
+}
+
+/* The cruise is at 33.3 rad/s. */
+static void test_a_move_creeps_that_is_never_faster_than_creep(void)
+{
+    struct profile_drive slow = drive;
+
+    TEST_ASSERT_TRUE(profile_plan(&profile, reference.next.position, &smooth, &slow, error));
+    TEST_ASSERT_FALSE(profile.creeps);
+    slow.creep_rad_s = 34.0;
+    TEST_ASSERT_TRUE(profile_plan(&profile, reference.next.position, &smooth, &slow, error));
+    TEST_ASSERT_TRUE(profile.creeps);
+    slow.creep_rad_s = 33.0;
+    TEST_ASSERT_TRUE(profile_plan(&profile, reference.next.position, &smooth, &slow, error));
+    TEST_ASSERT_FALSE(profile.creeps);
+}
+
+static void test_without_a_creep_speed_whatever_moves_is_not_slow(void)
+{
+    load(&smooth);
+    while (!reference.next.moving) {
+        step();
+    }
+    while (reference.next.moving) {
+        step();
+        TEST_ASSERT_EQUAL_UINT32(0, reference.slow_periods);
+    }
 }
 
 /* FNV-1a over the positions of trapezoid, smooth move and a stop. */
@@ -814,7 +858,10 @@ int main(void)
     RUN_TEST(test_a_step_is_there_at_once);
     RUN_TEST(test_each_step_hands_the_next_sample_on_as_the_present_one);
     RUN_TEST(test_the_time_at_rest_is_counted_from_the_end_of_the_move);
-    RUN_TEST(test_a_slow_cruise_is_counted_and_what_is_slow_in_passing_is_not);
+    RUN_TEST(test_a_held_rotor_stays_so_while_the_reference_is_slow_and_gentle);
+    RUN_TEST(test_a_moving_rotor_is_slow_in_a_slow_cruise_alone);
+    RUN_TEST(test_a_move_creeps_that_is_never_faster_than_creep);
+    RUN_TEST(test_without_a_creep_speed_whatever_moves_is_not_slow);
     RUN_TEST(test_the_positions_are_the_same_bits_in_every_number_format);
     RUN_TEST(test_a_move_out_of_range_is_refused_with_the_bound_it_breaks);
     RUN_TEST(test_a_refusal_names_the_value_and_the_bound);

@@ -31,7 +31,7 @@ static struct motion_state end; /* of the last plan */
 
 void setUp(void)
 {
-    params = reference_design(&base, 1e-4, 0.0);
+    params = reference_design(&base, 1e-4, (struct creep_limits){0.0, 0.0});
     reference_reset(&reference, origin);
 }
 
@@ -46,7 +46,7 @@ static double magnitude(double x)
 
 static void step(void)
 {
-    reference_step(&reference, &params);
+    reference_step(&reference, &params, false);
 }
 
 /* Where the reference is, as an exact 96-bit difference turned to turns. */

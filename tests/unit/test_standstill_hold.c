@@ -43,7 +43,7 @@ static void step(uint32_t rest_periods, double error_electrical_deg, double spee
                                  num_from_double(error_electrical_deg / 360.0),
                                  num_from_double(speed_rad_s / base.speed_rad_s));
     }
-    standstill_hold_leave(&hold, rest_periods);
+    standstill_hold_leave(&hold, rest_periods, false);
 }
 
 static double i_d_A(void)

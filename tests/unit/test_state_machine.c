@@ -952,7 +952,7 @@ static void test_a_hold_command_holds_without_the_delay(void)
 static void test_the_drive_holds_by_itself_15_ms_after_a_move(void)
 {
     enable();
-    drive.params.reference.creep = 0;
+    drive.params.reference.creep_speed = NUM(0.0);
     must_post(move_to(0.003)); /* near, for a board where nothing moves */
     run(1);
     while (signals().reference_moving || reference_busy(&drive.reference)) {
