@@ -47,8 +47,8 @@ struct standstill_hold_task {
     double period_s;
 };
 
-struct standstill_hold_params standstill_hold_design(const struct per_unit *base,
-                                                     const struct standstill_hold_task *task);
+__attribute__((cold)) struct standstill_hold_params
+standstill_hold_design(const struct per_unit *base, const struct standstill_hold_task *task);
 
 void standstill_hold_reset(struct standstill_hold *hold,
                            const struct standstill_hold_params *params);

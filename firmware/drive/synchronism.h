@@ -5,8 +5,8 @@
 #include "firmware/drive/drive.h"
 
 /* At start-up, behind the estimator's design; only an invariant EKF is monitored. */
-void synchronism_design(struct drive *drive, const struct drive_settings *settings,
-                        double period_s);
+__attribute__((cold)) void
+synchronism_design(struct drive *drive, const struct drive_settings *settings, double period_s);
 
 /* When the bridge is switched on: nothing is watched yet. */
 void synchronism_reset(struct drive *drive);

@@ -95,7 +95,7 @@ struct synchronism_monitor {
     uint32_t doubtful; /* blocks left */
 };
 
-struct synchronism_monitor_params
+__attribute__((cold)) struct synchronism_monitor_params
 synchronism_monitor_design(const struct synchronism_monitor_task *task);
 
 /* Apart, so that the size of what it sets can be read off the image. */

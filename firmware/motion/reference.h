@@ -140,7 +140,7 @@ bool reference_take_over(struct reference *reference, const struct motion_plan *
 void reference_continue(struct reference *reference, const struct motion_plan *continuation);
 
 /* Background, on a copy: what the reference will be `periods` later if nobody intervenes. */
-void reference_skip(struct reference *r, uint32_t periods);
+__attribute__((cold)) void reference_skip(struct reference *r, uint32_t periods);
 
 /*
  * Comes to rest as soon as the ramps of the profile allow: with its own acceleration and jerk,

@@ -46,9 +46,10 @@ struct rotor {
     num_t load_torque;
 };
 
-struct motor_model_params motor_model_design(const struct motor_params *motor,
-                                             const struct per_unit *base, double period_s,
-                                             double bridge_resistance_ohm);
+__attribute__((cold)) struct motor_model_params motor_model_design(const struct motor_params *motor,
+                                                                   const struct per_unit *base,
+                                                                   double period_s,
+                                                                   double bridge_resistance_ohm);
 
 /* Sets the resistance, clamped to its range, and what follows from it. */
 void winding_set_resistance(struct winding *winding, const struct motor_model_params *params,

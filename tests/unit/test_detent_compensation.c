@@ -114,7 +114,14 @@ static void test_the_delay_of_the_observer_is_known_to_the_learning(void)
 /* A position law with an encoder at rest: estimate and load go to and fro by a count. */
 static void test_at_rest_nothing_is_learned_of_a_dither_between_counts(void)
 {
-    const double count_rad = ELECTRICAL * TWO_PI / 4000.0;
+    const double count_rad = ELECTRICAL * TWO_PI / 1000.0;
+
+    params = detent_compensation_design(
+        &(struct detent_compensation_task){.motor = &bench_params,
+                                           .base = &base,
+                                           .period_s = PERIOD_S,
+                                           .counts_per_turn = 1000u,
+                                           .observer_bandwidth_rad_s = OBSERVER});
 
     for (int i = 0; i < 100000; i++) {
         const double phase = TWO_PI * i / 50.0;
