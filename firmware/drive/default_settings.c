@@ -13,6 +13,11 @@
 #define HOLD_CURRENT_STEP  0.7
 #define HOLD_CURRENT_STEPS 8
 
+/* The position law has come to rest; the longer it waits for the hold, the further an estimate that
+   sees no back-EMF has drifted. */
+#define HOLD_DELAY_MAX_S 0.015
+#define HOLD_DELAY_SWING 4.2 /* 1/w_h */
+
 static double smaller(double a, double b)
 {
     return a < b ? a : b;
@@ -102,6 +107,9 @@ void default_settings_apply(struct drive_settings *settings, double period_s)
     put(&settings->observer_bandwidth_rad_s,
         smaller(fast(settings) ? 1400.0 : 1000.0, ENCODER_OBSERVER_PERIOD_MAX / period_s));
     put(&settings->hold_current_A, hold_current(settings, period_s));
+    put(&settings->hold_delay_s,
+        smaller(HOLD_DELAY_MAX_S,
+                HOLD_DELAY_SWING / hold_frequency(&settings->motor, settings->hold_current_A)));
     put(&settings->hold_bandwidth_rad_s, hold_bandwidth(&settings->motor, settings->hold_current_A,
                                                         settings->current_bandwidth_rad_s));
 }

@@ -6,8 +6,8 @@
 
 /*
  * Puts in force what is not given (NaN) of law_bandwidth_rad_s, current_bandwidth_rad_s,
- * observer_bandwidth_rad_s, hold_current_A and hold_bandwidth_rad_s, each within what the period
- * and the motor bear.
+ * observer_bandwidth_rad_s, hold_current_A, hold_bandwidth_rad_s and hold_delay_s, each within what
+ * the period and the motor bear.
  */
 void default_settings_apply(struct drive_settings *settings, double period_s);
 

@@ -162,7 +162,8 @@ struct drive_settings {
                                 the hold's own check passes (design/hold_check.h) */
     double motion_current_A; /* d-axis current in motion; 0 */
     double hold_ramp_s;      /* time for the hold current to ramp in or out; 0.010 */
-    double hold_delay_s;     /* from the end of a profile to the hold; 0.015 */
+    double hold_delay_s;     /* from the end of a profile to the hold; NaN: not given,
+                                0.015, of a hold quicker than 280 rad/s 4.2 over that */
     double hold_bandwidth_rad_s;    /* w0 of the state feedback whose damping the hold takes; NaN:
                                        200 or a quarter of sqrt(N Km hold_current_A / J), or what
                                        the current loop bears */

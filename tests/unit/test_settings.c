@@ -37,7 +37,6 @@ static void test_the_defaults_are_those_of_the_interface(void)
     TEST_ASSERT_TRUE(isnan(settings.overcurrent_trip_A)); /* follows from motor and board */
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.3 * 24.0 / 0.157, settings.speed_limit_rad_s);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.010, settings.hold_ramp_s);
-    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.015, settings.hold_delay_s);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.150, settings.hold_on_enable_s);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, settings.initial_angle_rad);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, settings.initial_angle_error_rad);
@@ -122,15 +121,17 @@ static void test_what_is_not_given_follows_from_motor_and_period(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 1000.0, settings.observer_bandwidth_rad_s);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.5, settings.hold_current_A);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 200.0, settings.hold_bandwidth_rad_s);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.015, settings.hold_delay_s);
 }
 
 /* The rotor alone, without its load: it swings seven times as fast in the hold. */
-static void test_a_light_rotor_gets_a_wider_hold(void)
+static void test_a_light_rotor_gets_a_wider_and_sooner_hold(void)
 {
     settings.motor.inertia_kgm2 /= 49.0;
     default_settings_apply(&settings, 1e-4);
     TEST_ASSERT_DOUBLE_WITHIN(1.0, 0.25 * 7.0 * 274.6, settings.hold_bandwidth_rad_s);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3000.0, settings.current_bandwidth_rad_s);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 4.2 / (7.0 * 274.6), settings.hold_delay_s);
 }
 
 static void test_what_is_given_stays(void)
@@ -166,9 +167,10 @@ static void test_every_setting_is_refused_beyond_its_range_by_name_bound_and_uni
 
 static bool follows_from_motor(const char *name)
 {
-    static const char *const names[] = {"law_bandwidth_rad_s",      "current_bandwidth_rad_s",
-                                        "observer_bandwidth_rad_s", "hold_bandwidth_rad_s",
-                                        "hold_current_A",           "overcurrent_trip_A"};
+    static const char *const names[] = {
+        "law_bandwidth_rad_s",  "current_bandwidth_rad_s", "observer_bandwidth_rad_s",
+        "hold_bandwidth_rad_s", "hold_current_A",          "overcurrent_trip_A",
+        "hold_delay_s"};
 
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         if (strcmp(name, names[i]) == 0) {
@@ -266,7 +268,7 @@ int main(void)
     RUN_TEST(test_the_defaults_pass_the_check);
     RUN_TEST(test_every_setting_may_take_the_bounds_of_its_range);
     RUN_TEST(test_what_is_not_given_follows_from_motor_and_period);
-    RUN_TEST(test_a_light_rotor_gets_a_wider_hold);
+    RUN_TEST(test_a_light_rotor_gets_a_wider_and_sooner_hold);
     RUN_TEST(test_what_is_given_stays);
     RUN_TEST(test_defaults_fit_a_longer_period);
     RUN_TEST(test_every_setting_is_refused_beyond_its_range_by_name_bound_and_unit);
