@@ -99,13 +99,52 @@ static double current_bandwidth(const struct drive_settings *settings, double pe
     return smaller(swing > least ? swing : least, CURRENT_BANDWIDTH_PERIOD_MAX / period_s);
 }
 
-void default_settings_apply(struct drive_settings *settings, double period_s)
+/*
+ * A count more, which may be but noise, moves the observed load by J (1 - p)^3 / T^2 of its angle;
+ * the current that bears it is to take no more than this share of the supply to change within a
+ * period. With 1 - p as w_o T.
+ */
+#define COUNT_VOLTAGE_SHARE 0.5
+
+static double cube_root(double x)
+{
+    double root = 1.0;
+
+    for (int i = 0; i < 64; i++) {
+        root -= (root - x / (root * root)) / 3.0;
+    }
+    return root;
+}
+
+static double count_bandwidth_max(const struct motor_params *motor, double period_s,
+                                  uint32_t counts_per_turn)
+{
+    const double count_rad = 6.283185307179586 / (double)counts_per_turn;
+    const double current_A = COUNT_VOLTAGE_SHARE * motor->supply_V * period_s / motor->inductance_H;
+
+    return cube_root(motor->torque_constant_Nm_A * current_A /
+                     (motor->inertia_kgm2 * count_rad * period_s));
+}
+
+static double observer_bandwidth(const struct drive_settings *settings, double period_s,
+                                 uint32_t counts_per_turn)
+{
+    const double wanted =
+        smaller(fast(settings) ? 1400.0 : 1000.0, ENCODER_OBSERVER_PERIOD_MAX / period_s);
+
+    return counts_per_turn == 0u
+               ? wanted
+               : smaller(wanted, count_bandwidth_max(&settings->motor, period_s, counts_per_turn));
+}
+
+void default_settings_apply(struct drive_settings *settings, double period_s,
+                            uint32_t encoder_counts_per_turn)
 {
     put(&settings->current_bandwidth_rad_s, current_bandwidth(settings, period_s));
     put(&settings->law_bandwidth_rad_s,
         smaller(law_bandwidth_wanted(settings), law_bandwidth_max(settings, period_s)));
     put(&settings->observer_bandwidth_rad_s,
-        smaller(fast(settings) ? 1400.0 : 1000.0, ENCODER_OBSERVER_PERIOD_MAX / period_s));
+        observer_bandwidth(settings, period_s, encoder_counts_per_turn));
     put(&settings->hold_current_A, hold_current(settings, period_s));
     put(&settings->hold_delay_s,
         smaller(HOLD_DELAY_MAX_S,

@@ -9,6 +9,7 @@
  * observer_bandwidth_rad_s, hold_current_A, hold_bandwidth_rad_s and hold_delay_s, each within what
  * the period and the motor bear.
  */
-void default_settings_apply(struct drive_settings *settings, double period_s);
+void default_settings_apply(struct drive_settings *settings, double period_s,
+                            uint32_t encoder_counts_per_turn);
 
 #endif

@@ -308,7 +308,7 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
     drive->board = board;
     drive->settings = *settings;
     settings = &drive->settings;
-    default_settings_apply(&drive->settings, period_s);
+    default_settings_apply(&drive->settings, period_s, facts->encoder_counts_per_turn);
     if (!board_limits_apply(&drive->settings, facts, error)) {
         return false;
     }

@@ -162,7 +162,7 @@ bool default_hold(const motor_params &motor, double current_A, Hold &hold, Kind 
     drive_settings settings{};
     drive_settings_default(&settings, &motor);
     settings.hold_current_A = current_A;
-    default_settings_apply(&settings, period_s);
+    default_settings_apply(&settings, period_s, 0);
     hold.motor = motor;
     hold.current_A = settings.hold_current_A;
     hold.current_bandwidth_rad_s = settings.current_bandwidth_rad_s;

@@ -115,7 +115,7 @@ static void refused_with(int range, double value, const char *relation)
 
 static void test_what_is_not_given_follows_from_motor_and_period(void)
 {
-    default_settings_apply(&settings, 1e-4);
+    default_settings_apply(&settings, 1e-4, 0u);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 300.0, settings.law_bandwidth_rad_s);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 1500.0, settings.current_bandwidth_rad_s);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 1000.0, settings.observer_bandwidth_rad_s);
@@ -128,7 +128,7 @@ static void test_what_is_not_given_follows_from_motor_and_period(void)
 static void test_a_light_rotor_gets_a_wider_and_sooner_hold(void)
 {
     settings.motor.inertia_kgm2 /= 49.0;
-    default_settings_apply(&settings, 1e-4);
+    default_settings_apply(&settings, 1e-4, 0u);
     TEST_ASSERT_DOUBLE_WITHIN(1.0, 0.25 * 7.0 * 274.6, settings.hold_bandwidth_rad_s);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3000.0, settings.current_bandwidth_rad_s);
     TEST_ASSERT_DOUBLE_WITHIN(1e-5, 4.2 / (7.0 * 274.6), settings.hold_delay_s);
@@ -139,7 +139,7 @@ static void test_what_is_given_stays(void)
     settings.law_bandwidth_rad_s = 123.0;
     settings.current_bandwidth_rad_s = 777.0;
     settings.hold_current_A = 2.5;
-    default_settings_apply(&settings, 1e-4);
+    default_settings_apply(&settings, 1e-4, 0u);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 123.0, settings.law_bandwidth_rad_s);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 777.0, settings.current_bandwidth_rad_s);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 2.5, settings.hold_current_A);
@@ -149,10 +149,29 @@ static void test_what_is_given_stays(void)
 static void test_defaults_fit_a_longer_period(void)
 {
     drive_settings_select_feedback(&settings, DRIVE_FEEDBACK_ENCODER);
-    default_settings_apply(&settings, 2e-4);
+    default_settings_apply(&settings, 2e-4, 4000u);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 750.0, settings.law_bandwidth_rad_s);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1500.0, settings.current_bandwidth_rad_s);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 1400.0, settings.observer_bandwidth_rad_s);
+}
+
+/* A heavy rotor on a slow winding; eight times the counts bear twice the bandwidth. */
+static void test_an_observer_does_not_chase_counts(void)
+{
+    settings.motor.inertia_kgm2 *= 20.0;
+    settings.motor.inductance_H *= 10.0;
+    drive_settings_select_feedback(&settings, DRIVE_FEEDBACK_ENCODER);
+    default_settings_apply(&settings, 1e-4, 4000u);
+
+    const double coarse = settings.observer_bandwidth_rad_s;
+    const struct motor_params *motor = &settings.motor;
+    const double load_Nm = motor->inertia_kgm2 * pow(coarse, 3.0) * 1e-4 * TWO_PI / 4000.0;
+    const double voltage_V = load_Nm / motor->torque_constant_Nm_A * motor->inductance_H / 1e-4;
+
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.5 * motor->supply_V, voltage_V);
+    settings.observer_bandwidth_rad_s = __builtin_nan("");
+    default_settings_apply(&settings, 1e-4, 32000u);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 2.0 * coarse, settings.observer_bandwidth_rad_s);
 }
 
 static void test_every_setting_is_refused_beyond_its_range_by_name_bound_and_unit(void)
@@ -271,6 +290,7 @@ int main(void)
     RUN_TEST(test_a_light_rotor_gets_a_wider_and_sooner_hold);
     RUN_TEST(test_what_is_given_stays);
     RUN_TEST(test_defaults_fit_a_longer_period);
+    RUN_TEST(test_an_observer_does_not_chase_counts);
     RUN_TEST(test_every_setting_is_refused_beyond_its_range_by_name_bound_and_unit);
     RUN_TEST(test_a_setting_that_is_not_finite_is_refused);
     RUN_TEST(test_a_refusal_says_what_was_asked_and_what_is_allowed);
