@@ -57,8 +57,8 @@ void standstill_hold_reset(struct standstill_hold *hold,
 void standstill_hold_enter(struct standstill_hold *hold, angle_t reference);
 
 /*
- * The frame of a reference that creeps: its angle in the middle of the period, and its speed. It
- * turns by less than a degree electrical in a period, and counts as at rest for as long.
+ * The frame of a reference that creeps, and its speed; `goes_on`: it will move again. It turns by a
+ * few degrees electrical at most from one call to the next, and counts as at rest for as long.
  */
 void standstill_hold_follow(struct standstill_hold *hold, angle_t reference, num_t speed,
                             bool goes_on);
@@ -68,8 +68,9 @@ num_t standstill_hold_step(struct standstill_hold *hold,
                            const struct standstill_hold_params *params);
 
 /*
- * At the end of a period: the hold ends with it if the reference moves (`slow_periods` is 0). So no
- * interrupt pays for both the hold and the position law.
+ * At the end of a period: the hold ends with it if the reference moves (`slow_periods` is 0), and
+ * leads the rotor from then on if it is `moving` all the same. So no interrupt pays for both the
+ * hold and the position law.
  */
 void standstill_hold_leave(struct standstill_hold *hold, uint32_t slow_periods, bool moving);
 

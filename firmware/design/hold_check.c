@@ -17,7 +17,7 @@ static const double drift_rad_s = 1.0;
  * supply. */
 static const double resonance_share = 0.125;
 static const double creep_back_emf = 0.026;
-static const double creep_lag_rad = 0.02;
+static const double creep_lag_rad = 0.02; /* electrical */
 
 enum { CURRENT, SPEED, ANGLE, INTEGRAL, CONTROL_STATES, VOLTAGE = 3 };
 enum { LOAD = 3, OFFSET, ESTIMATION_STATES };

@@ -44,6 +44,8 @@ struct hold_task {
  * back-EMF is 2.6 % of the supply and shows a load that the hold cannot see.
  */
 double hold_creep_speed(const struct motor_params *motor, double hold_current_A);
+
+/* Acceleration, rad/s^2, up to which it does: the rotor's inertia takes it back by a degree. */
 double hold_creep_acceleration(const struct motor_params *motor, double hold_current_A);
 
 /*

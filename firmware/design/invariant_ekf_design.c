@@ -205,6 +205,64 @@ bool invariant_ekf_motion_design(const struct motor_params *motor, double period
     return gains_plausible(gains) || design_refuse(error, no_gain);
 }
 
+/* Of the rated torque; and the angle that its step may throw the estimate by, electrical degrees:
+   half of what loses the rotor, and a little for parts that differ from the file's. */
+#define BORNE_LOAD_STEP 0.25
+#define THROWN_MAX_DEG  20.0
+
+/* A throw has reached its peak within so many periods, or is far below it. */
+#define THROW_PERIODS 1000
+
+double invariant_ekf_thrown_rad(const struct motor_params *motor, double period_s,
+                                const struct invariant_ekf_gains *gains, double load_step_Nm)
+{
+    const double km = motor->torque_constant_Nm_A;
+    const double decay = exponential(-period_s * motor->resistance_ohm / motor->inductance_H);
+    const double admittance = (1.0 - decay) / motor->resistance_ohm;
+    const double per_inertia = period_s / motor->inertia_kgm2;
+    const double k_current = 0.5 * (gains->k_current_d + gains->k_current_q);
+    double current = 0.0; /* of the estimate, beside the truth, as the others */
+    double speed = 0.0;
+    double angle = 0.0;
+    double load = -load_step_Nm;
+    double peak = 0.0;
+
+    for (int k = 0; k < THROW_PERIODS && angle >= 0.5 * peak; k++) {
+        const double mean_speed = speed + 0.5 * per_inertia * (km * current - load);
+        const double next_current = decay * current - admittance * km * mean_speed;
+        const double torque_Nm =
+            0.5 * km * (current + next_current) - load - motor->viscous_friction_Nms_rad * speed;
+        const double next_speed = speed + per_inertia * torque_Nm;
+
+        angle += 0.5 * period_s * (speed + next_speed) - gains->k_angle_q_rad_A * next_current;
+        speed = next_speed - gains->k_speed_q_rad_As * next_current;
+        load -= gains->k_load_q_Nm_A * next_current;
+        current = (1.0 - k_current) * next_current;
+        peak = angle > peak ? angle : peak;
+    }
+    return peak * motor->rotor_teeth;
+}
+
+bool invariant_ekf_motion_check(const struct motor_params *motor, double period_s,
+                                const struct invariant_ekf_gains *gains,
+                                char error[DESIGN_ERROR_TEXT])
+{
+    const double step_Nm = BORNE_LOAD_STEP * motor->torque_constant_Nm_A * motor->rated_current_A;
+    const double thrown_deg =
+        invariant_ekf_thrown_rad(motor, period_s, gains, step_Nm) * 57.29577951308232;
+
+    return thrown_deg <= THROWN_MAX_DEG ||
+           design_refuse_limit(
+               error,
+               (struct refusal){
+                   .quantity = "load_step_angle_error",
+                   .value = thrown_deg,
+                   .relation = "at most",
+                   .limit = THROWN_MAX_DEG,
+                   .unit = "degrees electrical",
+                   .reason = "of 25 % of the rated torque: too little back-EMF for this supply"});
+}
+
 /*
  * The Kalman gain takes a part of each innovation for noise, and with it the flux that the rotor
  * has crossed: of a motor with little back-EMF two thirds, of which a load step leaves as much

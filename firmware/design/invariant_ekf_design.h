@@ -57,12 +57,24 @@ struct invariant_ekf_hold_gains {
     struct invariant_ekf_gains unloaded;  /* no load is expected: the voltage offset is learned */
     uint32_t following_periods;           /* how long a load step is followed */
     double load_step_Nm;                  /* change that ends the quiet hold */
-    double led_load_step_Nm;              /* likewise where the reference creeps */
+    double led_load_step_Nm;              /* likewise where the hold leads the rotor */
 };
 
 /* Gains in motion. False, with text in `error`, if the motor is outside what the model bears. */
 bool invariant_ekf_motion_design(const struct motor_params *motor, double period_s,
                                  struct invariant_ekf_gains *gains, char error[DESIGN_ERROR_TEXT]);
+
+/*
+ * By how much a load step in motion throws the estimated angle before it is found, electrical rad,
+ * by the linear model in i_q, w, theta and T_L. No more than a thousand periods are looked at.
+ */
+double invariant_ekf_thrown_rad(const struct motor_params *motor, double period_s,
+                                const struct invariant_ekf_gains *gains, double load_step_Nm);
+
+/* Whether that of 25 % of the rated torque stays within 20 degrees; the motor is blind else. */
+bool invariant_ekf_motion_check(const struct motor_params *motor, double period_s,
+                                const struct invariant_ekf_gains *gains,
+                                char error[DESIGN_ERROR_TEXT]);
 
 /* Gains in the d-axis hold with `hold_current_A` > 0. */
 bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s,

@@ -118,6 +118,7 @@ __attribute__((noinline)) static bool design_invariant_ekf(struct drive *drive,
     struct invariant_ekf_hold_gains holding;
 
     if (!invariant_ekf_motion_design(motor, period_s, &moving, error) ||
+        !invariant_ekf_motion_check(motor, period_s, &moving, error) ||
         !invariant_ekf_hold_design(motor, period_s, settings->hold_current_A, &holding, error) ||
         (holds(settings) && !hold_estimator_check(&hold, &holding, error))) {
         return false;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstring>
 #include <string>
 #include <unity.h>
 
@@ -428,6 +429,48 @@ void gains_follow_a_motor_with_twice_the_turns()
     assert_same_gains(motor, other, 2.0, 0.5);
 }
 
+/* The whole error model, in float's stead its Jacobian: d axis and all. */
+double thrown_rad(const motor_params &motor, double load_step_Nm)
+{
+    const OperatingPoint at = {1e-3, 0.0};
+    const MatrixXd step = transition(motor, at, 5) *
+                          correction(motion_design(motor), at.speed_rad_s).topLeftCorner(5, 5);
+    VectorXd error = VectorXd::Unit(5, LOAD) * load_step_Nm;
+    double peak = 0;
+    for (int k = 0; k < 1000; k++) {
+        error = step * error;
+        peak = std::max(peak, std::abs(error(ANGLE)));
+    }
+    return peak * motor.rotor_teeth;
+}
+
+void a_load_step_throws_the_angle_as_far_as_the_check_says()
+{
+    motor_params motor = reference::bendjedia_2012();
+    for (double back_emf = 1.0; back_emf > 0.1; back_emf *= 0.6) {
+        motor.torque_constant_Nm_A = 0.157 * back_emf;
+        const invariant_ekf_gains gains = motion_design(motor);
+        const double expected = thrown_rad(motor, 0.1);
+        TEST_ASSERT_DOUBLE_WITHIN(0.03 * expected, expected,
+                                  invariant_ekf_thrown_rad(&motor, period_s, &gains, 0.1));
+    }
+}
+
+void a_motor_without_back_emf_to_speak_of_is_refused_by_what_a_load_step_does()
+{
+    char error[DESIGN_ERROR_TEXT] = "";
+    motor_params motor = reference::bendjedia_2012();
+    invariant_ekf_gains gains = motion_design(motor);
+    TEST_ASSERT_TRUE_MESSAGE(invariant_ekf_motion_check(&motor, period_s, &gains, error), error);
+    motor.torque_constant_Nm_A /= 20.0;
+    motor.inertia_kgm2 /= 20.0;
+    gains = motion_design(motor);
+    TEST_ASSERT_FALSE(invariant_ekf_motion_check(&motor, period_s, &gains, error));
+    TEST_ASSERT_EQUAL_MEMORY("load_step_angle_error ", error, 22);
+    TEST_ASSERT_NOT_NULL(
+        strstr(error, "must be at most 20 degrees electrical, of 25 % of the rated torque"));
+}
+
 void gains_follow_two_motors_on_one_shaft()
 {
     const motor_params motor = reference::bendjedia_2012();
@@ -465,6 +508,8 @@ int main()
     RUN_TEST(no_error_grows_in_hold);
     RUN_TEST(full_angle_correction_begins_at_the_same_back_emf_on_every_motor);
     RUN_TEST(gains_follow_a_motor_with_twice_the_turns);
+    RUN_TEST(a_load_step_throws_the_angle_as_far_as_the_check_says);
+    RUN_TEST(a_motor_without_back_emf_to_speak_of_is_refused_by_what_a_load_step_does);
     RUN_TEST(gains_follow_two_motors_on_one_shaft);
     return UNITY_END();
 }

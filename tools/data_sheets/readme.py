@@ -27,10 +27,15 @@ def table_of(motors):
     return "\n".join("| " + " | ".join(row) + " |" for row in rows)
 
 
+def replaced(text, first, last, table):
+    """The README with what stands between two lines replaced."""
+    before, begin, rest = text.partition(first)
+    _, end, after = rest.partition(last)
+    if not begin or not end:
+        raise ValueError(f"sil/motors/README.md: expected the lines {first} and {last}")
+    return f"{before}{first}\n{table}\n{last}{after}"
+
+
 def with_table(text, motors):
     """The README with its table replaced."""
-    before, begin, rest = text.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not begin or not end:
-        raise ValueError(f"sil/motors/README.md: expected the lines {BEGIN} and {END}")
-    return f"{before}{BEGIN}\n{table_of(motors)}\n{END}{after}"
+    return replaced(text, BEGIN, END, table_of(motors))

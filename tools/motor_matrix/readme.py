@@ -1,0 +1,42 @@
+"""The table of sil/motors/README.md that says which motors hold and how well, from the cells."""
+from data_sheets.readme import replaced
+from motor_matrix.cells import FEEDBACKS, MOVES, PLANTS
+from motor_matrix.table import by_motor, settling_text
+from motor_matrix.verdict import HELD
+
+BEGIN, END = "<!-- tools/motors --readme writes from here -->", "<!-- to here -->"
+
+
+def held_text(row, plant, feedback):
+    """Of the moves: how many hold, and which do not."""
+    cells = [row[plant.name, feedback.name, move] for move in MOVES
+             if (plant.name, feedback.name, move) in row]
+    misses = [cell["move"] for cell in cells if cell["verdict"] != HELD]
+    text = f"{len(cells) - len(misses)}/{len(cells)}"
+    if not misses or len(misses) == len(cells):
+        return text
+    return f"{text}: not {', '.join(misses)}" if len(misses) < 4 else text
+
+
+def final_text(row):
+    """Worst final position error on bench, sensorless, full steps."""
+    errors = [cell["final_steps"] for (plant, feedback, _), cell in row.items()
+              if plant == "bench" and feedback == "sensorless" and cell["final_steps"] is not None]
+    return f"{max(errors):.3f}" if errors else "–"
+
+
+def table_of(cells):
+    columns = [(plant, feedback) for feedback in FEEDBACKS for plant in PLANTS]
+    heads = ["motor", *(f"{plant.name}{', encoder' if feedback.counts else ''}"
+                        for plant, feedback in columns),
+             "worst final error on bench, steps", "to 1/16 step: sensorless", "encoder"]
+    lines = [heads, ["---"] * len(heads)]
+    for name, row in by_motor(cells).items():
+        lines.append([name, *(held_text(row, *column) for column in columns), final_text(row),
+                      *(settling_text(row, feedback.name) for feedback in FEEDBACKS)])
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def with_table(text, cells):
+    """The README with its table replaced."""
+    return replaced(text, BEGIN, END, table_of(cells))
