@@ -23,7 +23,7 @@ static const double playing_rad_per_period = 0.6;
  */
 #define TORQUE_SCALE 32.0
 #define TRAVEL_SCALE 64.0
-#define TRAVEL_MAX   0x7ffffff /* 2^-32 turn */
+#define TRAVEL_MAX   NUM(1.9)
 
 #define MEAN_PACE     UNIT(MEAN_PER_TURN / TRAVEL_SCALE)
 #define LEARNING_PACE UNIT(2.0 * LEARNING_PER_TURN * TORQUE_SCALE / TRAVEL_SCALE)
@@ -64,6 +64,7 @@ detent_compensation_design(const struct detent_compensation_task *task)
                                                      : 0.0;
 
     return (struct detent_compensation_params){
+        .travel = coef_from_double(TRAVEL_SCALE * base->turns_per_period),
         .play = angle_from_turns(num_from_double(counts > play_min ? counts : play_min)),
         .lag = coef_from_double(lag_periods * base->turns_per_period),
         .learning = fade_out(learning_share * bandwidth / electrical_rad_s),
@@ -100,25 +101,22 @@ void detent_compensation_reset(struct detent_compensation *detent)
     detent->followed = false;
 }
 
-/* Way of the angle beyond its play, behind which a shaft would follow; scaled. */
-static num_t travelled(struct detent_compensation *detent,
-                       const struct detent_compensation_params *params, angle_t angle)
+/* Whether the angle takes its follower along, behind the play. */
+static bool follows(struct detent_compensation *detent,
+                    const struct detent_compensation_params *params, angle_t angle)
 {
+    const int32_t away = (int32_t)(angle - detent->follower);
+
     if (!detent->followed) {
         detent->followed = true;
         detent->follower = angle;
+        return false;
     }
-    const int32_t away = (int32_t)(angle - detent->follower);
-    const int32_t way = away > params->play    ? away - params->play
-                        : away < -params->play ? away + params->play
-                                               : 0;
-    const int32_t magnitude = way < 0 ? -way : way;
-    const int32_t limited = magnitude < TRAVEL_MAX ? magnitude : TRAVEL_MAX;
-    const num_t quarter = turns_from_angle(limited << 4); /* of TRAVEL_SCALE */
-    const num_t half = quarter + quarter;
-
-    detent->follower += (angle_t)way;
-    return half + half;
+    if (away <= params->play && away >= -params->play) {
+        return false;
+    }
+    detent->follower = angle - (angle_t)(away < 0 ? -params->play : params->play);
+    return true;
 }
 
 static struct sincos doubled(struct sincos x)
@@ -149,26 +147,40 @@ static void learn(num_t coefficient[2], struct sincos harmonic, num_t step, num_
     coefficient[1] = num_limit(coefficient[1] + num_mul_unit(step, harmonic.sin), limit);
 }
 
-void detent_compensation_step(struct detent_compensation *detent,
-                              const struct detent_compensation_params *params, angle_t angle,
-                              struct sincos frame, num_t speed, num_t load_torque)
+/* All coefficients, from what the observer has seen at an angle of some time ago. */
+static void learn_all(struct detent_compensation *detent,
+                      const struct detent_compensation_params *params, angle_t angle, num_t speed,
+                      num_t pace, num_t load_torque)
 {
-    const num_t pace = num_abs(num_limit(speed, NUM(SPEED_MAX)));
-    const num_t travel = travelled(detent, params, angle);
+    const num_t travel = num_clamp(num_mul_coef(pace, params->travel), NUM(0.0), TRAVEL_MAX);
     const num_t lag = num_limit(num_mul_coef(speed, params->lag), LAG_MAX);
     const num_t residual = num_limit(load_torque - detent->mean, params->residual_limit);
     const num_t step = num_mul(num_mul_unit(residual, LEARNING_PACE), travel);
-    struct sincos now = frame;
     struct sincos then = sincos_of(angle - (angle_t)angle_from_turns(lag));
-    num_t torque = NUM(0.0);
     num_t pace_of_harmonic = pace;
 
     detent->mean += num_mul(num_mul_unit(residual, MEAN_PACE), travel);
     for (num_t *c = detent->coefficient; c != detent->coefficient + DETENT_COEFFICIENTS; c += 2) {
         learn(c, then, faded(step, pace_of_harmonic, &params->learning), params->limit);
+        then = doubled(then);
+        pace_of_harmonic += pace_of_harmonic;
+    }
+}
+
+void detent_compensation_step(struct detent_compensation *detent,
+                              const struct detent_compensation_params *params, angle_t angle,
+                              struct sincos frame, num_t speed, num_t load_torque, bool learns)
+{
+    struct sincos now = frame;
+    num_t torque = NUM(0.0);
+    num_t pace_of_harmonic = num_abs(num_limit(speed, NUM(SPEED_MAX)));
+
+    if (learns && follows(detent, params, angle)) {
+        learn_all(detent, params, angle, speed, pace_of_harmonic, load_torque);
+    }
+    for (num_t *c = detent->coefficient; c != detent->coefficient + DETENT_COEFFICIENTS; c += 2) {
         torque += faded(played(c, now), pace_of_harmonic, &params->playing);
         now = doubled(now);
-        then = doubled(then);
         pace_of_harmonic += pace_of_harmonic;
     }
     detent->torque = num_mul_unit(torque, UNIT(1.0 / TORQUE_SCALE));

@@ -20,9 +20,9 @@
  *   where h N w passes the observer's bandwidth, gradually from half of it.
  * - A harmonic is compensated up to h N w T = 0.6, gradually from 0.3: beyond, the rotor's inertia
  *   smooths it better than a sampled current could.
- * - Way counts behind a play of a count, 1/64 electrical turn at least. A rotor at rest whose
- * estimate goes to and fro between counts would else learn them, until they turn the spring of the
- * position law around.
+ * - Way counts behind a play of a count, 1/64 electrical turn at least. A rotor at rest
+ * whose estimate goes to and fro between counts would else learn them, until they turn the spring
+ * of the position law around.
  * - Every coefficient is bounded to 15 % of the holding torque.
  */
 #ifndef STEADYSTEP_DETENT_COMPENSATION_H
@@ -44,6 +44,7 @@ struct detent_fade {
 };
 
 struct detent_compensation_params {
+    coef_t travel;               /* scaled turns per period, per speed */
     int32_t play;                /* each way, 2^-32 turn */
     coef_t lag;                  /* electrical turns from the lag to the present angle, per speed */
     struct detent_fade learning; /* of the first harmonic */
@@ -56,8 +57,8 @@ struct detent_compensation {
     num_t coefficient[DETENT_COEFFICIENTS]; /* a_1, b_1, a_2, b_2, a_4, b_4; scaled torque */
     num_t mean;                             /* m */
     num_t torque;                           /* at the angle of the last step */
-    angle_t follower;                       /* of the angle, by its play behind */
     bool followed;                          /* since the bridge is on */
+    angle_t follower;                       /* of the angle, by its play behind */
 };
 
 struct detent_compensation_task {
@@ -85,9 +86,10 @@ void detent_compensation_reset(struct detent_compensation *detent);
 /*
  * One period. `frame` is that of `angle`, the predicted electrical angle at which the answer begins
  * to act; `load_torque` is the estimate without the detent. detent->torque is then that of `angle`.
+ * `learns`: this period has time for it.
  */
 void detent_compensation_step(struct detent_compensation *detent,
                               const struct detent_compensation_params *params, angle_t angle,
-                              struct sincos frame, num_t speed, num_t load_torque);
+                              struct sincos frame, num_t speed, num_t load_torque, bool learns);
 
 #endif

@@ -210,8 +210,8 @@ bool invariant_ekf_motion_design(const struct motor_params *motor, double period
 #define BORNE_LOAD_STEP 0.25
 #define THROWN_MAX_DEG  20.0
 
-/* A throw has reached its peak within so many periods, or is far below it. */
-#define THROW_PERIODS 1000
+/* Within so many periods a throw has reached its peak, or the motor is slow enough to be seen. */
+#define THROW_PERIODS 400
 
 double invariant_ekf_thrown_rad(const struct motor_params *motor, double period_s,
                                 const struct invariant_ekf_gains *gains, double load_step_Nm)
@@ -227,7 +227,7 @@ double invariant_ekf_thrown_rad(const struct motor_params *motor, double period_
     double load = -load_step_Nm;
     double peak = 0.0;
 
-    for (int k = 0; k < THROW_PERIODS && angle >= 0.5 * peak; k++) {
+    for (int k = 0; k < THROW_PERIODS && angle >= 0.98 * peak; k++) {
         const double mean_speed = speed + 0.5 * per_inertia * (km * current - load);
         const double next_current = decay * current - admittance * km * mean_speed;
         const double torque_Nm =

@@ -69,7 +69,7 @@ static bool plan(struct drive *drive, const struct drive_command *command, struc
         .acceleration_limit_rad_s2 = drive->settings.current_limit_A *
                                      drive->settings.motor.torque_constant_Nm_A /
                                      drive->settings.motor.inertia_kgm2,
-        .creep_rad_s = drive->creep_rad_s,
+        .creep_rad_s = num_to_double(drive->params.reference.creep_speed) * drive->base.speed_rad_s,
     };
 
     return require_known_end(drive, error) &&

@@ -189,7 +189,8 @@ compensate_detent(struct drive *drive, const struct estimate *estimate, struct p
         next->rotor.speed -= num_mul_coef(before, drive->params.model.speed_per_torque);
     }
     detent_compensation_step(&drive->detent, &drive->params.detent, next->rotor.position.fraction,
-                             next->frame, next->rotor.speed, estimate->rotor.load_torque);
+                             next->frame, next->rotor.speed, estimate->rotor.load_torque,
+                             drive->reference.now.moving == drive->reference.next.moving);
     estimator_tell_torque(&drive->estimator, &drive->params.estimator, drive->detent.torque);
     next->load_torque_change = drive->detent.torque - before;
     next->rotor.load_torque = estimate->rotor.load_torque + drive->detent.torque;

@@ -321,10 +321,7 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
     params->initial_position =
         position_from_rad(settings->initial_angle_rad + settings->initial_angle_error_rad,
                           settings->motor.rotor_teeth);
-    const struct creep_limits creep = creep_limits(settings);
-
-    params->reference = reference_design(&drive->base, period_s, creep);
-    drive->creep_rad_s = creep.speed_rad_s;
+    params->reference = reference_design(&drive->base, period_s, creep_limits(settings));
     params->current_control = current_control_design(&settings->motor, &drive->base, period_s,
                                                      settings->current_bandwidth_rad_s);
     params->modulator = modulator_design(facts->pwm_half_period_counts);

@@ -116,7 +116,6 @@ struct drive {
     struct position planned_end; /* where the reference rests when all posted moves are done */
     enum planned_end end_known;  /* whether it is */
     struct planner planner;
-    double creep_rad_s; /* up to where the hold leads the rotor */
 
     /* enabling, with its constants: behind all that an interrupt in operation uses */
     struct position start; /* rotor, as told or as found */

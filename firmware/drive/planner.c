@@ -268,7 +268,7 @@ static enum planner_motion begin_motion(struct planner *p, struct motion_plan *p
 /* Electrical turns per period. */
 static double creep_speed(const struct drive *drive)
 {
-    return drive->creep_rad_s / drive->base.speed_rad_s * drive->base.turns_per_period;
+    return num_to_double(drive->params.reference.creep_speed) * drive->base.turns_per_period;
 }
 
 /* Its cruise, or the peak of a sine; of set-points nobody knows. */

@@ -71,7 +71,7 @@ static void run_period(double speed_rad_s)
 
     detent_compensation_step(&detent, &params, angle, sincos_of(angle),
                              num_from_double(speed_rad_s / base.speed_rad_s),
-                             num_from_double(lag[2] / base.torque_Nm));
+                             num_from_double(lag[2] / base.torque_Nm), true);
 }
 
 static void run(double speed_rad_s, double turns)
@@ -128,11 +128,11 @@ static void test_at_rest_nothing_is_learned_of_a_dither_between_counts(void)
         const double turns = (1.0 + 0.9 * count_rad * sin(phase)) / TWO_PI;
         const angle_t angle = (angle_t)(int64_t)(turns * 4294967296.0);
 
-        detent_compensation_step(
-            &detent, &params, angle, sincos_of(angle),
-            num_from_double(0.9 * count_rad * TWO_PI / 50.0 / PERIOD_S * cos(phase) / ELECTRICAL /
-                            base.speed_rad_s),
-            num_from_double((0.01 + 0.02 * sin(phase + 1.0)) / base.torque_Nm));
+        detent_compensation_step(&detent, &params, angle, sincos_of(angle),
+                                 num_from_double(0.9 * count_rad * TWO_PI / 50.0 / PERIOD_S *
+                                                 cos(phase) / ELECTRICAL / base.speed_rad_s),
+                                 num_from_double((0.01 + 0.02 * sin(phase + 1.0)) / base.torque_Nm),
+                                 true);
     }
     for (int i = 0; i < DETENT_COEFFICIENTS; i++) {
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.0, learned(i));

@@ -49,9 +49,9 @@ def draw(cells, title):
     present = {cell["verdict"] for cell in cells}
     items = [Patch(facecolor=COLOURS[kind], label=TITLES[kind])
              for kind in COLOURS if kind in present]
-    axes.legend(handles=items, loc="lower left", bbox_to_anchor=(0, 1 + 1.0 / (height + 1)),
+    axes.legend(handles=items, loc="lower left", bbox_to_anchor=(0, 1 + 2.2 / height),
                 ncols=len(items), fontsize=7, frameon=False)
-    figure.suptitle(title, fontsize=9, x=0.01, ha="left")
+    axes.set_title(title, fontsize=9, loc="left", pad=52)
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=150, bbox_inches="tight")
     plt.close(figure)
