@@ -211,7 +211,7 @@ bool invariant_ekf_motion_design(const struct motor_params *motor, double period
 #define THROWN_MAX_DEG  20.0
 
 /* Within so many periods a throw has reached its peak, or the motor is slow enough to be seen. */
-#define THROW_PERIODS 400
+#define THROW_PERIODS 1000
 
 double invariant_ekf_thrown_rad(const struct motor_params *motor, double period_s,
                                 const struct invariant_ekf_gains *gains, double load_step_Nm)

@@ -66,7 +66,7 @@ bool invariant_ekf_motion_design(const struct motor_params *motor, double period
 
 /*
  * By how much a load step in motion throws the estimated angle before it is found, electrical rad,
- * by the linear model in i_q, w, theta and T_L. No more than 400 periods are looked at.
+ * by the linear model in i_q, w, theta and T_L. No more than a thousand periods are looked at.
  */
 double invariant_ekf_thrown_rad(const struct motor_params *motor, double period_s,
                                 const struct invariant_ekf_gains *gains, double load_step_Nm);
