@@ -179,7 +179,8 @@ static void remember_demand(struct drive *drive, const struct estimate *estimate
     drive->demanded_voltage = voltage;
 }
 
-/* The detent torque at the instant of action, learned from what the observer has left of it. */
+/* The detent torque at the instant of action, learned from what the observer has left of it. A
+   period in which a motion begins or ends has no time to learn. */
 __attribute__((noinline)) static void
 compensate_detent(struct drive *drive, const struct estimate *estimate, struct prediction *next)
 {
