@@ -92,10 +92,13 @@ static const struct tuning hold_tuning = {
 /* A rotor that is led passes its detent torque, by the data sheets 3 to 13 % of the rated torque.
  */
 #define LED_LOAD_STEPS 3.0
-/* A load step is followed until the rotor has swung out, in units of 1/w_h. */
-#define FOLLOWING_SWING 8.0
-/* The settled load is the mean of the estimate over this time. */
-#define LOAD_SETTLE_TIME_S 5e-4
+/* A load step is followed until the rotor has swung out, in units of 1/w_h: longer, the noise that
+   is integrated grows. The settled load is the mean of the estimate over SETTLE_SWING of them. */
+#define FOLLOWING_SWING 7.0
+#define SETTLE_SWING    1.5
+/* A step is recognised in a third of the time in which the load returns: what has returned in so
+   much is remembered for it, and no more of the noise. */
+#define REMEMBERED_SHARE (1.0 / 3.0)
 
 static double square(double x)
 {
@@ -268,12 +271,15 @@ bool invariant_ekf_motion_check(const struct motor_params *motor, double period_
  * has crossed: of a motor with little back-EMF two thirds, of which a load step leaves as much
  * behind as displacement. So the angle follows the flux instead: what voltage the innovation stands
  * for, integrated, is Km times the angle. A step then leaves nothing behind, and the loop is damped
- * no less.
+ * no less. The current model has the back-EMF of the speed at the period's begin, the angle goes by
+ * the mean speed: so half a period of what the innovation adds to the speed is the angle's, too.
  */
-static double flux_angle_gain(const struct motor_params *motor, double period_s, double k_current)
+static double flux_angle_gain(const struct motor_params *motor, double period_s, double k_current,
+                              double k_speed_q)
 {
     return -voltage_per_innovation(motor, period_s, k_current) * period_s /
-           motor->torque_constant_Nm_A;
+               motor->torque_constant_Nm_A +
+           0.5 * period_s * k_speed_q;
 }
 
 /* Gains that the holds have in common, of a load that walks by `load_walk`. */
@@ -290,12 +296,14 @@ static bool hold_gains(const struct motor_params *motor, double period_s, double
     }
     const double k_current_d = solution.gain[I_D][I_D];
     const double k_current_q = solution.gain[I_Q][I_Q];
+    const double k_current = 0.5 * (k_current_d + k_current_q);
+    const double k_speed_q = solution.gain[SPEED][I_Q];
 
     *gains = (struct invariant_ekf_gains){
         .k_current_d = k_current_d,
         .k_current_q = k_current_q,
-        .k_speed_q_rad_As = solution.gain[SPEED][I_Q],
-        .k_angle_q_rad_A = flux_angle_gain(motor, period_s, 0.5 * (k_current_d + k_current_q)),
+        .k_speed_q_rad_As = k_speed_q,
+        .k_angle_q_rad_A = flux_angle_gain(motor, period_s, k_current, k_speed_q),
         .k_load_q_Nm_A = solution.gain[LOAD][I_Q],
         .angle_d_full_speed_rad_s = speed_of_back_emf(motor, FULL_ANGLE_BACK_EMF),
         .k_resistance_ohm_A2 = -RESISTANCE_RATE * period_s *
@@ -323,6 +331,19 @@ static void let_return(const struct motor_params *motor, double period_s, double
         period_s / square(2.0 * RETURN_DAMPING * time_s) * motor->torque_constant_Nm_A * way_rad_Nm;
 }
 
+/* What has returned of a load step until it is recognised comes back on the same line. */
+static void recall(struct invariant_ekf_hold_gains *hold)
+{
+    const struct invariant_ekf_gains *quiet = &hold->quiet;
+    const double per_share = REMEMBERED_SHARE / quiet->load_return;
+
+    hold->recalling = hold->following;
+    hold->recalling.load_return = -REMEMBERED_SHARE;
+    hold->recalling.angle_return_rad_Nm = -per_share * quiet->angle_return_rad_Nm;
+    hold->recalling.bias_return_V_Nm = -per_share * quiet->bias_return_V_Nm;
+    hold->remembering = quiet->load_return / REMEMBERED_SHARE;
+}
+
 bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s,
                                double hold_current_A, struct invariant_ekf_hold_gains *gains,
                                char error[DESIGN_ERROR_TEXT])
@@ -331,6 +352,8 @@ bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s
         !design_require_positive(error, "hold current", hold_current_A, "A")) {
         return false;
     }
+    const double swing = hold_frequency(motor, hold_current_A) * period_s; /* rad per period */
+
     if (!hold_gains(motor, period_s, hold_current_A, hold_tuning.load_walk, &gains->quiet) ||
         !hold_gains(motor, period_s, hold_current_A, FOLLOWING_LOAD_WALK, &gains->following)) {
         return design_refuse(error, no_gain);
@@ -344,9 +367,9 @@ bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s
         -BIAS_RATE_UNLOADED * period_s *
         voltage_per_innovation(motor, period_s, gains->quiet.k_current_d);
     let_return(motor, period_s, hold_current_A, &gains->quiet);
-    gains->following.load_settle = 1.0 - exponential(-period_s / LOAD_SETTLE_TIME_S);
-    gains->following_periods =
-        (uint32_t)(FOLLOWING_SWING / hold_frequency(motor, hold_current_A) / period_s + 0.5);
+    recall(gains);
+    gains->following.load_settle = 1.0 - exponential(-swing / SETTLE_SWING);
+    gains->following_periods = (uint32_t)(FOLLOWING_SWING / swing + 0.5);
     gains->load_step_Nm = LOAD_STEP * motor->torque_constant_Nm_A * motor->rated_current_A;
     gains->led_load_step_Nm = LED_LOAD_STEPS * gains->load_step_Nm;
     return true;
