@@ -331,16 +331,16 @@ static void let_return(const struct motor_params *motor, double period_s, double
         period_s / square(2.0 * RETURN_DAMPING * time_s) * motor->torque_constant_Nm_A * way_rad_Nm;
 }
 
-/* What has returned of a load step until it is recognised comes back on the same line. */
+/* What has returned of a load step until it is recognised comes back on the same line. What was
+   taken for an offset meanwhile stays so: it is little, and of a drift it is one. */
 static void recall(struct invariant_ekf_hold_gains *hold)
 {
     const struct invariant_ekf_gains *quiet = &hold->quiet;
-    const double per_share = REMEMBERED_SHARE / quiet->load_return;
 
     hold->recalling = hold->following;
     hold->recalling.load_return = -REMEMBERED_SHARE;
-    hold->recalling.angle_return_rad_Nm = -per_share * quiet->angle_return_rad_Nm;
-    hold->recalling.bias_return_V_Nm = -per_share * quiet->bias_return_V_Nm;
+    hold->recalling.angle_return_rad_Nm =
+        -REMEMBERED_SHARE / quiet->load_return * quiet->angle_return_rad_Nm;
     hold->remembering = quiet->load_return / REMEMBERED_SHARE;
 }
 

@@ -200,7 +200,7 @@ static struct correction_gains hold_gains(struct invariant_ekf *ekf,
         const bool quiet = ekf->following_periods < REST_PERIODS;
 
         ekf->following_periods = params->following_periods + REST_PERIODS;
-        if (quiet) {
+        if (quiet && num_abs(ekf->away_before) < num_half(change)) { /* quick: no drift */
             return recall(ekf, params);
         }
     }
@@ -228,7 +228,7 @@ void invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_pa
     ekf->innovation_sum += innovation.d;
     if (!hold.active) {
         settle(ekf);
-    } else if (!*hold.leads || led_hold_learns(hold.period)) {
+    } else if (!*hold.leads) { /* a led rotor's lag behind its frame shows in nu_d, too */
         adapt_resistance(ekf, params, gains.set, innovation.d);
     }
     estimate_look_ahead(&ekf->estimate, &params->model);

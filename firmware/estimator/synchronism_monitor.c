@@ -167,9 +167,10 @@ enum synchronism synchronism_monitor_judge_motion(struct synchronism_monitor *mo
 
 enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *monitor,
                                                 const struct synchronism_monitor_params *params,
-                                                num_t speed)
+                                                num_t speed, bool leads)
 {
-    const num_t allowed = params->settled_floor + quarter(num_abs(speed));
+    const num_t half = num_half(num_abs(speed));
+    const num_t allowed = params->settled_floor + (leads ? half : num_half(half));
     const num_t eighth = num_half(quarter(monitor->past_mean - monitor->settled));
 
     monitor->mirrored = 0u;

@@ -17,7 +17,9 @@
  *
  * In motion and for the first tenth of a second of a hold. A rotor that a growing load draws out of
  * a settled hold, whose resistance is known by then, creeps past the quarter turn: there the mean
- * over eight blocks has the same bound with V_1 for V_0, a quarter of it.
+ * over eight blocks has the same bound with V_1 for V_0, a quarter of it, and without r. A rotor
+ * that a hold leads lags behind its frame by a load that is not known, 0.4 electrical rad by one
+ * that is just no step to the estimator: so there a half stands for the quarter.
  *
  * Half a turn beside the rotor the estimate has a second equilibrium: it turns against the rotor,
  * and what is left in d, 0.4 Km |w_hat|, draws its angle along. Of a sound estimate nothing is left
@@ -115,10 +117,10 @@ enum synchronism synchronism_monitor_judge_voltage(struct synchronism_monitor *m
                                                    const struct synchronism_monitor_params *params,
                                                    num_t speed, num_t i_d);
 
-/* The same of a hold, by the mean over eight blocks. */
+/* The same of a hold, by the mean over eight blocks; `leads`: of a rotor that its frame leads. */
 enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *monitor,
                                                 const struct synchronism_monitor_params *params,
-                                                num_t speed);
+                                                num_t speed, bool leads);
 
 /* In motion instead: whether the disturbance lasts, as half a turn beside the rotor: lost, or
    sure. */
