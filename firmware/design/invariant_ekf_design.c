@@ -89,13 +89,12 @@ static const struct tuning hold_tuning = {
 /* A change of the load by so much of the rated torque is a step, and beyond what noise makes of it:
    on `bench` 0.3 % rms in the quiet hold of the motor above, 1.6 % of the smallest motors. */
 #define LOAD_STEP (0.025 / RATED_TORQUE_NM)
-/* A rotor that is led passes its detent torque, by the data sheets 3 to 13 % of the rated torque.
- */
-#define LED_LOAD_STEPS 3.0
 /* A load step is followed until the rotor has swung out, in units of 1/w_h: longer, the noise that
-   is integrated grows. The settled load is the mean of the estimate over SETTLE_SWING of them. */
+   is integrated grows. */
 #define FOLLOWING_SWING 7.0
-#define SETTLE_SWING    1.5
+/* The settled load is the mean of the estimate over this time: longer, a load that grows is lost
+   sooner. */
+#define LOAD_SETTLE_TIME_S 5e-4
 /* A step is recognised in a third of the time in which the load returns: what has returned in so
    much is remembered for it, and no more of the noise. */
 #define REMEMBERED_SHARE (1.0 / 3.0)
@@ -368,9 +367,8 @@ bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s
         voltage_per_innovation(motor, period_s, gains->quiet.k_current_d);
     let_return(motor, period_s, hold_current_A, &gains->quiet);
     recall(gains);
-    gains->following.load_settle = 1.0 - exponential(-swing / SETTLE_SWING);
+    gains->following.load_settle = 1.0 - exponential(-period_s / LOAD_SETTLE_TIME_S);
     gains->following_periods = (uint32_t)(FOLLOWING_SWING / swing + 0.5);
     gains->load_step_Nm = LOAD_STEP * motor->torque_constant_Nm_A * motor->rated_current_A;
-    gains->led_load_step_Nm = LED_LOAD_STEPS * gains->load_step_Nm;
     return true;
 }

@@ -61,7 +61,6 @@ struct invariant_ekf_hold_gains {
     double remembering;                   /* of the quiet hold, share per period */
     uint32_t following_periods;           /* how long a load step is followed */
     double load_step_Nm;                  /* change that ends the quiet hold */
-    double led_load_step_Nm;              /* likewise where the hold leads the rotor */
 };
 
 /* Gains in motion. False, with text in `error`, if the motor is outside what the model bears. */

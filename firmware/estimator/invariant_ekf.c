@@ -51,7 +51,6 @@ struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params 
         .remembering = coef_from_double(hold->remembering),
         .following_periods = hold->following_periods,
         .load_step = num_from_double(hold->load_step_Nm / base->torque_Nm),
-        .led_load_step = num_from_double(hold->led_load_step_Nm / base->torque_Nm),
     };
     return params;
 }
@@ -185,9 +184,8 @@ static struct correction_gains recall(struct invariant_ekf *ekf,
 static struct correction_gains hold_gains(struct invariant_ekf *ekf,
                                           const struct invariant_ekf_params *params, bool leads)
 {
-    const num_t load_step = leads ? params->led_load_step : params->load_step;
     const num_t away = ekf->estimate.rotor.load_torque - ekf->settled_load;
-    const num_t change = num_abs(away);
+    const num_t change = num_abs(leads ? away - ekf->away_before : away);
 
     if (ekf->unloaded_periods > 0u) {
         ekf->unloaded_periods--;
@@ -196,11 +194,12 @@ static struct correction_gains hold_gains(struct invariant_ekf *ekf,
         }
         return (struct correction_gains){&params->unloaded, true, away};
     }
-    if (change > load_step && (ekf->following_periods == 0u || num_half(change) > load_step)) {
+    if (change > params->load_step &&
+        (ekf->following_periods == 0u || num_half(change) > params->load_step)) {
         const bool quiet = ekf->following_periods < REST_PERIODS;
 
         ekf->following_periods = params->following_periods + REST_PERIODS;
-        if (quiet && num_abs(ekf->away_before) < num_half(change)) { /* quick: no drift */
+        if (quiet && num_abs(ekf->away_before) < num_half(num_abs(away))) { /* quick: no drift */
             return recall(ekf, params);
         }
     }

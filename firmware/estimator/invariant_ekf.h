@@ -24,8 +24,8 @@
  * and takes what lasts for an offset; unless the difference shows a load step: then it takes back
  * what has returned of it, and what is estimated is the load from there on. Of small steps one in
  * 10 ms is believed, so that the estimate cannot run away with the current that compensates it. A
- * rotor that is led along a creeping reference passes its detent torque, which is no step: there it
- * takes three times as much.
+ * rotor that is led along a creeping reference passes its detent torque, slowly beside its swing:
+ * there only what the difference has not been of late counts.
  *
  * Gains: design/invariant_ekf_design.h.
  */
@@ -62,7 +62,6 @@ struct invariant_ekf_params {
     coef_t remembering;                      /* share of away_before's way to that, each period */
     uint32_t following_periods;              /* how long a load step is followed */
     num_t load_step;                         /* what a quiet hold takes for a step of the load */
-    num_t led_load_step;                     /* likewise where the rotor is led */
 };
 
 struct invariant_ekf {
