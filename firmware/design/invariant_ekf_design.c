@@ -88,7 +88,7 @@ static const struct tuning hold_tuning = {
 #define RETURN_DAMPING 1.4
 /* A change of the load by so much of the rated torque is a step, and beyond what noise makes of it:
    on `bench` 0.3 % rms in the quiet hold of the motor above, 1.6 % of the smallest motors. */
-#define LOAD_STEP (0.025 / RATED_TORQUE_NM)
+#define LOAD_STEP (0.015 / RATED_TORQUE_NM)
 /* A load step is followed until the rotor has swung out, in units of 1/w_h: longer, the noise that
    is integrated grows. */
 #define FOLLOWING_SWING 7.0

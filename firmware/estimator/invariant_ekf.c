@@ -50,6 +50,7 @@ struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params 
         .odd_gain_speed = num_from_double(moving->angle_d_full_speed_rad_s / base->speed_rad_s),
         .remembering = coef_from_double(hold->remembering),
         .following_periods = hold->following_periods,
+        .level = coef_from_double(0.5*hold->quiet.load_return),
         .load_step = num_from_double(hold->load_step_Nm / base->torque_Nm),
     };
     return params;
@@ -185,7 +186,8 @@ static struct correction_gains hold_gains(struct invariant_ekf *ekf,
                                           const struct invariant_ekf_params *params, bool leads)
 {
     const num_t away = ekf->estimate.rotor.load_torque - ekf->settled_load;
-    const num_t change = num_abs(leads ? away - ekf->away_before : away);
+    const num_t change = leads ? num_abs(away) - (ekf->away_level+ekf->away_level) : num_abs(away);
+    ekf->away_level = leads ? ekf->away_level + num_mul_coef(num_abs(away) - ekf->away_level, params->level) : NUM(0.0);
 
     if (ekf->unloaded_periods > 0u) {
         ekf->unloaded_periods--;

@@ -59,6 +59,7 @@ struct invariant_ekf_params {
     struct invariant_ekf_gain_set following; /* holding, after a load step */
     struct invariant_ekf_gain_set recalling; /* holding, as a load step is recognised */
     num_t odd_gain_speed;                    /* w_s */
+    coef_t level;
     coef_t remembering;                      /* share of away_before's way to that, each period */
     uint32_t following_periods;              /* how long a load step is followed */
     num_t load_step;                         /* what a quiet hold takes for a step of the load */
@@ -69,6 +70,7 @@ struct invariant_ekf {
     struct phases bias;         /* offset of the measured voltage */
     num_t innovation_sum;       /* of nu_d since the synchronism monitor has taken it */
     num_t settled_load;         /* torque that a hold returns to */
+    num_t away_level;
     num_t away_before;          /* of the load from that, in a quiet hold, of late */
     uint32_t following_periods; /* left of the gains that follow a load step, and of their rest */
     uint32_t swing_end;         /* of unloaded_periods, when the rotor has swung into place */
