@@ -88,16 +88,14 @@ static const struct tuning hold_tuning = {
 #define RETURN_DAMPING 1.4
 /* A change of the load by so much of the rated torque is a step, and beyond what noise makes of it:
    on `bench` 0.3 % rms in the quiet hold of the motor above, 1.6 % of the smallest motors. */
-#define LOAD_STEP (0.015 / RATED_TORQUE_NM)
-/* A load step is followed until the rotor has swung out, in units of 1/w_h: longer, the noise that
-   is integrated grows. */
-#define FOLLOWING_SWING 7.0
-/* The settled load is the mean of the estimate over this time: longer, a load that grows is lost
-   sooner. */
+#define LOAD_STEP (0.025 / RATED_TORQUE_NM)
+/* A rotor that is led passes its detent torque, by the data sheets 3 to 13 % of the rated torque.
+ */
+#define LED_LOAD_STEPS 3.0
+/* A load step is followed until the rotor has swung out, in units of 1/w_h. */
+#define FOLLOWING_SWING 8.0
+/* The settled load is the mean of the estimate over this time. */
 #define LOAD_SETTLE_TIME_S 5e-4
-/* A step is recognised in a third of the time in which the load returns: what has returned in so
-   much is remembered for it, and no more of the noise. */
-#define REMEMBERED_SHARE (1.0 / 3.0)
 
 static double square(double x)
 {
@@ -270,15 +268,12 @@ bool invariant_ekf_motion_check(const struct motor_params *motor, double period_
  * has crossed: of a motor with little back-EMF two thirds, of which a load step leaves as much
  * behind as displacement. So the angle follows the flux instead: what voltage the innovation stands
  * for, integrated, is Km times the angle. A step then leaves nothing behind, and the loop is damped
- * no less. The current model has the back-EMF of the speed at the period's begin, the angle goes by
- * the mean speed: so half a period of what the innovation adds to the speed is the angle's, too.
+ * no less.
  */
-static double flux_angle_gain(const struct motor_params *motor, double period_s, double k_current,
-                              double k_speed_q)
+static double flux_angle_gain(const struct motor_params *motor, double period_s, double k_current)
 {
     return -voltage_per_innovation(motor, period_s, k_current) * period_s /
-               motor->torque_constant_Nm_A +
-           0.5 * period_s * k_speed_q;
+           motor->torque_constant_Nm_A;
 }
 
 /* Gains that the holds have in common, of a load that walks by `load_walk`. */
@@ -295,14 +290,12 @@ static bool hold_gains(const struct motor_params *motor, double period_s, double
     }
     const double k_current_d = solution.gain[I_D][I_D];
     const double k_current_q = solution.gain[I_Q][I_Q];
-    const double k_current = 0.5 * (k_current_d + k_current_q);
-    const double k_speed_q = solution.gain[SPEED][I_Q];
 
     *gains = (struct invariant_ekf_gains){
         .k_current_d = k_current_d,
         .k_current_q = k_current_q,
-        .k_speed_q_rad_As = k_speed_q,
-        .k_angle_q_rad_A = flux_angle_gain(motor, period_s, k_current, k_speed_q),
+        .k_speed_q_rad_As = solution.gain[SPEED][I_Q],
+        .k_angle_q_rad_A = flux_angle_gain(motor, period_s, 0.5 * (k_current_d + k_current_q)),
         .k_load_q_Nm_A = solution.gain[LOAD][I_Q],
         .angle_d_full_speed_rad_s = speed_of_back_emf(motor, FULL_ANGLE_BACK_EMF),
         .k_resistance_ohm_A2 = -RESISTANCE_RATE * period_s *
@@ -330,19 +323,6 @@ static void let_return(const struct motor_params *motor, double period_s, double
         period_s / square(2.0 * RETURN_DAMPING * time_s) * motor->torque_constant_Nm_A * way_rad_Nm;
 }
 
-/* What has returned of a load step until it is recognised comes back on the same line. What was
-   taken for an offset meanwhile stays so: it is little, and of a drift it is one. */
-static void recall(struct invariant_ekf_hold_gains *hold)
-{
-    const struct invariant_ekf_gains *quiet = &hold->quiet;
-
-    hold->recalling = hold->following;
-    hold->recalling.load_return = -REMEMBERED_SHARE;
-    hold->recalling.angle_return_rad_Nm =
-        -REMEMBERED_SHARE / quiet->load_return * quiet->angle_return_rad_Nm;
-    hold->remembering = quiet->load_return / REMEMBERED_SHARE;
-}
-
 bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s,
                                double hold_current_A, struct invariant_ekf_hold_gains *gains,
                                char error[DESIGN_ERROR_TEXT])
@@ -351,8 +331,6 @@ bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s
         !design_require_positive(error, "hold current", hold_current_A, "A")) {
         return false;
     }
-    const double swing = hold_frequency(motor, hold_current_A) * period_s; /* rad per period */
-
     if (!hold_gains(motor, period_s, hold_current_A, hold_tuning.load_walk, &gains->quiet) ||
         !hold_gains(motor, period_s, hold_current_A, FOLLOWING_LOAD_WALK, &gains->following)) {
         return design_refuse(error, no_gain);
@@ -366,9 +344,10 @@ bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s
         -BIAS_RATE_UNLOADED * period_s *
         voltage_per_innovation(motor, period_s, gains->quiet.k_current_d);
     let_return(motor, period_s, hold_current_A, &gains->quiet);
-    recall(gains);
     gains->following.load_settle = 1.0 - exponential(-period_s / LOAD_SETTLE_TIME_S);
-    gains->following_periods = (uint32_t)(FOLLOWING_SWING / swing + 0.5);
+    gains->following_periods =
+        (uint32_t)(FOLLOWING_SWING / hold_frequency(motor, hold_current_A) / period_s + 0.5);
     gains->load_step_Nm = LOAD_STEP * motor->torque_constant_Nm_A * motor->rated_current_A;
+    gains->led_load_step_Nm = LED_LOAD_STEPS * gains->load_step_Nm;
     return true;
 }

@@ -27,13 +27,11 @@
  *   b_q       += k_bias_d sat(w_est / angle_d_full_speed) nu_d + k_bias_q nu_q
  *   R_est     += k_resistance i_d nu_d
  * with b_q a step of the offset b in the direction of the frame's q axis; b is subtracted from the
- * measured voltage. In hold also
+ * measured voltage. In hold, where `away` is T_L_est - T_settled, also
  *   T_L_est   -= load_return away
  *   theta_est += angle_return away
  *   b_q       -= bias_return away
  *   T_settled += load_settle away
- * `away` is T_L_est - T_settled. As a load step is recognised it is for a period what it has been
- * in the quiet hold: away_before += remembering (away - away_before)
  */
 struct invariant_ekf_gains {
     double k_current_d;              /* A per A */
@@ -56,11 +54,10 @@ struct invariant_ekf_gains {
 struct invariant_ekf_hold_gains {
     struct invariant_ekf_gains quiet;     /* the load returns to what it was */
     struct invariant_ekf_gains following; /* behind a load step: the load is learned */
-    struct invariant_ekf_gains recalling; /* the period between: what has returned comes back */
     struct invariant_ekf_gains unloaded;  /* no load is expected: the voltage offset is learned */
-    double remembering;                   /* of the quiet hold, share per period */
     uint32_t following_periods;           /* how long a load step is followed */
     double load_step_Nm;                  /* change that ends the quiet hold */
+    double led_load_step_Nm;              /* likewise where the hold leads the rotor */
 };
 
 /* Gains in motion. False, with text in `error`, if the motor is outside what the model bears. */

@@ -126,7 +126,6 @@ __attribute__((noinline)) static bool design_invariant_ekf(struct drive *drive,
     if (!settings->resistance_adaptation) {
         holding.quiet.k_resistance_ohm_A2 = 0.0;
         holding.following.k_resistance_ohm_A2 = 0.0;
-        holding.recalling.k_resistance_ohm_A2 = 0.0;
         holding.unloaded.k_resistance_ohm_A2 = 0.0;
     }
     params->kind = ESTIMATOR_INVARIANT_EKF;

@@ -39,8 +39,7 @@ static uint64_t hash_estimator(uint64_t hash, const struct estimator_params *p)
         hash = HASH_RANGE(hash, p->invariant.moving, current, load_settle);
         hash = HASH_RANGE(hash, p->invariant.holding, current, load_settle);
         hash = HASH_RANGE(hash, p->invariant.unloaded, current, load_settle);
-        hash = HASH_RANGE(hash, p->invariant.following, current, load_settle);
-        return HASH_RANGE(hash, p->invariant.recalling, current, load_settle);
+        return HASH_RANGE(hash, p->invariant.following, current, load_settle);
     case ESTIMATOR_STEADY_STATE_EKF:
         return HASH_RANGE(hash, p->steady_state, rotation, gain_load);
     case ESTIMATOR_HIGH_GAIN_OBSERVER:

@@ -46,12 +46,10 @@ struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params 
         .holding = scale(base, &hold->quiet),
         .unloaded = scale(base, &hold->unloaded),
         .following = scale(base, &hold->following),
-        .recalling = scale(base, &hold->recalling),
         .odd_gain_speed = num_from_double(moving->angle_d_full_speed_rad_s / base->speed_rad_s),
-        .remembering = coef_from_double(hold->remembering),
         .following_periods = hold->following_periods,
-        .level = coef_from_double(0.5*hold->quiet.load_return),
         .load_step = num_from_double(hold->load_step_Nm / base->torque_Nm),
+        .led_load_step = num_from_double(hold->led_load_step_Nm / base->torque_Nm),
     };
     return params;
 }
@@ -61,7 +59,6 @@ static void settle(struct invariant_ekf *ekf)
 {
     ekf->settled_load = ekf->estimate.rotor.load_torque;
     ekf->following_periods = 0;
-    ekf->away_before = NUM(0.0);
 }
 
 void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
@@ -111,7 +108,7 @@ static struct correction correct_in_motion(const struct invariant_ekf_params *pa
                                .load_torque = num_mul_coef(innovation.q, gain->load_q)};
 }
 
-/* `away`: of the load from the one settled at; where a load step is recalled, as it was before. */
+/* `away`: of the load from the one settled at. */
 static struct correction correct_in_hold(const struct invariant_ekf_gain_set *gain,
                                          struct dq innovation, num_t away)
 {
@@ -123,17 +120,15 @@ static struct correction correct_in_hold(const struct invariant_ekf_gain_set *ga
             num_mul_coef(innovation.q, gain->load_q) - num_mul_coef(away, gain->load_return)};
 }
 
-/* What this period corrects with. */
-struct correction_gains {
-    const struct invariant_ekf_gain_set *set;
-    bool holding;
-    num_t away; /* holding: see correct_in_hold */
-};
+static num_t away_from_settled_load(const struct invariant_ekf *ekf)
+{
+    return ekf->estimate.rotor.load_torque - ekf->settled_load;
+}
 
 /* Returns the innovation in the estimated rotor frame. */
 static struct dq correct(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                         const struct correction_gains *gains, const struct predicted *predicted,
-                         struct phases current)
+                         const struct invariant_ekf_gain_set *gain,
+                         const struct predicted *predicted, struct phases current, bool holding)
 {
     struct estimate *x = &ekf->estimate;
     const struct rotor *rotor = &predicted->rotor;
@@ -141,13 +136,13 @@ static struct dq correct(struct invariant_ekf *ekf, const struct invariant_ekf_p
                                  current.b - predicted->current.b};
     const struct sincos frame = estimate_end_of_period(x);
     const struct dq innovation = park(error, frame);
-    const struct correction by = gains->holding
-                                     ? correct_in_hold(gains->set, innovation, gains->away)
-                                     : correct_in_motion(params, rotor->speed, innovation);
+    const struct correction by =
+        holding ? correct_in_hold(gain, innovation, away_from_settled_load(ekf))
+                : correct_in_motion(params, rotor->speed, innovation);
 
-    x->current.a = predicted->current.a + num_mul_coef(error.a, gains->set->current);
-    x->current.b = predicted->current.b + num_mul_coef(error.b, gains->set->current);
-    x->rotor.speed = rotor->speed + num_mul_coef(innovation.q, gains->set->speed_q);
+    x->current.a = predicted->current.a + num_mul_coef(error.a, gain->current);
+    x->current.b = predicted->current.b + num_mul_coef(error.b, gain->current);
+    x->rotor.speed = rotor->speed + num_mul_coef(innovation.q, gain->speed_q);
     x->rotor.position = position_add(rotor->position, angle_from_any_turns(by.turns));
     x->rotor.load_torque = rotor->load_torque + by.load_torque;
     ekf->bias.a -= num_mul_unit_nearest(by.bias_q, frame.sin);
@@ -165,72 +160,50 @@ static void adapt_resistance(struct invariant_ekf *ekf, const struct invariant_e
     winding_set_resistance(&x->winding, &params->model, x->winding.resistance + change);
 }
 
-static struct correction_gains let_return(struct invariant_ekf *ekf,
-                                          const struct invariant_ekf_params *params, num_t away)
+/* Which of the sets of gains serves this period of the hold. */
+static const struct invariant_ekf_gain_set *
+hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_params *params, bool leads)
 {
-    ekf->away_before += num_mul_coef(away - ekf->away_before, params->remembering);
-    return (struct correction_gains){&params->holding, true, away};
-}
-
-static struct correction_gains recall(struct invariant_ekf *ekf,
-                                      const struct invariant_ekf_params *params)
-{
-    const struct correction_gains recalled = {&params->recalling, true, ekf->away_before};
-
-    ekf->away_before = NUM(0.0);
-    return recalled;
-}
-
-/* What serves this period of the hold. */
-static struct correction_gains hold_gains(struct invariant_ekf *ekf,
-                                          const struct invariant_ekf_params *params, bool leads)
-{
-    const num_t away = ekf->estimate.rotor.load_torque - ekf->settled_load;
-    const num_t change = leads ? num_abs(away) - (ekf->away_level+ekf->away_level) : num_abs(away);
-    ekf->away_level = leads ? ekf->away_level + num_mul_coef(num_abs(away) - ekf->away_level, params->level) : NUM(0.0);
+    const num_t load_step = leads ? params->led_load_step : params->load_step;
+    const num_t away = away_from_settled_load(ekf);
+    const num_t change = num_abs(away);
 
     if (ekf->unloaded_periods > 0u) {
         ekf->unloaded_periods--;
         if (ekf->unloaded_periods == ekf->swing_end) { /* the back-EMF was taken for an offset */
             ekf->bias = (struct phases){NUM(0.0), NUM(0.0)};
         }
-        return (struct correction_gains){&params->unloaded, true, away};
+        return &params->unloaded;
     }
-    if (change > params->load_step &&
-        (ekf->following_periods == 0u || num_half(change) > params->load_step)) {
-        const bool quiet = ekf->following_periods < REST_PERIODS;
-
+    if (change > load_step && (ekf->following_periods == 0u || num_half(change) > load_step)) {
         ekf->following_periods = params->following_periods + REST_PERIODS;
-        if (quiet && num_abs(ekf->away_before) < num_half(num_abs(away))) { /* quick: no drift */
-            return recall(ekf, params);
-        }
     }
     if (ekf->following_periods == 0u) {
-        return let_return(ekf, params, away);
+        return &params->holding;
     }
     ekf->following_periods--;
     if (ekf->following_periods < REST_PERIODS) {
-        return let_return(ekf, params, away);
+        return &params->holding;
     }
     ekf->settled_load += num_mul_coef(away, params->following.load_settle);
-    return (struct correction_gains){&params->following, true, away};
+    return &params->following;
 }
 
 void invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
                         struct phases current, struct phases voltage, struct rotor_hold hold)
 {
-    const struct correction_gains gains =
-        hold.active ? hold_gains(ekf, params, *hold.leads)
-                    : (struct correction_gains){&params->moving, false, NUM(0.0)};
+    const bool holding = hold.active;
+    const struct invariant_ekf_gain_set *gain =
+        holding ? hold_gains(ekf, params, *hold.leads) : &params->moving;
     const struct phases driving = {voltage.a - ekf->bias.a, voltage.b - ekf->bias.b};
     const struct predicted predicted = predict(ekf, params, driving);
-    const struct dq innovation = correct(ekf, params, &gains, &predicted, current);
+    const struct dq innovation = correct(ekf, params, gain, &predicted, current, holding);
 
     ekf->innovation_sum += innovation.d;
-    if (!hold.active) {
+    if (!holding) {
         settle(ekf);
-    } else if (!*hold.leads) { /* a led rotor's lag behind its frame shows in nu_d, too */
-        adapt_resistance(ekf, params, gains.set, innovation.d);
+    } else if (!*hold.leads || led_hold_learns(hold.period)) {
+        adapt_resistance(ekf, params, gain, innovation.d);
     }
     estimate_look_ahead(&ekf->estimate, &params->model);
 }

@@ -21,11 +21,11 @@
  * At rest no innovation tells load from displacement; only the back-EMF of the rotor's own motion
  * does, and what is integrated of it walks away with noise and offset. So the hold follows the load
  * at once, but returns within 3 to 10 ms, load and angle together, to the load it had settled at,
- * and takes what lasts for an offset; unless the difference shows a load step: then it takes back
- * what has returned of it, and what is estimated is the load from there on. Of small steps one in
- * 10 ms is believed, so that the estimate cannot run away with the current that compensates it. A
- * rotor that is led along a creeping reference passes its detent torque, slowly beside its swing:
- * there only what the difference has not been of late counts.
+ * and takes what lasts for an offset; unless the difference shows a load step: then what is
+ * estimated is the load from there on. Of small steps one in 10 ms is believed, so that the
+ * estimate cannot run away with the current that compensates it. A rotor that is led along a
+ * creeping reference passes its detent torque, which is no step: there it takes three times as
+ * much.
  *
  * Gains: design/invariant_ekf_design.h.
  */
@@ -57,12 +57,10 @@ struct invariant_ekf_params {
     struct invariant_ekf_gain_set holding;
     struct invariant_ekf_gain_set unloaded;  /* holding, where no load is expected */
     struct invariant_ekf_gain_set following; /* holding, after a load step */
-    struct invariant_ekf_gain_set recalling; /* holding, as a load step is recognised */
     num_t odd_gain_speed;                    /* w_s */
-    coef_t level;
-    coef_t remembering;                      /* share of away_before's way to that, each period */
     uint32_t following_periods;              /* how long a load step is followed */
     num_t load_step;                         /* what a quiet hold takes for a step of the load */
+    num_t led_load_step;                     /* likewise where the rotor is led */
 };
 
 struct invariant_ekf {
@@ -70,8 +68,6 @@ struct invariant_ekf {
     struct phases bias;         /* offset of the measured voltage */
     num_t innovation_sum;       /* of nu_d since the synchronism monitor has taken it */
     num_t settled_load;         /* torque that a hold returns to */
-    num_t away_level;
-    num_t away_before;          /* of the load from that, in a quiet hold, of late */
     uint32_t following_periods; /* left of the gains that follow a load step, and of their rest */
     uint32_t swing_end;         /* of unloaded_periods, when the rotor has swung into place */
     uint32_t unloaded_periods;  /* left of the hold in which no load step is expected */

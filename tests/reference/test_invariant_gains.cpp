@@ -205,34 +205,17 @@ struct Course {
     double innovations;
 };
 
-Course course(const MatrixXd &predict, const invariant_ekf_gains &k, VectorXd error, int periods)
+Course course(const motor_params &motor, const invariant_ekf_gains &k, double current_A,
+              VectorXd error, int periods)
 {
     const MatrixXd correct = correction(k, 0.0);
+    const MatrixXd predict = transition(motor, {0.0, current_A}, STATES);
     double innovations = 0.0;
     for (int i = 0; i < periods; i++) {
         innovations += std::abs(error(I_Q));
         error = (predict * correct * error).eval();
     }
     return {error, innovations};
-}
-
-Course course(const motor_params &motor, const invariant_ekf_gains &k, double current_A,
-              VectorXd error, int periods)
-{
-    return course(transition(motor, {0.0, current_A}, STATES), k, error, periods);
-}
-
-/* As the drive predicts: with the back-EMF of the speed at the period's begin. What the rotor's
-   acceleration adds to it within periods is nothing in sum, from rest to rest. */
-MatrixXd transition_of_the_drive(const motor_params &m, double current_A)
-{
-    const double decay = std::exp(-period_s * m.resistance_ohm / m.inductance_H);
-    MatrixXd predict = transition(m, {0.0, current_A}, STATES);
-    predict(I_Q, I_Q) = decay;
-    predict(I_Q, SPEED) = -m.torque_constant_Nm_A * (1.0 - decay) / m.resistance_ohm;
-    predict(I_Q, ANGLE) = 0.0;
-    predict(I_Q, LOAD) = 0.0;
-    return predict;
 }
 
 /* The angle follows the flux: a load step leaves neither load nor displacement behind. */
@@ -242,42 +225,10 @@ void a_load_step_leaves_nothing_behind()
         const double current = 0.5 * motor.rated_current_A;
         const invariant_ekf_gains gains = hold_design(motor, current).following;
         const double stiffness = motor.rotor_teeth * motor.torque_constant_Nm_A * current;
-        const MatrixXd predict = transition_of_the_drive(motor, current);
-        const VectorXd error = course(predict, gains, VectorXd::Unit(STATES, LOAD), 5000).error;
+        const VectorXd error =
+            course(motor, gains, current, VectorXd::Unit(STATES, LOAD), 5000).error;
         TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, error(LOAD));
         TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, error(ANGLE) * stiffness);
-    }
-}
-
-/* Nor does what the quiet hold has returned until it recognises the step, here for 1/w_h: a fifth
-   of the load, of which an eighth is left. */
-void what_returns_of_a_load_step_comes_back()
-{
-    for (const motor_params &motor : reference::motors()) {
-        const double current = 0.5 * motor.rated_current_A;
-        const invariant_ekf_hold_gains hold = hold_design(motor, current);
-        const double w_h = std::sqrt(motor.rotor_teeth * motor.torque_constant_Nm_A * current /
-                                     motor.inertia_kgm2);
-        const MatrixXd predict = transition_of_the_drive(motor, current);
-        const auto left = [&](bool recalls) {
-            VectorXd error = VectorXd::Unit(STATES, LOAD);
-            double before = 0.0;
-            for (int i = 0; i < 1.0 / (w_h * period_s); i++) {
-                const double away = 1.0 - error(LOAD); /* of the estimate: a step of 1 is lacking */
-                before += hold.remembering * (away - before);
-                invariant_ekf_gains quiet = hold.quiet;
-                quiet.load_return = quiet.angle_return_rad_Nm = quiet.bias_return_V_Nm = 0.0;
-                error = predict * correction(quiet, 0.0) * error;
-                error(LOAD) += hold.quiet.load_return * away;
-                error(ANGLE) -= hold.quiet.angle_return_rad_Nm * away;
-            }
-            if (recalls) {
-                error(LOAD) += hold.recalling.load_return * before;
-                error(ANGLE) -= hold.recalling.angle_return_rad_Nm * before;
-            }
-            return std::abs(course(predict, hold.following, error, 5000).error(LOAD));
-        };
-        std::printf("left %g without %g\n", left(true), left(false));
     }
 }
 
@@ -548,7 +499,6 @@ int main()
     RUN_TEST(motion_gains_are_the_steady_kalman_gain_at_5_rad_s);
     RUN_TEST(hold_gains_are_the_steady_kalman_gain_at_1_rad_s);
     RUN_TEST(a_load_step_leaves_nothing_behind);
-    RUN_TEST(what_returns_of_a_load_step_comes_back);
     RUN_TEST(the_quiet_hold_returns_without_an_innovation);
     RUN_TEST(a_quiet_hold_finds_an_offset_while_the_rotor_could_swing_fifteen_times);
     RUN_TEST(estimation_error_decays_at_every_speed_and_current_of_every_motor);
