@@ -13,16 +13,16 @@
  *   m   += k_m (T_L - m) |dphi|                         the load itself
  *
  * - Steps are per angle, not per time: the same fit at every speed, none at rest, nothing
- * forgotten.
+ *   forgotten.
  * - What the observer estimates does not depend on the position loop: the currents are measured. So
  *   learning closes a loop through the observer's delay alone, and that loop is stable as long as
  *   tau is right to a quarter of a period of the harmonic. Each harmonic therefore stops learning
  *   where h N w passes the observer's bandwidth, gradually from half of it.
  * - A harmonic is compensated up to h N w T = 0.6, gradually from 0.3: beyond, the rotor's inertia
  *   smooths it better than a sampled current could.
- * - Way counts behind a play of a count, 1/64 electrical turn at least. A rotor at rest
- * whose estimate goes to and fro between counts would else learn them, until they turn the spring
- * of the position law around.
+ * - Way counts behind a play of a count, 1/64 electrical turn at least. Otherwise a rotor at rest
+ *   whose estimate goes to and fro between counts would learn them, until they turn the spring of
+ *   the position law around.
  * - Every coefficient is bounded to 15 % of the holding torque.
  */
 #ifndef STEADYSTEP_DETENT_COMPENSATION_H

@@ -63,6 +63,13 @@ void standstill_hold_enter(struct standstill_hold *hold, angle_t reference);
 void standstill_hold_follow(struct standstill_hold *hold, angle_t reference, num_t speed,
                             bool goes_on);
 
+/* Of a hold that leads its rotor every fourth period turns the frame. What else takes its time and
+   can wait leaves that period alone. */
+static inline bool standstill_hold_leads_in(uint32_t period)
+{
+    return (period & 3u) == 1u;
+}
+
 /* One period: ramps the d current in or out and returns it. */
 num_t standstill_hold_step(struct standstill_hold *hold,
                            const struct standstill_hold_params *params);

@@ -86,12 +86,15 @@ static const struct tuning hold_tuning = {
  */
 #define RETURN_SWING   3.0
 #define RETURN_DAMPING 1.4
-/* A change of the load by so much of the rated torque is a step, and beyond what noise makes of it:
-   on `bench` 0.3 % rms in the quiet hold of the motor above, 1.6 % of the smallest motors. */
-#define LOAD_STEP (0.025 / RATED_TORQUE_NM)
-/* A rotor that is led passes its detent torque, by the data sheets 3 to 13 % of the rated torque.
- */
-#define LED_LOAD_STEPS 3.0
+/* A change of the load by so many times the noise of its estimate is a step, within these shares of
+   the rated torque, 3.2 and 5.3 %: a rotor that half the rated current holds against one that is
+   not noticed stands 1/24 and 1/15 of a full step aside. */
+#define LOAD_STEP_NOISE 16.0
+#define LOAD_STEP_MIN   (0.015 / RATED_TORQUE_NM)
+#define LOAD_STEP_MAX   (0.025 / RATED_TORQUE_NM)
+/* The detent torque that a led rotor passes is no step: there the change counts beyond twice its
+   mean over twice the time in which the load returns. */
+#define LED_MEMORY 0.5
 /* A load step is followed until the rotor has swung out, in units of 1/w_h. */
 #define FOLLOWING_SWING 8.0
 /* The settled load is the mean of the estimate over this time. */
@@ -268,12 +271,15 @@ bool invariant_ekf_motion_check(const struct motor_params *motor, double period_
  * has crossed: of a motor with little back-EMF two thirds, of which a load step leaves as much
  * behind as displacement. So the angle follows the flux instead: what voltage the innovation stands
  * for, integrated, is Km times the angle. A step then leaves nothing behind, and the loop is damped
- * no less.
+ * no less. The current model has the back-EMF of the speed at the period's begin, the angle goes by
+ * the mean speed: so half a period of what the innovation adds to the speed is the angle's, too.
  */
-static double flux_angle_gain(const struct motor_params *motor, double period_s, double k_current)
+static double flux_angle_gain(const struct motor_params *motor, double period_s, double k_current,
+                              double k_speed_q)
 {
     return -voltage_per_innovation(motor, period_s, k_current) * period_s /
-           motor->torque_constant_Nm_A;
+               motor->torque_constant_Nm_A +
+           0.5 * period_s * k_speed_q;
 }
 
 /* Gains that the holds have in common, of a load that walks by `load_walk`. */
@@ -295,7 +301,8 @@ static bool hold_gains(const struct motor_params *motor, double period_s, double
         .k_current_d = k_current_d,
         .k_current_q = k_current_q,
         .k_speed_q_rad_As = solution.gain[SPEED][I_Q],
-        .k_angle_q_rad_A = flux_angle_gain(motor, period_s, 0.5 * (k_current_d + k_current_q)),
+        .k_angle_q_rad_A = flux_angle_gain(motor, period_s, 0.5 * (k_current_d + k_current_q),
+                                           solution.gain[SPEED][I_Q]),
         .k_load_q_Nm_A = solution.gain[LOAD][I_Q],
         .angle_d_full_speed_rad_s = speed_of_back_emf(motor, FULL_ANGLE_BACK_EMF),
         .k_resistance_ohm_A2 = -RESISTANCE_RATE * period_s *
@@ -323,6 +330,24 @@ static void let_return(const struct motor_params *motor, double period_s, double
         period_s / square(2.0 * RETURN_DAMPING * time_s) * motor->torque_constant_Nm_A * way_rad_Nm;
 }
 
+/*
+ * The smallest change of a settled load that is taken for a step. Its estimate has the noise that
+ * the voltage's makes of the flux while the load returns, RETURN_SWING / w_h: as an angle over Km,
+ * as a torque on the hold's spring.
+ */
+static double load_step_Nm(const struct motor_params *motor, double period_s, double hold_current_A)
+{
+    const double rated_Nm = motor->torque_constant_Nm_A * motor->rated_current_A;
+    const double periods = 0.5 * RETURN_SWING / (hold_frequency(motor, hold_current_A) * period_s);
+    const double flux_Vs =
+        hold_tuning.voltage_noise * motor->supply_V * period_s * square_root(periods);
+    const double step_Nm = LOAD_STEP_NOISE * motor->rotor_teeth * hold_current_A * flux_Vs;
+
+    return step_Nm < LOAD_STEP_MIN * rated_Nm   ? LOAD_STEP_MIN * rated_Nm
+           : step_Nm < LOAD_STEP_MAX * rated_Nm ? step_Nm
+                                                : LOAD_STEP_MAX * rated_Nm;
+}
+
 bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s,
                                double hold_current_A, struct invariant_ekf_hold_gains *gains,
                                char error[DESIGN_ERROR_TEXT])
@@ -347,7 +372,7 @@ bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s
     gains->following.load_settle = 1.0 - exponential(-period_s / LOAD_SETTLE_TIME_S);
     gains->following_periods =
         (uint32_t)(FOLLOWING_SWING / hold_frequency(motor, hold_current_A) / period_s + 0.5);
-    gains->load_step_Nm = LOAD_STEP * motor->torque_constant_Nm_A * motor->rated_current_A;
-    gains->led_load_step_Nm = LED_LOAD_STEPS * gains->load_step_Nm;
+    gains->load_step_Nm = load_step_Nm(motor, period_s, hold_current_A);
+    gains->led_load_memory = LED_MEMORY * gains->quiet.load_return;
     return true;
 }

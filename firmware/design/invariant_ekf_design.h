@@ -57,7 +57,7 @@ struct invariant_ekf_hold_gains {
     struct invariant_ekf_gains unloaded;  /* no load is expected: the voltage offset is learned */
     uint32_t following_periods;           /* how long a load step is followed */
     double load_step_Nm;                  /* change that ends the quiet hold */
-    double led_load_step_Nm;              /* likewise where the hold leads the rotor */
+    double led_load_memory; /* of the mean change where the hold leads, share per period */
 };
 
 /* Gains in motion. False, with text in `error`, if the motor is outside what the model bears. */

@@ -179,7 +179,8 @@ static void remember_demand(struct drive *drive, const struct estimate *estimate
     drive->demanded_voltage = voltage;
 }
 
-/* The detent torque at the instant of action, learned from what the observer has left of it. */
+/* The detent torque at the instant of action, learned from what the observer has left of it. A
+   period in which a motion begins or ends has no time to learn. */
 __attribute__((noinline)) static void
 compensate_detent(struct drive *drive, const struct estimate *estimate, struct prediction *next)
 {
@@ -215,7 +216,7 @@ IN_PLACE void leave_or_lead(struct drive *drive)
     }
     standstill_hold_leave(&drive->hold, drive->reference.slow_periods,
                           drive->reference.next.moving);
-    if (drive->hold.active && drive->hold.leads && led_hold_leads(drive->period) &&
+    if (drive->hold.active && drive->hold.leads && standstill_hold_leads_in(drive->period) &&
         drive->commands.looked != drive->period) {
         lead_rotor(drive);
     }
@@ -327,9 +328,9 @@ IN_PLACE const struct estimate *observe(struct drive *drive, const struct sample
         winding = drive->prepared;
     }
     actuation_observe(&drive->actuation, winding.voltage);
-    return estimator_step(
-        &drive->estimator, &drive->params.estimator, &winding, drive->encoder_count,
-        (struct rotor_hold){drive->hold.active, &drive->hold.leads, drive->period});
+    return estimator_step(&drive->estimator, &drive->params.estimator, &winding,
+                          drive->encoder_count,
+                          (struct rotor_hold){drive->hold.active, &drive->hold.leads});
 }
 
 /* The bridge is on and stays on for this period: what it needs of estimate and duties. */

@@ -109,7 +109,8 @@ static enum synchronism step(struct drive *drive, const struct rotor *rotor)
         return synchronism_monitor_judge_voltage(monitor, params, rotor->speed,
                                                  drive->current_reference.d);
     case JUDGE_LASTING:
-        return drive->hold.active ? synchronism_monitor_judge_hold(monitor, params, rotor->speed)
+        return drive->hold.active ? synchronism_monitor_judge_hold(monitor, params, rotor->speed,
+                                                                   drive->hold.leads)
                                   : synchronism_monitor_judge_motion(monitor, params, rotor->speed,
                                                                      drive->current_reference.d);
     case JUDGE_TORQUE:

@@ -22,7 +22,7 @@ static inline bool synchronism_is_due(const struct drive *drive)
 {
     return (int32_t)(drive->period - drive->synchronism_due) >= 0 &&
            reference_goes_on(&drive->reference) &&
-           (!drive->hold.active || !drive->hold.leads || led_hold_judges(drive->period));
+           (!drive->hold.active || !drive->hold.leads || !standstill_hold_leads_in(drive->period));
 }
 
 /* In a period in which commands are looked at. */

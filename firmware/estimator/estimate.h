@@ -8,27 +8,7 @@
 struct rotor_hold {
     bool active;
     const bool *leads; /* the rotor, else it holds it at rest; read in hold alone */
-    uint32_t period;
 };
-
-/*
- * A hold that leads the rotor has less time left than what else the interrupt does. So of four
- * periods one leads the frame, one learns the resistance, and two may judge synchronism.
- */
-static inline bool led_hold_leads(uint32_t period)
-{
-    return (period & 3u) == 1u;
-}
-
-static inline bool led_hold_learns(uint32_t period)
-{
-    return (period & 3u) == 3u;
-}
-
-static inline bool led_hold_judges(uint32_t period)
-{
-    return (period & 1u) == 0u;
-}
 
 struct estimate {
     struct phases current;

@@ -49,7 +49,7 @@ struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params 
         .odd_gain_speed = num_from_double(moving->angle_d_full_speed_rad_s / base->speed_rad_s),
         .following_periods = hold->following_periods,
         .load_step = num_from_double(hold->load_step_Nm / base->torque_Nm),
-        .led_load_step = num_from_double(hold->led_load_step_Nm / base->torque_Nm),
+        .led_memory = coef_from_double(hold->led_load_memory),
     };
     return params;
 }
@@ -67,6 +67,7 @@ void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_p
     estimate_reset(&ekf->estimate, &params->model, position, resistance);
     ekf->bias = (struct phases){NUM(0.0), NUM(0.0)};
     ekf->innovation_sum = NUM(0.0);
+    ekf->led_change = NUM(0.0);
     ekf->unloaded_periods = unloaded_periods;
     ekf->swing_end = unloaded_periods > SWING_PERIODS ? unloaded_periods - SWING_PERIODS : 0u;
     settle(ekf);
@@ -160,14 +161,21 @@ static void adapt_resistance(struct invariant_ekf *ekf, const struct invariant_e
     winding_set_resistance(&x->winding, &params->model, x->winding.resistance + change);
 }
 
+/* By how much the change of the load is more than twice what it has been of late: a rotor that is
+   led passes its detent torque. */
+static num_t beyond_detent(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
+                           num_t change)
+{
+    const num_t beyond = change - ekf->led_change;
+
+    ekf->led_change += num_mul_coef(change + beyond, params->led_memory);
+    return beyond;
+}
+
 /* Which of the sets of gains serves this period of the hold. */
 static const struct invariant_ekf_gain_set *
 hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_params *params, bool leads)
 {
-    const num_t load_step = leads ? params->led_load_step : params->load_step;
-    const num_t away = away_from_settled_load(ekf);
-    const num_t change = num_abs(away);
-
     if (ekf->unloaded_periods > 0u) {
         ekf->unloaded_periods--;
         if (ekf->unloaded_periods == ekf->swing_end) { /* the back-EMF was taken for an offset */
@@ -175,7 +183,12 @@ hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
         }
         return &params->unloaded;
     }
-    if (change > load_step && (ekf->following_periods == 0u || num_half(change) > load_step)) {
+
+    const num_t away = away_from_settled_load(ekf);
+    const num_t change = leads ? beyond_detent(ekf, params, num_abs(away)) : num_abs(away);
+
+    if (change > params->load_step &&
+        (ekf->following_periods == 0u || num_half(change) > params->load_step)) {
         ekf->following_periods = params->following_periods + REST_PERIODS;
     }
     if (ekf->following_periods == 0u) {
@@ -202,7 +215,7 @@ void invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_pa
     ekf->innovation_sum += innovation.d;
     if (!holding) {
         settle(ekf);
-    } else if (!*hold.leads || led_hold_learns(hold.period)) {
+    } else if (!*hold.leads) { /* a led rotor's lag behind its frame shows in nu_d, too */
         adapt_resistance(ekf, params, gain, innovation.d);
     }
     estimate_look_ahead(&ekf->estimate, &params->model);

@@ -24,8 +24,8 @@
  * and takes what lasts for an offset; unless the difference shows a load step: then what is
  * estimated is the load from there on. Of small steps one in 10 ms is believed, so that the
  * estimate cannot run away with the current that compensates it. A rotor that is led along a
- * creeping reference passes its detent torque, which is no step: there it takes three times as
- * much.
+ * creeping reference passes its detent torque, which is no step: there what exceeds twice the
+ * difference of late is one.
  *
  * Gains: design/invariant_ekf_design.h.
  */
@@ -60,7 +60,7 @@ struct invariant_ekf_params {
     num_t odd_gain_speed;                    /* w_s */
     uint32_t following_periods;              /* how long a load step is followed */
     num_t load_step;                         /* what a quiet hold takes for a step of the load */
-    num_t led_load_step;                     /* likewise where the rotor is led */
+    coef_t led_memory; /* share per period of led_change's way to the change */
 };
 
 struct invariant_ekf {
@@ -68,6 +68,7 @@ struct invariant_ekf {
     struct phases bias;         /* offset of the measured voltage */
     num_t innovation_sum;       /* of nu_d since the synchronism monitor has taken it */
     num_t settled_load;         /* torque that a hold returns to */
+    num_t led_change;           /* twice the mean of the load's change, where the hold leads */
     uint32_t following_periods; /* left of the gains that follow a load step, and of their rest */
     uint32_t swing_end;         /* of unloaded_periods, when the rotor has swung into place */
     uint32_t unloaded_periods;  /* left of the hold in which no load step is expected */

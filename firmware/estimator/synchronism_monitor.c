@@ -5,6 +5,11 @@ static num_t quarter(num_t x)
     return num_half(num_half(x));
 }
 
+static num_t eighth(num_t x)
+{
+    return num_half(quarter(x));
+}
+
 /* So many blocks of an unbroken row. */
 static enum synchronism stalled_after(struct synchronism_monitor *monitor,
                                       const struct synchronism_monitor_params *params,
@@ -160,6 +165,7 @@ enum synchronism synchronism_monitor_judge_motion(struct synchronism_monitor *mo
 
     monitor->held = 0u;
     monitor->settled = NUM(0.0);
+    monitor->led_speed = NUM(0.0);
     monitor->mirrored = count(monitor->mirrored, magnitude > params->standing_speed &&
                                                      !(monitor->disturbance < allowed));
     return monitor->mirrored < params->mirrored_blocks ? SYNCHRONISM_SURE : SYNCHRONISM_LOST;
@@ -167,19 +173,22 @@ enum synchronism synchronism_monitor_judge_motion(struct synchronism_monitor *mo
 
 enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *monitor,
                                                 const struct synchronism_monitor_params *params,
-                                                num_t speed)
+                                                num_t speed, bool leads)
 {
-    const num_t allowed = params->settled_floor + quarter(num_abs(speed));
-    const num_t eighth = num_half(quarter(monitor->past_mean - monitor->settled));
+    const num_t magnitude = num_abs(speed);
+    const num_t led = leads ? magnitude : NUM(0.0);
+    const num_t allowed =
+        params->settled_floor + num_half(monitor->led_speed) + quarter(magnitude - led);
 
     monitor->mirrored = 0u;
+    monitor->led_speed += eighth(led - monitor->led_speed);
     if (monitor->held < params->settled_blocks) {
         monitor->held++;
         return SYNCHRONISM_SURE;
     }
     monitor->voltage_per_current = params->voltage_per_current;
     monitor->standing_speed = params->standing_speed;
-    monitor->settled += eighth;
+    monitor->settled += eighth(monitor->past_mean - monitor->settled);
     if (num_abs(monitor->settled) > num_half(allowed)) {
         monitor->doubtful = params->doubtful_blocks;
     }

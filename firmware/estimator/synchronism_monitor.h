@@ -17,7 +17,10 @@
  *
  * In motion and for the first tenth of a second of a hold. A rotor that a growing load draws out of
  * a settled hold, whose resistance is known by then, creeps past the quarter turn: there the mean
- * over eight blocks has the same bound with V_1 for V_0, a quarter of it.
+ * over eight blocks has the same bound with V_1 for V_0, a quarter of it, and without r. A rotor
+ * that a hold leads lags behind its frame by a load that is not known, 0.4 electrical rad by one
+ * that is just no step to the estimator: so there half of the mean of |w_hat| over eight blocks
+ * stands for the quarter.
  *
  * Half a turn beside the rotor the estimate has a second equilibrium: it turns against the rotor,
  * and what is left in d, 0.4 Km |w_hat|, draws its angle along. Of a sound estimate nothing is left
@@ -86,6 +89,7 @@ struct synchronism_monitor {
     num_t past_mean;            /* e_d of the last block, per-unit voltage */
     num_t disturbance;          /* magnitude of its mean over the last two */
     num_t settled;              /* mean of e_d over eight blocks of a hold */
+    num_t led_speed;            /* likewise of |w_hat|, 0 in periods in which the hold leads none */
     uint32_t held;              /* blocks of the hold; in a row, as those below */
     uint32_t mirrored;
     bool full; /* all current is in use */
@@ -115,10 +119,10 @@ enum synchronism synchronism_monitor_judge_voltage(struct synchronism_monitor *m
                                                    const struct synchronism_monitor_params *params,
                                                    num_t speed, num_t i_d);
 
-/* The same of a hold, by the mean over eight blocks. */
+/* The same of a hold, by the mean over eight blocks; `leads`: of a rotor that its frame leads. */
 enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *monitor,
                                                 const struct synchronism_monitor_params *params,
-                                                num_t speed);
+                                                num_t speed, bool leads);
 
 /* In motion instead: whether the disturbance lasts, as half a turn beside the rotor: lost, or
    sure. */

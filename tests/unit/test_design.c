@@ -396,7 +396,7 @@ static void quiet_hold_gains_of_the_reference_motor(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.63534, gains->k_current_d);
     TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.65847, gains->k_current_q);
     TEST_ASSERT_DOUBLE_WITHIN(1e-5, -2.67109, gains->k_speed_q_rad_As);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-7, -0.0038683, gains->k_angle_q_rad_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, -0.0040019, gains->k_angle_q_rad_A);
     TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.18360, gains->k_load_q_Nm_A);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, -0.011943, gains->k_resistance_ohm_A2);
     TEST_ASSERT_TRUE(gains->k_angle_d_rad_A == 0.0 && gains->k_bias_d_V_A == 0.0);
@@ -406,6 +406,7 @@ static void quiet_hold_gains_of_the_reference_motor(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, gains->load_return / 11.775, gains->angle_return_rad_Nm);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.001424492, gains->bias_return_V_Nm);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.025, hold.load_step_Nm);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.5 * gains->load_return, hold.led_load_memory);
 }
 
 static void a_hold_that_follows_leaves_the_offset_alone_and_lets_no_load_return(void)

@@ -76,7 +76,7 @@ static void step(struct bench_vector voltage, struct bench_vector current, bool 
 {
     invariant_ekf_step(&ekf, &params, bench_phases(current.a, current.b, base.current_A),
                        bench_phases(voltage.a, voltage.b, base.voltage_V),
-                       (struct rotor_hold){in_hold, &leads, 0u});
+                       (struct rotor_hold){in_hold, &leads});
 }
 
 static void period(struct bench_vector voltage, bool in_hold)

@@ -46,7 +46,7 @@ struct course {
     double speed_rad_s, load_Nm;
     double wanted_A, i_d_A;
     double error_turns, deficit_rad_s;
-    bool holding;
+    bool holding, leads;
 };
 
 static const struct course at_rest = {.disturbance_V = 0.0};
@@ -70,7 +70,7 @@ static enum synchronism block(const struct course *c)
         (synchronism_monitor_take(&monitor, &params, innovation_sum(c->disturbance_V), c->holding),
          synchronism_monitor_judge_voltage(&monitor, &params, speed,
                                            num_from_double(c->i_d_A / base.current_A))),
-        c->holding ? synchronism_monitor_judge_hold(&monitor, &params, speed)
+        c->holding ? synchronism_monitor_judge_hold(&monitor, &params, speed, c->leads)
                    : synchronism_monitor_judge_motion(&monitor, &params, speed,
                                                       num_from_double(c->i_d_A / base.current_A)),
         synchronism_monitor_judge_torque(&monitor, &params,
@@ -241,6 +241,17 @@ static void test_a_settled_hold_sees_a_rotor_creep_away_in_20_ms(void)
     expect(SYNCHRONISM_SURE, creeps, 1.0);
 }
 
+/* A load of a tenth of the rated torque that is not known: 0.2 rad electrical behind the frame. */
+static void test_a_hold_that_leads_a_rotor_bears_that_it_lags(void)
+{
+    struct course lags = {.i_d_A = 1.5, .holding = true, .leads = true, .speed_rad_s = 2.0};
+
+    lags.disturbance_V = 0.4 * bench_params.torque_constant_Nm_A * lags.speed_rad_s;
+    TEST_ASSERT_NOT_EQUAL(SYNCHRONISM_LOST, after(&lags, 1.0));
+    lags.disturbance_V = 0.8 * bench_params.torque_constant_Nm_A * lags.speed_rad_s;
+    TEST_ASSERT_EQUAL_INT(SYNCHRONISM_LOST, after(&lags, 20e-3));
+}
+
 /* Motion in between makes it another hold, which has to settle again. */
 static void test_a_hold_settles_anew_behind_motion(void)
 {
@@ -373,6 +384,7 @@ int main(void)
     RUN_TEST(test_an_unknown_resistance_is_allowed_its_voltage);
     RUN_TEST(test_a_hold_that_adapts_the_resistance_makes_it_known);
     RUN_TEST(test_a_settled_hold_sees_a_rotor_creep_away_in_20_ms);
+    RUN_TEST(test_a_hold_that_leads_a_rotor_bears_that_it_lags);
     RUN_TEST(test_a_hold_settles_anew_behind_motion);
     RUN_TEST(test_a_rotor_that_stands_under_full_current_is_stalled_in_15_ms);
     RUN_TEST(test_a_speed_that_an_unknown_resistance_feigns_is_standing);
