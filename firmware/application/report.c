@@ -4,6 +4,7 @@
 
 #include "firmware/application/application.h"
 #include "firmware/application/command_line.h"
+#include "firmware/design/hold_check.h"
 #include "firmware/drive/fault_reason.h"
 
 enum { DIGITS = 6 };
@@ -59,6 +60,7 @@ void report_start(struct text *text, const struct application *application)
     };
     const struct drive_settings *settings = &application->drive.settings;
     const struct hal *board = &application->board;
+    const double torque_Nm = hold_torque_Nm(&settings->motor, settings->hold_current_A);
 
     text_put(text, board->version);
     text_put(text, ", " NUMERIC(NUM_FORMAT) ", on ");
@@ -75,6 +77,8 @@ void report_start(struct text *text, const struct application *application)
     put_word(text, "feedback", drive_feedback_name(settings->feedback));
     if (settings->feedback == DRIVE_FEEDBACK_SENSORLESS) {
         put_number(text, "blind_below_rad_s", drive_blind_speed_rad_s(settings, board->facts));
+        put_number(text, "hold_torque_Nm", torque_Nm);
+        put_number(text, "hold_load_step_Nm", HOLD_LOAD_STEP_SHARE * torque_Nm);
     }
     text_put(text, "; started by: ");
     text_put(text, board->start_cause(board->context));

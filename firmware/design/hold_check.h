@@ -38,6 +38,12 @@ struct hold_task {
     double current_bandwidth_rad_s;
 };
 
+/* Lasting load, N m, that pulls the held rotor out of its place. */
+static inline double hold_torque_Nm(const struct motor_params *motor, double hold_current_A)
+{
+    return motor->torque_constant_Nm_A * hold_current_A;
+}
+
 /*
  * Speed, rad/s, up to which the hold leads the rotor: an eighth of w_h, so that detent torque,
  * which comes four times per electrical turn, stays below the resonance, but no more than where the

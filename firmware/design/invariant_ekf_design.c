@@ -208,10 +208,8 @@ bool invariant_ekf_motion_design(const struct motor_params *motor, double period
     return gains_plausible(gains) || design_refuse(error, no_gain);
 }
 
-/* Of the rated torque; and the angle that its step may throw the estimate by, electrical degrees:
-   half of what loses the rotor, and a little for parts that differ from the file's. */
-#define BORNE_LOAD_STEP 0.25
-#define THROWN_MAX_DEG  20.0
+/* Half of what loses the rotor, and a little for parts that differ from the file's. */
+#define THROWN_MAX_DEG 20.0
 
 /* Within so many periods a throw has reached its peak, or the motor is slow enough to be seen. */
 #define THROW_PERIODS 1000

@@ -60,6 +60,9 @@ struct invariant_ekf_hold_gains {
     double led_load_memory; /* of the mean change where the hold leads, share per period */
 };
 
+/* Load step, of the rated torque, that a motor has to bear in motion. */
+#define BORNE_LOAD_STEP 0.25
+
 /* Gains in motion. False, with text in `error`, if the motor is outside what the model bears. */
 bool invariant_ekf_motion_design(const struct motor_params *motor, double period_s,
                                  struct invariant_ekf_gains *gains, char error[DESIGN_ERROR_TEXT]);

@@ -17,6 +17,11 @@
  * pole of the state feedback a damping of 0.69 and the triple pole of the PID 0.47.
  */
 #define CURRENT_OVER_POSITION_BANDWIDTH_MIN 4.0
+/*
+ * Bandwidth of the encoder's observer times period, p = e^-0.5 = 0.6: beyond it a count of noise
+ * goes straight into the speed.
+ */
+#define ENCODER_OBSERVER_PERIOD_MAX 0.5
 
 /*
  * True if the motor (motor_check.h) bears a current loop of this bandwidth sampled with `period_s`;

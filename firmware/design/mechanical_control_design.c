@@ -51,13 +51,18 @@ bool mechanical_control_design(const struct motor_params *motor, double period_s
     return true;
 }
 
+double winding_lag_speed_max(const struct motor_params *motor)
+{
+    const double winding_s = motor->inductance_H / motor->resistance_ohm;
+
+    return REACTANCE_OVER_RESISTANCE_MAX / ((double)motor->rotor_teeth * winding_s);
+}
+
 bool winding_lag_check(const struct motor_params *motor, double bandwidth_rad_s,
                        double speed_limit_rad_s, char error[DESIGN_ERROR_TEXT])
 {
-    const double winding_s = motor->inductance_H / motor->resistance_ohm;
     const double bandwidth_max = winding_lag_bandwidth_max(motor);
-    const double speed_max =
-        REACTANCE_OVER_RESISTANCE_MAX / ((double)motor->rotor_teeth * winding_s);
+    const double speed_max = winding_lag_speed_max(motor);
 
     if (bandwidth_rad_s > bandwidth_max * rounding) {
         return design_refuse_limit(error, (struct refusal){.quantity = "law_bandwidth_rad_s",

@@ -34,6 +34,9 @@
 double mechanical_control_bandwidth_max(double period_s);
 double winding_lag_bandwidth_max(const struct motor_params *motor);
 
+/* Largest speed, rad/s, without current control. */
+double winding_lag_speed_max(const struct motor_params *motor);
+
 struct mechanical_control_gains {
     double k1p_per_s;
     double k0_per_s3;

@@ -88,6 +88,11 @@ bool board_limits_apply(struct drive_settings *settings, const struct hal_facts 
                    "the board measures +-", range_A, "", error));
 }
 
+__attribute__((noinline)) double default_speed_limit_rad_s(const struct motor_params *motor)
+{
+    return SPEED_LIMIT_SHARE * motor->supply_V / motor->torque_constant_Nm_A;
+}
+
 /* MODULATION_MAX of the supply = R i + Km w, with the current Kv w / Km of the friction. */
 static double supplied_speed_rad_s(const struct motor_params *motor)
 {
@@ -101,7 +106,7 @@ struct speed_limit board_limits_speed(const struct drive_settings *settings)
 {
     const struct motor_params *motor = &settings->motor;
     const double supplied_rad_s = supplied_speed_rad_s(motor);
-    const double default_rad_s = SPEED_LIMIT_SHARE * motor->supply_V / motor->torque_constant_Nm_A;
+    const double default_rad_s = default_speed_limit_rad_s(motor);
     const bool widened = settings->speed_limit_rad_s > default_rad_s;
 
     return widened || settings->speed_limit_rad_s < supplied_rad_s

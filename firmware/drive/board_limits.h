@@ -36,6 +36,9 @@
 extern "C" {
 #endif
 
+/* Default of speed_limit_rad_s. */
+double default_speed_limit_rad_s(const struct motor_params *motor);
+
 /*
  * Puts in force what follows from motor and board: overcurrent_trip_A, if it is not given. false:
  * over-voltage or overcurrent could never be seen; what was given, the limit and the reason are in

@@ -4,7 +4,6 @@
 #include "firmware/design/hold_check.h"
 #include "firmware/design/loop_bandwidth.h"
 #include "firmware/design/mechanical_control_design.h"
-#include "firmware/estimator/encoder_observer.h"
 
 /* Of the rated current. */
 #define HOLD_CURRENT_SHARE 0.5

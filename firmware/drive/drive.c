@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "firmware/design/hold_check.h"
+#include "firmware/design/mechanical_control_design.h"
 #include "firmware/drive/board_limits.h"
 #include "firmware/drive/default_settings.h"
 #include "firmware/drive/encoder_aligning.h"
@@ -285,12 +286,20 @@ static bool design_hold(struct drive *drive, const struct drive_settings *settin
     return true;
 }
 
-/* Sampling ends what the model can follow: a quarter of an electrical turn in a period. */
+/* Sampling ends what the model can follow: a quarter of an electrical turn in a period. A law
+   without current control ends before; what is given beyond its limit it refuses itself. */
 static double speed_limit(const struct drive_settings *settings, const struct per_unit *base)
 {
-    const double sampled = 0.24 / base->turns_per_period * base->speed_rad_s;
+    const double wanted = settings->speed_limit_rad_s;
+    double limit = 0.24 / base->turns_per_period * base->speed_rad_s;
 
-    return settings->speed_limit_rad_s < sampled ? settings->speed_limit_rad_s : sampled;
+    if (settings->law == POSITION_LAW_STMMS &&
+        wanted == default_speed_limit_rad_s(&settings->motor)) {
+        const double lag = winding_lag_speed_max(&settings->motor);
+
+        limit = lag < limit ? lag : limit;
+    }
+    return wanted < limit ? wanted : limit;
 }
 
 bool drive_init(struct drive *drive, const struct hal *board, const struct drive_settings *settings,

@@ -138,8 +138,9 @@ struct drive_settings {
     double current_limit_A;    /* of the current reference; rated current */
     double overcurrent_trip_A; /* software trip on a sampled phase current; NaN: not given, 1.8 x
                                   rated, cut to what the board measures (board_limits.h) */
-    double speed_limit_rad_s;  /* estimates beyond it open the bridge; 1.3 supply/Km, cut to 0.24
-                                  electrical turn per period */
+    double speed_limit_rad_s;  /* estimates beyond it open the bridge; 1.3 supply/Km, of a law
+                                  without  current control N w L/R = 4; cut to 0.24 electrical turn
+                                  per  period */
 
     /* encoder */
     double observer_bandwidth_rad_s; /* triple pole of the model observer; NaN: 1000, of the default
@@ -301,6 +302,22 @@ bool drive_settings_check(const struct drive_settings *settings, char error[DRIV
  */
 double drive_blind_speed_rad_s(const struct drive_settings *settings,
                                const struct hal_facts *facts);
+
+/* What a drive without an encoder bears of a motor, from its hold as it is designed. */
+struct drive_hold_bearing {
+    double current_A;         /* of the hold */
+    double torque_Nm;         /* lasting load that pulls the rotor out of it, Km current_A */
+    double load_step_Nm;      /* the same of a load that comes at once, undamped */
+    double noticed_step_Nm;   /* a load step of less is not followed: the rotor yields to it */
+    double creep_speed_rad_s; /* up to it the hold leads the rotor */
+    double
+        thrown_deg; /* by 25 % of the rated torque, in motion: the estimate, degrees electrical */
+};
+
+/* Of settings that need not be complete. False, with the refusal in `error`, if the drive does not
+   bear the motor without an encoder. */
+bool drive_hold_bearing_of(const struct drive_settings *settings, double period_s,
+                           struct drive_hold_bearing *bearing, char error[DRIVE_ERROR_TEXT]);
 
 /* Name of a state, fault, law or estimator as scenarios and the serial line spell it. */
 const char *drive_state_name(enum drive_state state);

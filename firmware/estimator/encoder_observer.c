@@ -1,5 +1,6 @@
 #include "firmware/estimator/encoder_observer.h"
 
+#include "firmware/design/loop_bandwidth.h"
 #include "firmware/design/elementary.h"
 
 bool encoder_observer_design(struct encoder_observer_params *params,

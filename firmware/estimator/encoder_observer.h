@@ -34,10 +34,6 @@ struct encoder_observer {
     num_t known_torque; /* part of the load that need not be estimated; set before each step */
 };
 
-/* Bandwidth times period, p = e^-0.5 = 0.6: beyond it a count of noise goes straight into the
- * speed. */
-#define ENCODER_OBSERVER_PERIOD_MAX 0.5
-
 /* What it is designed from. */
 struct encoder_observer_task {
     const struct per_unit *base;

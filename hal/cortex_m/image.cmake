@@ -25,6 +25,25 @@ function(find_pin_map name variable)
   set(${variable} ${path} PARENT_SCOPE)
 endfunction()
 
+# check_motor(<path>): whether its values go together, as the simulator has it, where that is built.
+function(check_motor path)
+  set(host_build ${PROJECT_SOURCE_DIR}/build/sil)
+  if(STEADYSTEP_HOST_BUILD)
+    set(host_build ${STEADYSTEP_HOST_BUILD})
+  endif()
+  if(NOT EXISTS ${host_build}/steadystep-sil)
+    message(STATUS "the values of ${path} are not checked: there is no ${host_build}/steadystep-sil")
+    return()
+  endif()
+  execute_process(COMMAND ${host_build}/steadystep-sil check-motor ${path}
+    OUTPUT_VARIABLE report ERROR_VARIABLE complaint RESULT_VARIABLE verdict)
+  if(verdict EQUAL 2)
+    message(FATAL_ERROR "STEADYSTEP_MOTOR: ${complaint}")
+  elseif(NOT verdict EQUAL 0)
+    message(WARNING "STEADYSTEP_MOTOR: ${report}${complaint}")
+  endif()
+endfunction()
+
 # find_motor(<name or path> <variable>): the path of a motor file, which has been read once.
 function(find_motor name variable)
   if(name MATCHES "/|\\.toml$")
@@ -42,6 +61,7 @@ function(find_motor name variable)
   if(refused)
     message(FATAL_ERROR "STEADYSTEP_MOTOR is '${name}': ${complaint}")
   endif()
+  check_motor(${path})
   set(${variable} ${path} PARENT_SCOPE)
 endfunction()
 

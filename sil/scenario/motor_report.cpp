@@ -14,6 +14,8 @@ namespace scenario
 namespace
 {
 
+constexpr double control_period_s = 100e-6;
+
 using Figures = std::vector<std::pair<const char *, double>>;
 
 Figures parameters_of(const Motor &motor)
@@ -51,6 +53,37 @@ Figures consequences_of(const Motor &motor)
     return figures;
 }
 
+/* At the control period of the boards, with the default settings: the bearing, or why there is
+   none. */
+struct Sensorless {
+    drive_hold_bearing bearing{};
+    std::string refusal;
+};
+
+Sensorless sensorless_of(const Motor &motor)
+{
+    drive_settings settings;
+    Sensorless found;
+    char error[DRIVE_ERROR_TEXT];
+    drive_settings_default(&settings, &motor.params);
+    if (!drive_hold_bearing_of(&settings, control_period_s, &found.bearing, error)) {
+        found.refusal = error;
+    }
+    return found;
+}
+
+Figures figures_of(const drive_hold_bearing &bearing)
+{
+    return {
+        {"hold_current_A", bearing.current_A},
+        {"hold_torque_Nm", bearing.torque_Nm},
+        {"hold_load_step_Nm", bearing.load_step_Nm},
+        {"hold_noticed_step_Nm", bearing.noticed_step_Nm},
+        {"hold_creep_speed_rad_s", bearing.creep_speed_rad_s},
+        {"load_step_angle_error_deg", bearing.thrown_deg},
+    };
+}
+
 std::string lines_of(const Figures &figures)
 {
     std::string text;
@@ -75,6 +108,13 @@ nlohmann::ordered_json json_of(const Motor &motor)
             json[name] = value;
         }
     }
+    const Sensorless sensorless = sensorless_of(motor);
+    json["refused_sensorless"] = sensorless.refusal;
+    if (sensorless.refusal.empty()) {
+        for (const auto &[name, value] : figures_of(sensorless.bearing)) {
+            json[name] = value;
+        }
+    }
     json["doubts"] = doubts_about(motor);
     return json;
 }
@@ -85,6 +125,10 @@ std::string motor_report(const Motor &motor)
 {
     std::string text = motor.id + ": " + motor.description + "\n";
     text += lines_of(parameters_of(motor)) + "  follows:\n" + lines_of(consequences_of(motor));
+    const Sensorless sensorless = sensorless_of(motor);
+    text += "  without an encoder, default settings:\n";
+    text += sensorless.refusal.empty() ? lines_of(figures_of(sensorless.bearing))
+                                       : "  refused: " + sensorless.refusal + "\n";
     for (const std::string &doubt : doubts_about(motor)) {
         text +=
             (motor.unusual.empty() ? "  doubtful: " : "  unusual, and said to be: ") + doubt + "\n";

@@ -126,6 +126,27 @@ def the_library_is_plausible(folder):
                     f"{file.name}: says where it is from and what the sheet states")
 
 
+def what_the_drive_bears_is_said(folder):
+    """Of every motor; one that the drive would refuse has the refusal instead."""
+    for motor in json.loads(run("check-motor", "--json", *LIBRARY).stdout):
+        CHECKS.that(motor["refused_sensorless"] == "", f"{motor['id']}: accepted")
+        torque, rated = motor["hold_torque_Nm"], motor["torque_constant_Nm_A"] * motor["rated_current_A"]
+        CHECKS.that(abs(torque - motor["torque_constant_Nm_A"] * motor["hold_current_A"]) < 1e-9,
+                    f"{motor['id']}: Km x hold current is {torque}")
+        CHECKS.that(abs(motor["hold_load_step_Nm"] / torque - 0.7246) < 1e-4,
+                    f"{motor['id']}: an undamped rotor bears 0.72 of it at once")
+        CHECKS.that(0.0318 < motor["hold_noticed_step_Nm"] / rated < 0.0531,
+                    f"{motor['id']}: notices {motor['hold_noticed_step_Nm'] / rated:.3f} of its torque")
+        CHECKS.that(0 < motor["load_step_angle_error_deg"] <= 20, f"{motor['id']}: in motion")
+    blind = NEMA17
+    for old, new in ("0.27", "0.02"), ("3.5e-6", "3e-7"), ("0.022", "0.001"):
+        assert old in blind
+        blind = blind.replace(old, new)
+    (folder / "nema17.toml").write_text(blind, encoding="utf-8")
+    report = run("check-motor", "./nema17.toml", cwd=folder).stdout
+    CHECKS.that("  refused: load_step_angle_error " in report, f"says the refusal: {report}")
+
+
 def refusals_name_file_line_and_key(folder):
     code, complaint = judged(folder, NEMA17)
     CHECKS.that(code == 0 and complaint == "", f"the whole file: {code} {complaint}")
@@ -227,8 +248,9 @@ def a_current_range_is_given_once(folder):
         "steadystep-sil: ./rest.toml:6: plant.current_range_rated: "), done.stderr)
 
 
-for check in (the_library_is_plausible, refusals_name_file_line_and_key, slips_of_a_unit_are_caught,
-              what_may_be_drawn_as_a_motor_is_not_refused, a_doubt_is_shown_and_can_be_explained, an_image_takes_a_motor_file_anywhere,
+for check in (the_library_is_plausible, what_the_drive_bears_is_said, refusals_name_file_line_and_key,
+              slips_of_a_unit_are_caught, what_may_be_drawn_as_a_motor_is_not_refused,
+              a_doubt_is_shown_and_can_be_explained, an_image_takes_a_motor_file_anywhere,
               a_current_range_is_given_once):
     with scratch() as name:
         check(pathlib.Path(name))

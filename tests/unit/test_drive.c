@@ -171,6 +171,19 @@ static void test_a_motor_slower_than_the_control_is_refused(void)
     TEST_ASSERT_EQUAL_STRING("period 0.0001 s: must be below 9.73e-05 s, the motor's L / R", error);
 }
 
+/* N w L/R = 4: 32.9 rad/s; what nobody has given is not refused. */
+static void test_a_law_without_current_control_lowers_the_speed_limit_itself(void)
+{
+    drive_settings_select_law(&settings, POSITION_LAW_STMMS);
+    power_up();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 4.0 * 0.37 / (50.0 * 0.9e-3), drive.settings.speed_limit_rad_s);
+    settings.speed_limit_rad_s = 34.0;
+    TEST_ASSERT_FALSE(drive_init(&drive, &fake_hal, &settings, error));
+    TEST_ASSERT_EQUAL_STRING("speed_limit_rad_s 34 rad/s: must be at most 32.89 rad/s, "
+                             "N w L/R <= 4 without current control",
+                             error);
+}
+
 /* ---- in operation ---- */
 
 static void test_the_first_hold_aligns_the_rotor_and_finds_the_resistance(void)
@@ -391,6 +404,7 @@ int main(void)
     RUN_TEST(test_bandwidths_too_fast_are_refused_with_their_limit);
     RUN_TEST(test_settings_out_of_range_are_refused_before_anything_is_designed);
     RUN_TEST(test_a_motor_slower_than_the_control_is_refused);
+    RUN_TEST(test_a_law_without_current_control_lowers_the_speed_limit_itself);
     RUN_TEST(test_the_first_hold_aligns_the_rotor_and_finds_the_resistance);
     RUN_TEST(test_an_encoder_is_aligned_with_a_rotor_at_rest);
     RUN_TEST(test_on_both_ways_of_the_alignment_the_rotor_stands_where_it_is_held);
