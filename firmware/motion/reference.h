@@ -81,8 +81,8 @@ struct creep_limits {
     double acceleration_rad_s2;
 };
 
-struct reference_params reference_design(const struct per_unit *base, double period_s,
-                                         struct creep_limits creep);
+__attribute__((cold)) struct reference_params
+reference_design(const struct per_unit *base, double period_s, struct creep_limits creep);
 
 /*
  * Change of the per-unit acceleration in a control period, from S(k+1) on. The range is 2^-11 turn
