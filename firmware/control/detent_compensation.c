@@ -2,8 +2,8 @@
 
 #include <stddef.h>
 
-/* k per electrical turn: nine tenths are learned in eight turns, a fifth of a turn of the shaft. */
-#define LEARNING_PER_TURN 0.3
+/* k per electrical turn: nine tenths are learned in four turns, 1/12 turn of the shaft. */
+#define LEARNING_PER_TURN 0.6
 
 /* k_m: fast against the learning, slow against the first harmonic, whose phase it leads by 9 deg.
  */
@@ -23,7 +23,7 @@ static const double playing_rad_per_period = 0.6;
  */
 #define TORQUE_SCALE 32.0
 #define TRAVEL_SCALE 64.0
-#define TRAVEL_MAX   NUM(1.9)
+#define WAY_MAX      ((int32_t)(1.9 / TRAVEL_SCALE * 4294967296.0))
 
 #define MEAN_PACE     UNIT(MEAN_PER_TURN / TRAVEL_SCALE)
 #define LEARNING_PACE UNIT(2.0 * LEARNING_PER_TURN * TORQUE_SCALE / TRAVEL_SCALE)
@@ -64,7 +64,6 @@ detent_compensation_design(const struct detent_compensation_task *task)
                                                      : 0.0;
 
     return (struct detent_compensation_params){
-        .travel = coef_from_double(TRAVEL_SCALE * base->turns_per_period),
         .play = angle_from_turns(num_from_double(counts > play_min ? counts : play_min)),
         .lag = coef_from_double(lag_periods * base->turns_per_period),
         .learning = fade_out(learning_share * bandwidth / electrical_rad_s),
@@ -101,22 +100,23 @@ void detent_compensation_reset(struct detent_compensation *detent)
     detent->followed = false;
 }
 
-/* Whether the angle takes its follower along, behind the play. */
-static bool follows(struct detent_compensation *detent,
-                    const struct detent_compensation_params *params, angle_t angle)
+/* How far the angle takes its follower along behind the play, 2^-32 turn; no matter which way. */
+static int32_t way(struct detent_compensation *detent,
+                   const struct detent_compensation_params *params, angle_t angle)
 {
     const int32_t away = (int32_t)(angle - detent->follower);
+    int32_t beyond = 0;
 
     if (!detent->followed) {
         detent->followed = true;
         detent->follower = angle;
-        return false;
+    } else if (away > params->play) {
+        beyond = away - params->play;
+    } else if (away < -params->play) {
+        beyond = away + params->play;
     }
-    if (away <= params->play && away >= -params->play) {
-        return false;
-    }
-    detent->follower = angle - (angle_t)(away < 0 ? -params->play : params->play);
-    return true;
+    detent->follower += (angle_t)beyond;
+    return beyond < 0 ? -beyond : beyond;
 }
 
 static struct sincos doubled(struct sincos x)
@@ -147,12 +147,19 @@ static void learn(num_t coefficient[2], struct sincos harmonic, num_t step, num_
     coefficient[1] = num_limit(coefficient[1] + num_mul_unit(step, harmonic.sin), limit);
 }
 
+static num_t scaled_turns(int32_t gone)
+{
+    const num_t turns = turns_from_angle((gone < WAY_MAX ? gone : WAY_MAX) * 16); /* of 64 */
+
+    return turns + turns + turns + turns;
+}
+
 /* All coefficients, from what the observer has seen at an angle of some time ago. */
 static void learn_all(struct detent_compensation *detent,
                       const struct detent_compensation_params *params, angle_t angle, num_t speed,
-                      num_t pace, num_t load_torque)
+                      num_t pace, int32_t gone, num_t load_torque)
 {
-    const num_t travel = num_clamp(num_mul_coef(pace, params->travel), NUM(0.0), TRAVEL_MAX);
+    const num_t travel = scaled_turns(gone);
     const num_t lag = num_limit(num_mul_coef(speed, params->lag), LAG_MAX);
     const num_t residual = num_limit(load_torque - detent->mean, params->residual_limit);
     const num_t step = num_mul(num_mul_unit(residual, LEARNING_PACE), travel);
@@ -174,9 +181,10 @@ void detent_compensation_step(struct detent_compensation *detent,
     struct sincos now = frame;
     num_t torque = NUM(0.0);
     num_t pace_of_harmonic = num_abs(num_limit(speed, NUM(SPEED_MAX)));
+    const int32_t gone = learns ? way(detent, params, angle) : 0;
 
-    if (learns && follows(detent, params, angle)) {
-        learn_all(detent, params, angle, speed, pace_of_harmonic, load_torque);
+    if (gone > 0) {
+        learn_all(detent, params, angle, speed, pace_of_harmonic, gone, load_torque);
     }
     for (num_t *c = detent->coefficient; c != detent->coefficient + DETENT_COEFFICIENTS; c += 2) {
         torque += faded(played(c, now), pace_of_harmonic, &params->playing);

@@ -20,9 +20,9 @@
  *   where h N w passes the observer's bandwidth, gradually from half of it.
  * - A harmonic is compensated up to h N w T = 0.6, gradually from 0.3: beyond, the rotor's inertia
  *   smooths it better than a sampled current could.
- * - Way counts behind a play of a count, 1/64 electrical turn at least. Otherwise a rotor at rest
- *   whose estimate goes to and fro between counts would learn them, until they turn the spring of
- *   the position law around.
+ * - dphi is the way of a follower of the angle that has a play of a count, 1/64 electrical turn at
+ *   least. Otherwise a rotor at rest whose estimate goes to and fro between counts would learn
+ *   them, until they turn the spring of the position law around.
  * - Every coefficient is bounded to 15 % of the holding torque.
  */
 #ifndef STEADYSTEP_DETENT_COMPENSATION_H
@@ -44,7 +44,6 @@ struct detent_fade {
 };
 
 struct detent_compensation_params {
-    coef_t travel;               /* scaled turns per period, per speed */
     int32_t play;                /* each way, 2^-32 turn */
     coef_t lag;                  /* electrical turns from the lag to the present angle, per speed */
     struct detent_fade learning; /* of the first harmonic */

@@ -283,7 +283,7 @@ MUTANTS = [
            "faded(played(c, now), pace_of_harmonic, &params->playing)", "played(c, now)"),
     Mutant(CONTROL + "detent_compensation.c", "detent_compensation",
            "at_rest_nothing_is_learned_from_a_load",
-           "NUM(0.0), TRAVEL_MAX);", "NUM(0.0), TRAVEL_MAX) + NUM(0.02);"),
+           "learns ? way(detent, params, angle) : 0", "way(detent, params, angle) + 1000000"),
     Mutant(CONTROL + "detent_compensation.c", "detent_compensation",
            "at_rest_nothing_is_learned_of_a_dither_between_counts",
            "static const double play_counts = 1.0", "static const double play_counts = 0.0"),
