@@ -32,7 +32,7 @@ static const double playing_rad_per_period = 0.6;
 #define LAG_MAX NUM(0.49)
 
 /* Play in electrical turns, each way: of counts, and of noise. */
-static const double play_counts = 1.0;
+static const double play_counts = 1.25;
 static const double play_min = 1.0 / 64.0;
 
 /* Per-unit speed; its eightfold is within the number range. */

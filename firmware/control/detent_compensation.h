@@ -20,8 +20,8 @@
  *   where h N w passes the observer's bandwidth, gradually from half of it.
  * - A harmonic is compensated up to h N w T = 0.6, gradually from 0.3: beyond, the rotor's inertia
  *   smooths it better than a sampled current could.
- * - dphi is the way of a follower of the angle that has a play of a count, 1/64 electrical turn at
- *   least. Otherwise a rotor at rest whose estimate goes to and fro between counts would learn
+ * - dphi is the way of a follower of the angle that has a play of 1.25 counts, 1/64 electrical turn
+ *   at least. Otherwise a rotor at rest whose estimate goes to and fro between counts would learn
  *   them, until they turn the spring of the position law around.
  * - Every coefficient is bounded to 15 % of the holding torque.
  */

@@ -30,6 +30,9 @@
  */
 #define HOLD_LOAD_STEP_SHARE 0.7246
 
+/* By so much two current channels and a warming winding leave the drop R i unknown. */
+#define HOLD_DROP_ERROR 0.025
+
 struct hold_task {
     const struct motor_params *motor;
     double period_s;
@@ -79,7 +82,17 @@ double hold_estimator_damping(const struct hold_task *task,
    period or the control damps it by less than HOLD_DAMPING_MIN. */
 bool hold_control_check(const struct hold_task *task, char error[DESIGN_ERROR_TEXT]);
 
-/* The same of the estimation error in a quiet hold and behind a load step. */
+/*
+ * What HOLD_DROP_ERROR of the drop at rated current feigns as speed, r R i / Km, takes the
+ * estimated angle along by this much, electrical rad, within the 1/w_h in which the hold has its
+ * rotor.
+ */
+double hold_drop_angle_rad(const struct hold_task *task);
+
+/*
+ * The damping of the estimation error in a quiet hold and behind a load step; and that the angle
+ * above is at most 20 degrees, half of what loses the rotor.
+ */
 bool hold_estimator_check(const struct hold_task *task,
                           const struct invariant_ekf_hold_gains *gains,
                           char error[DESIGN_ERROR_TEXT]);

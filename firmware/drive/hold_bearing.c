@@ -40,6 +40,7 @@ bool drive_hold_bearing_of(const struct drive_settings *given, double period_s,
             degrees * invariant_ekf_thrown_rad(motor, period_s, &moving,
                                                BORNE_LOAD_STEP * motor->torque_constant_Nm_A *
                                                    motor->rated_current_A),
+        .drop_deg = degrees * hold_drop_angle_rad(&task),
     };
     return true;
 }

@@ -216,19 +216,13 @@ void read_drive(const Value &table, drive_settings &drive)
     reader.finish();
 }
 
-/* Harmonics 4, 2 and 1 of the detent torque, as shares of the holding torque. A motor file's detent
-   torque is the peak of their sum and keeps their ratio. */
+/* A motor file's detent torque is the peak of the harmonics' sum and keeps their ratio. */
 void set_detent(plant::ImperfectionConfig &imperfections, const Motor &motor)
 {
-    constexpr double detent_4 = 0.05, detent_2 = 0.015, detent_1 = 0.0075;
-    constexpr double peak = 1.2789059088441; /* of sin 4x + 0.3 sin 2x + 0.15 sin x */
-    const double scale =
-        motor.detent_torque_Nm.has_value()
-            ? *motor.detent_torque_Nm / (peak * detent_4 * motor.holding_torque_Nm())
-            : 1.0;
-    imperfections.detent_4 = detent_4 * scale;
-    imperfections.detent_2 = detent_2 * scale;
-    imperfections.detent_1 = detent_1 * scale;
+    const double scale = motor.detent_peak_Nm() / (detent_share_peak * motor.holding_torque_Nm());
+    imperfections.detent_4 = detent_share_4 * scale;
+    imperfections.detent_2 = detent_share_2 * scale;
+    imperfections.detent_1 = detent_share_1 * scale;
 }
 
 /* What `real` adds to `bench`; sources: sil/plant/README.md. */
@@ -238,7 +232,7 @@ void make_real(plant::Config &plant, const Motor &motor)
     plant.imperfections.saturation_depth = 0.10;
     plant.imperfections.flux_harmonic_3 = 0.02;
     set_detent(plant.imperfections, motor);
-    plant.imperfections.coulomb_friction = 0.015;
+    plant.imperfections.coulomb_friction = coulomb_friction_share;
     plant.imperfections.bridge_resistance_ohm = 2 * 0.11;
     plant.imperfections.phase_voltage_filter_s = 10e-6;
     plant.supply.bus_source_ohm = 0.1;

@@ -286,7 +286,7 @@ MUTANTS = [
            "learns ? way(detent, params, angle) : 0", "way(detent, params, angle) + 1000000"),
     Mutant(CONTROL + "detent_compensation.c", "detent_compensation",
            "at_rest_nothing_is_learned_of_a_dither_between_counts",
-           "static const double play_counts = 1.0", "static const double play_counts = 0.0"),
+           "static const double play_counts = 1.25", "static const double play_counts = 0.0"),
     Mutant(DRIVE + "planner.c", "console",
            "a_stop_of_a_plan_does_not_depend_on_the_background",
            "(now - acted <= lead / 2u ? acted : now) + lead", "now + lead"),

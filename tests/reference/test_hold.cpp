@@ -7,6 +7,7 @@
 #include <cmath>
 #include <complex>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <unity.h>
 
@@ -259,6 +260,32 @@ static void a_load_step_of_the_share_stated_is_borne_and_one_beyond_is_not(void)
     }
 }
 
+/* The load at which the check ends is the one whose w_h makes 20 degrees of the drop's error. */
+static void a_load_too_heavy_for_what_the_drop_leaves_of_the_back_emf_is_refused(void)
+{
+    const motor_params bare = reference::bendjedia_2012();
+    const double feigned = 0.025 * bare.resistance_ohm * bare.rated_current_A /
+                           bare.torque_constant_Nm_A * bare.rotor_teeth; /* electrical rad/s */
+    const double least = feigned / (20.0 * std::acos(-1.0) / 180.0);     /* of w_h */
+    const double current_A = 0.5 * bare.rated_current_A;
+    const double most =
+        bare.rotor_teeth * bare.torque_constant_Nm_A * current_A / (least * least); /* of J */
+    for (const double factor : {0.99, 1.01}) {
+        motor_params motor = bare;
+        motor.inertia_kgm2 = factor * most;
+        const hold_task task = {&motor, period_s, current_A, NAN, 1500.0};
+        invariant_ekf_hold_gains gains = {};
+        char error[DESIGN_ERROR_TEXT] = "";
+        TEST_ASSERT_TRUE_MESSAGE(
+            invariant_ekf_hold_design(&motor, period_s, current_A, &gains, error), error);
+        TEST_ASSERT_EQUAL_MESSAGE(factor < 1, hold_estimator_check(&task, &gains, error), error);
+        TEST_ASSERT_EQUAL(factor > 1,
+                          std::string(error).rfind("winding_drop_angle_error 20.", 0) == 0);
+        TEST_ASSERT_EQUAL(factor > 1,
+                          std::strstr(error, "too little back-EMF for its inertia") != nullptr);
+    }
+}
+
 static void the_modes_of_a_known_system_are_found(void)
 {
     matrix a = {};
@@ -284,6 +311,7 @@ int main()
     RUN_TEST(the_modes_of_a_known_system_are_found);
     RUN_TEST(the_check_says_what_the_whole_loop_does);
     RUN_TEST(the_default_hold_of_every_motor_is_damped);
+    RUN_TEST(a_load_too_heavy_for_what_the_drop_leaves_of_the_back_emf_is_refused);
     RUN_TEST(a_load_step_of_the_share_stated_is_borne_and_one_beyond_is_not);
     return UNITY_END();
 }

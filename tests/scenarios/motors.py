@@ -1,6 +1,7 @@
 """Motor files: the library, refusals with file, line and key, and slips of a unit."""
 import itertools
 import json
+import math
 import pathlib
 import re
 import subprocess
@@ -129,6 +130,10 @@ def the_library_is_plausible(folder):
 def what_the_drive_bears_is_said(folder):
     """Of every motor; one that the drive would refuse has the refusal instead."""
     for motor in json.loads(run("check-motor", "--json", *LIBRARY).stdout):
+        if motor["id"] == "seshagiri-khalil":
+            CHECKS.that(motor["refused_sensorless"].startswith("winding_drop_angle_error 166"),
+                        f"R x I is 40 V of a 0.135 V s/rad motor: {motor['refused_sensorless']}")
+            continue
         CHECKS.that(motor["refused_sensorless"] == "", f"{motor['id']}: accepted")
         torque, rated = motor["hold_torque_Nm"], motor["torque_constant_Nm_A"] * motor["rated_current_A"]
         CHECKS.that(abs(torque - motor["torque_constant_Nm_A"] * motor["hold_current_A"]) < 1e-9,
@@ -138,6 +143,11 @@ def what_the_drive_bears_is_said(folder):
         CHECKS.that(0.0318 < motor["hold_noticed_step_Nm"] / rated < 0.0531,
                     f"{motor['id']}: notices {motor['hold_noticed_step_Nm'] / rated:.3f} of its torque")
         CHECKS.that(0 < motor["load_step_angle_error_deg"] <= 20, f"{motor['id']}: in motion")
+        w_h = math.sqrt(motor["rotor_teeth"] * torque / motor["inertia_kgm2"])
+        feigned = 0.025 * motor["resistance_ohm"] * motor["rated_current_A"] / motor["torque_constant_Nm_A"]
+        drop = math.degrees(feigned * motor["rotor_teeth"] / w_h)
+        CHECKS.that(abs(motor["winding_drop_angle_error_deg"] / drop - 1) < 1e-6 and drop < 20,
+                    f"{motor['id']}: {drop} degrees by the drop")
     blind = NEMA17
     for old, new in ("0.27", "0.02"), ("3.5e-6", "3e-7"), ("0.022", "0.001"):
         assert old in blind

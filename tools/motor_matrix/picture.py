@@ -9,12 +9,13 @@ from matplotlib.patches import Patch, Rectangle  # noqa: E402
 
 from motor_matrix.cells import MOVES  # noqa: E402
 from motor_matrix.table import by_motor, groups_of, moves_of  # noqa: E402
-from motor_matrix.verdict import HELD, REFUSED  # noqa: E402
+from motor_matrix.verdict import HELD, LIMIT, REFUSED  # noqa: E402
 
 COLOURS = {HELD: "#a8ddb5", "fault": "#7f1d1d", "slip": "#c0392b", "commutation": "#e67e22",
-           "position": "#f1c40f", "slow": "#f9e79f", REFUSED: "#bdc3c7"}
+           "position": "#f1c40f", "slow": "#f9e79f", LIMIT: "#e9f5b1", REFUSED: "#bdc3c7"}
 TITLES = {HELD: "held", "fault": "fault", "slip": "slipped", "commutation": "commutation > 45°",
-          "position": "position at the end", "slow": "load step too slow", REFUSED: "refused"}
+          "position": "position at the end", "slow": "load step too slow", LIMIT: "within its computed limit",
+          REFUSED: "refused"}
 SQUARE_in = 0.2
 
 

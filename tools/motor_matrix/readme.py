@@ -2,20 +2,24 @@
 from data_sheets.readme import replaced
 from motor_matrix.cells import FEEDBACKS, MOVES, PLANTS
 from motor_matrix.table import by_motor, settling_text
-from motor_matrix.verdict import HELD
+from motor_matrix.verdict import HELD, LIMIT
 
 BEGIN, END = "<!-- tools/motors --readme writes from here -->", "<!-- to here -->"
 
 
 def held_text(row, plant, feedback):
-    """Of the moves: how many hold, and which do not."""
+    """Of the moves: how many hold, which do not, and which keep within a computed limit."""
     cells = [row[plant.name, feedback.name, move] for move in MOVES
              if (plant.name, feedback.name, move) in row]
-    misses = [cell["move"] for cell in cells if cell["verdict"] != HELD]
-    text = f"{len(cells) - len(misses)}/{len(cells)}"
-    if not misses or len(misses) == len(cells):
+    held = sum(cell["verdict"] == HELD for cell in cells)
+    text = f"{held}/{len(cells)}"
+    if not held:
         return text
-    return f"{text}: not {', '.join(misses)}" if len(misses) < 4 else text
+    limits = [cell["move"] for cell in cells if cell["verdict"] == LIMIT]
+    misses = [cell["move"] for cell in cells if cell["verdict"] not in (HELD, LIMIT)]
+    parts = ([f"limit {', '.join(limits)}"] if limits else []) + (
+        [f"not {', '.join(misses)}"] if 0 < len(misses) < 4 else [])
+    return f"{text}: {'; '.join(parts)}" if parts else text
 
 
 def final_text(row):

@@ -1,11 +1,12 @@
 """The matrix as text: a row per motor, a group of columns per plant and feedback."""
 from motor_matrix.cells import FEEDBACKS, MOVES, PLANTS
-from motor_matrix.verdict import HELD, KINDS, REFUSED
+from motor_matrix.verdict import HELD, LIMIT, REFUSED, WORST_FIRST
 
 SIGNS = {HELD: "·", "fault": "F", "slip": "S", "commutation": "C", "position": "p", "slow": "t",
-         REFUSED: "R"}
+         REFUSED: "R", LIMIT: "l"}
 LEGEND = ("· held, F fault, S slip, C commutation beyond 45°, p position at the end, "
-          "t load step too slow, R refused")
+          "t load step too slow,\nR refused, l position at the end within what the hold is computed "
+          "to yield")
 
 
 def groups_of(cells):
@@ -64,17 +65,24 @@ def legend(cells):
 def summary(cells):
     """Lines: how many cells hold, by plant and feedback, and what the others are."""
     lines = [f"{'':24}{'cells':>7}{'held':>7}"
-             + "".join(f"{kind:>13}" for kind in (*KINDS, REFUSED)) + f"{'wrong ready':>13}"]
+             + "".join(f"{kind:>13}" for kind in WORST_FIRST) + f"{'wrong ready':>13}"]
     for plant, feedback in [*groups_of(cells), (None, None)]:
         these = [cell for cell in cells if plant is None
                  or (cell["plant"], cell["feedback"]) == (plant.name, feedback.name)]
         name = "all" if plant is None else f"{plant.name}, {feedback.name}"
         counts = [sum(cell["verdict"] == kind for cell in these)
-                  for kind in (HELD, *KINDS, REFUSED)]
+                  for kind in (HELD, *WORST_FIRST)]
         wrong = sum(cell["wrong_ready"] for cell in these)
         lines.append(f"{name:24}{len(these):7}{counts[0]:7}"
                      + "".join(f"{count:13}" for count in counts[1:]) + f"{wrong:13}")
     return "\n".join(lines)
+
+
+def limit_text(cell):
+    limit = cell.get("limit_steps")
+    if cell["verdict"] not in (LIMIT, "position") or limit is None:
+        return ""
+    return f", computed limit {limit:.3f} of a step"
 
 
 def not_held_lines(cells, most):
@@ -91,10 +99,11 @@ def not_held_lines(cells, most):
             wrong.setdefault(where, []).append(cell)
     lines = []
     for where, those in places.items():
-        worst = min(those, key=lambda cell: KINDS.index(cell["verdict"]))
-        lines.append(f"NOT HELD  {', '.join(where)}: {', '.join(cell['move'] for cell in those)}; "
+        worst = min(those, key=lambda cell: WORST_FIRST.index(cell["verdict"]))
+        what = "LIMIT" if worst["verdict"] == LIMIT else "NOT HELD"
+        lines.append(f"{what}  {', '.join(where)}: {', '.join(cell['move'] for cell in those)}; "
                      f"{worst['move']}, {worst['held_seeds']} of {worst['seeds']} seeds held: "
-                     f"{worst['words']}; {worst['reproduce']}")
+                     f"{worst['words']}{limit_text(worst)}; {worst['reproduce']}")
     for where, those in wrong.items():
         worst = max(those, key=lambda cell: cell["ready_deg"])
         lines.append(f"WRONG READY  {', '.join(where)}: {worst['ready_deg']:.1f}° electrical; "

@@ -3,18 +3,26 @@ import math
 
 from motor_matrix.cells import expectations_of, ready_error_rad
 
-HELD, REFUSED = "held", "refused"
+HELD, LIMIT, REFUSED = "held", "limit", "refused"
 # Of a run that does not hold, the first that applies; as expectations_of lists them.
 KINDS = ("fault", "slip", "commutation", "position", "slow")
+# Of the runs of a cell the first that there is: a fault that the drive states before it is ready is
+# a refusal, and an error within what the hold is computed to yield is the motor's limit.
+WORST_FIRST = (*KINDS, REFUSED, LIMIT)
+# Faults with which the drive says that this motor is none for it, instead of ready.
+REFUSING_FAULTS = ("position-not-found",)
 
 
-def failure_of(run, expectations):
+def failure_of(run, expectations, limit_rad):
     """(kind, words) of one run in one cell; None: it held."""
     if run["failure"] is not None:
-        return "fault", run["failure"]
+        refused = any(f"fault {fault}" in run["failure"] for fault in REFUSING_FAULTS)
+        return REFUSED if refused else "fault", run["failure"]
     for kind, expected in zip(KINDS, expectations):
         if not expected["passed"]:
-            return kind, words_of(kind, expected)
+            within = (kind == "position" and limit_rad is not None
+                      and expected["value"] is not None and expected["value"] <= limit_rad)
+            return LIMIT if within else kind, words_of(kind, expected)
     return None
 
 
@@ -61,20 +69,23 @@ def cell(run_plan, span, first, runs):
     """Of the summaries of all seeds; `first`: index of the cell's first expectation."""
     count = len(expectations_of(span, run_plan.motor, run_plan.plant, run_plan.feedback))
     which = slice(first, first + count)
-    failures = [(run, failure_of(run, run["expectations"][which])) for run in runs]
+    limit_steps = run_plan.yield_steps
+    limit_rad = None if limit_steps is None else limit_steps * run_plan.motor.full_step_rad
+    failures = [(run, failure_of(run, run["expectations"][which], limit_rad)) for run in runs]
     failed = [(run, failure) for run, failure in failures if failure]
     verdict, words, seed = HELD, "", runs[0]["seed"]
     if failed:
-        run, (verdict, words) = min(failed, key=lambda one: KINDS.index(one[1][0]))
+        run, (verdict, words) = min(failed, key=lambda one: WORST_FIRST.index(one[1][0]))
         seed = run["seed"]
     figures = figures_of(runs, which, span, run_plan.motor)
     ready = figures["ready_deg"]
-    limit = (math.degrees(ready_error_rad(run_plan.motor, run_plan.feedback))
-             * run_plan.motor.rotor_teeth if run_plan.feedback.counts else None)
+    ready_limit = (math.degrees(ready_error_rad(run_plan.motor, run_plan.feedback))
+                   * run_plan.motor.rotor_teeth if run_plan.feedback.counts else None)
     return {
         **place(run_plan, span), "verdict": verdict, "words": words, "seeds": len(runs),
-        "held_seeds": len(runs) - len(failed), "worst_seed": seed, **figures,
-        "wrong_ready": limit is not None and ready is not None and ready > limit,
+        "held_seeds": len(runs) - len(failed), "worst_seed": seed, "limit_steps": limit_steps,
+        **figures,
+        "wrong_ready": ready_limit is not None and ready is not None and ready > ready_limit,
     }
 
 
@@ -102,8 +113,9 @@ def cells_of(run_plan, runs):
 
 def bound_misses(cells, bounds):
     """(a line for each bound that does not hold, how many were asked) of {plant: {feedback: {held:
-    least share of cells, wrong_ready: most cells}}}; the plant "all" and the feedback "all" stand
-    for every one."""
+    least share of cells, within_limits: that of those that hold, keep within the computed limit or
+    are refused, wrong_ready: most cells}}}; the plant "all" and the feedback "all" stand for every
+    one."""
     lines, asked = [], 0
     for plant, by_feedback in bounds.items():
         for feedback, bound in by_feedback.items():
@@ -111,11 +123,14 @@ def bound_misses(cells, bounds):
                      and feedback in ("all", cell["feedback"])]
             if not these:
                 continue
-            found = {"held": sum(cell["verdict"] == HELD for cell in these) / len(these),
+            verdicts = [cell["verdict"] for cell in these]
+            found = {"held": verdicts.count(HELD) / len(these),
+                     "within_limits": sum(verdicts.count(kind) for kind in (HELD, LIMIT, REFUSED))
+                     / len(these),
                      "wrong_ready": sum(cell["wrong_ready"] for cell in these)}
             for key, limit in bound.items():
                 asked += 1
-                if found[key] < limit if key == "held" else found[key] > limit:
+                if found[key] > limit if key == "wrong_ready" else found[key] < limit:
                     lines.append(f"{plant}, {feedback}: {key} {found[key]:.4g} of {len(these)} "
                                  f"cells, bound {limit:g}")
     return lines, asked
