@@ -177,7 +177,7 @@ bool run_campaign(const Catalogue &catalogue, const CampaignOrder &order)
         [&](std::size_t i) { done[i] = ran(catalogue, order, missing[i]); },
         [&](std::size_t i) {
             journal.add(done[i]);
-            if (!done[i].outcome.held() && !done[i].outcome.refused()) {
+            if (!done[i].outcome.accounted_for()) {
                 std::fprintf(stderr, "%s", not_held_line(order, done[i]).c_str());
             }
         });
@@ -191,9 +191,8 @@ bool run_campaign(const Catalogue &catalogue, const CampaignOrder &order)
         write_file(fs::path(order.out) / (journal.name() + ".json"), json);
     }
     print(order.json ? json : campaign_report(order, runs));
-    return std::all_of(runs.begin(), runs.end(), [](const CampaignRun &run) {
-        return run.outcome.held() || run.outcome.refused();
-    });
+    return std::all_of(runs.begin(), runs.end(),
+                       [](const CampaignRun &run) { return run.outcome.accounted_for(); });
 }
 
 } // namespace scenario

@@ -36,6 +36,14 @@ struct CampaignOutcome {
     {
         return verdict.rfind("refused", 0) == 0;
     }
+    bool within_limit() const /* not held, but no worse than what is computed of the motor */
+    {
+        return verdict == "within its computed limit";
+    }
+    bool accounted_for() const
+    {
+        return held() || refused() || within_limit();
+    }
 };
 
 /* The motor that scenarios are drawn for. */
@@ -94,7 +102,8 @@ Scenario drawn_scenario(const Catalogue &catalogue, const CampaignOrder &order, 
 /*
  * Runs the order and prints its report, or JSON. Runs that `out` holds already, of the same
  * program, scenario and settings, are taken from there. Returns whether all runs held; throws
- * InputError. Where motors are drawn, a run that is refused does not count against it.
+ * InputError. Where motors are drawn, a run that is refused or keeps to its computed limit does not
+ * count against it.
  */
 bool run_campaign(const Catalogue &catalogue, const CampaignOrder &order);
 

@@ -6,13 +6,16 @@
  *
  * Held, or else the first of: refused (by the drive, with its words), wrong ready (an encoder's
  * zero is off by more than 3 degrees electrical and 3/4 of a count), a fault, lost silently (beyond
- * 90 degrees without a fault), commutation (beyond 45 degrees), position (at the end).
+ * 90 degrees without a fault), commutation (beyond 45 degrees), position (at the end). A position
+ * that only a hold's yielding explains is told apart (hold_yield.h); a zero that the drive does not
+ * find, and says so instead of becoming ready, is a refusal.
  */
 #include "sil/scenario/campaign.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "sil/scenario/hold_yield.h"
 #include "sil/scenario/random_scenario.h"
 #include "sil/scenario/text.h"
 
@@ -240,6 +243,13 @@ Errors errors_of(const Record &record)
             largest(record, end - judged, end, THETA_REF, THETA)};
 }
 
+/* Instead of becoming ready the drive says that it cannot tell where the rotor is. */
+bool not_found(const std::string &failure)
+{
+    return failure.find(std::string("fault ") + drive_fault_name(DRIVE_FAULT_POSITION_NOT_FOUND)) !=
+           std::string::npos;
+}
+
 CampaignOutcome judge_motors(const Result &result, const Record &record)
 {
     const Scenario &scenario = *result.scenario;
@@ -252,15 +262,18 @@ CampaignOutcome judge_motors(const Result &result, const Record &record)
     const double commutation_deg = errors.commutation_rad * degrees;
     const double allowed_rad = (detent ? 1.0 / 5 : 1.0 / 16) * full_step_rad + count_rad;
     const double zero_rad = std::max(3 / degrees, 0.75 * count_rad);
+    const double limit_rad = hold_yield_rad(scenario).value_or(0);
     const std::string &fault = result.all.metrics.fault;
     CampaignOutcome outcome;
     outcome.verdict = counts > 0 && !(errors.ready_rad <= zero_rad) ? "wrong ready"
                       : fault != "none"                             ? "fault " + fault
+                      : not_found(result.failure)                   ? "refused: position-not-found"
                       : !result.failure.empty()                     ? "failed"
                       : !(commutation_deg <= 90)                    ? "lost silently"
-                      : !(commutation_deg <= 45)              ? "commutation beyond 45 degrees"
-                      : !(errors.position_rad <= allowed_rad) ? "position at the end"
-                                                              : "held";
+                      : !(commutation_deg <= 45)           ? "commutation beyond 45 degrees"
+                      : errors.position_rad <= allowed_rad ? "held"
+                      : errors.position_rad <= limit_rad   ? "within its computed limit"
+                                                           : "position at the end";
     outcome.figures = {commutation_deg, counts > 0 ? errors.ready_rad * degrees : Metrics::none,
                        fault == "none" ? errors.position_rad / full_step_rad : Metrics::none};
     return outcome;

@@ -163,11 +163,12 @@ std::string not_held_line(const CampaignOrder &order, const CampaignRun &run)
 std::string campaign_report(const CampaignOrder &order, const std::vector<CampaignRun> &runs)
 {
     double simulated_s = 0;
-    std::size_t held = 0, refused = 0;
+    std::size_t held = 0, refused = 0, within_limit = 0;
     for (const CampaignRun &run : runs) {
         simulated_s += run.simulated_s;
         held += run.outcome.held() ? 1 : 0;
         refused += run.outcome.refused() ? 1 : 0;
+        within_limit += run.outcome.within_limit() ? 1 : 0;
     }
     std::string text =
         format("campaign %s  %s  %s  %.4g s each, %.6g s simulated\n", order.kind->name,
@@ -176,7 +177,7 @@ std::string campaign_report(const CampaignOrder &order, const std::vector<Campai
     text += verdict_table(runs) + figure_table(order, runs);
     std::size_t shown = 0;
     for (const CampaignRun &run : runs) {
-        if (!run.outcome.held() && !run.outcome.refused() && shown++ < most_commands) {
+        if (!run.outcome.accounted_for() && shown++ < most_commands) {
             text += "  NOT HELD  " + run.outcome.verdict + ": " +
                     reproduce_command(order, run.seed) + "\n";
         }
@@ -186,6 +187,9 @@ std::string campaign_report(const CampaignOrder &order, const std::vector<Campai
     }
     text += refusal_lines(order, runs);
     text += format("%zu of %zu runs hold", held, runs.size());
+    if (within_limit > 0) {
+        text += format(", %zu keep to their computed limit", within_limit);
+    }
     return text + (refused > 0 ? format(", %zu are refused\n", refused) : "\n");
 }
 

@@ -119,11 +119,6 @@ double Motor::holding_torque_Nm() const
     return sqrt_2 * params.torque_constant_Nm_A * params.rated_current_A;
 }
 
-double Motor::detent_peak_Nm() const
-{
-    return detent_torque_Nm.value_or(detent_share_peak * holding_torque_Nm());
-}
-
 Motor read_motor(const std::filesystem::path &file)
 {
     return interpreted(read_toml(file), file.stem().string());

@@ -25,14 +25,7 @@ struct Motor {
     Value document;                           /* where everything was written */
 
     double holding_torque_Nm() const; /* two phases on: sqrt 2 x torque constant x rated current */
-    double detent_peak_Nm() const;    /* as stated, or the peak of the shares below */
 };
-
-/* Detent torque of the plant `real`: harmonics 4, 2 and 1 of the electrical angle, as shares of the
-   holding torque where the file states none; and the Coulomb friction. */
-constexpr double detent_share_4 = 0.05, detent_share_2 = 0.015, detent_share_1 = 0.0075;
-constexpr double detent_share_peak = 1.2789059088441 * detent_share_4; /* of their sum */
-constexpr double coulomb_friction_share = 0.015;
 
 /* Throws InputError; values that no hybrid stepper has are refused (motor_plausibility.h). */
 Motor read_motor(const std::filesystem::path &file);

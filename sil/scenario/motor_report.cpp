@@ -33,8 +33,7 @@ Figures parameters_of(const Motor &motor)
     };
 }
 
-/* The rotor on the magnetic spring of half the rated current swings with hold_frequency_rad_s; the
-   detent torque and the friction are those of the plant `real`. */
+/* The rotor on the magnetic spring of half the rated current swings at the last of them. */
 Figures consequences_of(const Motor &motor)
 {
     const motor_params &of = motor.params;
@@ -45,9 +44,6 @@ Figures consequences_of(const Motor &motor)
         {"hold_frequency_rad_s", std::sqrt(of.rotor_teeth * of.torque_constant_Nm_A *
                                            of.rated_current_A / 2 / of.inertia_kgm2)},
     };
-    figures.push_back(
-        {"detent_and_friction_Nm",
-         motor.detent_peak_Nm() + coulomb_friction_share * motor.holding_torque_Nm()});
     if (motor.rotor_inertia_kgm2.has_value()) {
         figures.push_back({"rotor_inertia_kgm2", *motor.rotor_inertia_kgm2});
     }

@@ -19,23 +19,21 @@ from comparison.experiment import read_motor  # noqa: E402
 from motor_matrix import cells, table, verdict  # noqa: E402
 
 KIM = read_motor("kim-2016")
-KIM_BEARS = {"refused_sensorless": "", "hold_noticed_step_Nm": 0.04, "hold_torque_Nm": 0.48,
-             "detent_and_friction_Nm": 0.1, "rotor_teeth": 50, "inertia_kgm2": 4.8e-5,
-             "torque_constant_Nm_A": 0.48}
 IDEAL, BENCH, REAL, SMOOTH = cells.PLANTS
 SENSORLESS, ENCODER = cells.FEEDBACKS
 
 
-def run_of(course, plant=BENCH, feedback=SENSORLESS, motor=KIM, bearing=None):
-    (found,) = [run for run in cells.runs_of(motor, bearing, [plant], [feedback])
+def run_of(course, plant=BENCH, feedback=SENSORLESS, motor=KIM):
+    (found,) = [run for run in cells.runs_of(motor, [plant], [feedback])
                 if run.course.name == course]
     return found
 
 
-def summary(run, seed=1, missed=None, failure=None, ready_rad=0.0, settling_s=0.02, by=2.0):
+def summary(run, seed=1, missed=None, failure=None, ready_rad=0.0, settling_s=0.02, by=2.0,
+            limit_rad=None):
     """Of a run in which all expectations hold but number `missed`, `by` times its bound."""
     expected = tomllib.loads(run.scenario())["expect"]
-    return {"seed": seed, "failure": failure,
+    return {"seed": seed, "failure": failure, "hold_yield_rad": limit_rad,
             "expectations": [{**one, "passed": i != missed and failure is None,
                               "value": "overcurrent" if one["metric"] == "fault" else
                               by * one["max"] if i == missed else one["max"] / 2}
@@ -51,7 +49,7 @@ def verdicts(run, *summaries):
 class Scenarios(unittest.TestCase):
     def test_every_move_is_judged_once_on_every_plant_with_every_feedback(self):
         judged = [(run.plant.name, run.feedback.name, span.move)
-                  for run in cells.runs_of(KIM, KIM_BEARS) for span in run.course.spans]
+                  for run in cells.runs_of(KIM) for span in run.course.spans]
         self.assertEqual(len(judged), len(set(judged)))
         self.assertEqual(len(judged), 4 * 2 * len(cells.MOVES))
 
@@ -110,23 +108,13 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(verdicts(run, summary(run, missed=3)), ["position", "held"])
 
     def test_what_the_hold_is_computed_to_yield_is_told_apart(self):
-        drift = 50 * 7.6e-3 / 0.48 * 8 / math.sqrt(50 * 0.48 / 4.8e-5)
-        ideal = 2 / math.pi * math.asin(0.04 / 0.48)
-        bench = ideal + 2 / math.pi * drift
-        real = 2 / math.pi * (math.asin(0.14 / 0.432) + drift)
-        for plant, steps in ((IDEAL, ideal), (BENCH, bench), (REAL, real)):
-            run = run_of("rest", plant, bearing=KIM_BEARS)
-            self.assertAlmostEqual(run.yield_steps, steps)
-        run = run_of("rest", REAL, bearing=KIM_BEARS)
-        allowed = 1 / 5
-        for factor, missed, expected in ((0.999, 3, "limit"), (1.001, 3, "position"),
-                                         (0.5, 1, "slip")):
-            seed = summary(run, 2, missed=missed, by=factor * real / allowed)
+        run = run_of("rest", REAL)
+        bound = KIM.full_step_rad / 5
+        for by, missed, limit_rad, expected in (
+                (1.29, 3, 1.3 * bound, "limit"), (1.31, 3, 1.3 * bound, "position"),
+                (1.29, 3, None, "position"), (0.5, 1, 1.3 * bound, "slip")):
+            seed = summary(run, 2, missed=missed, by=by, limit_rad=limit_rad)
             self.assertEqual(verdicts(run, summary(run), seed), [expected])
-        for other in (run_of("rest", REAL, ENCODER, bearing=KIM_BEARS), run_of("rest", REAL),
-                      run_of("rest", REAL, bearing={**KIM_BEARS, "refused_sensorless": "why"})):
-            self.assertIsNone(other.yield_steps)
-            self.assertEqual(verdicts(other, summary(other, missed=3, by=1.01)), ["position"])
 
     def test_a_motor_that_alignment_refuses_is_refused(self):
         run = run_of("turn", feedback=ENCODER)

@@ -23,9 +23,6 @@ COMMUTATION_deg = 45.0       # electrical, from ready on
 READY_deg, READY_COUNTS = 3.0, 0.75  # of the encoder's zero: whichever is more
 READY_WINDOW_s = 1e-3
 FINAL_STEPS, FINAL_STEPS_DETENT, STEP_WITHIN_STEPS = 1 / 16, 1 / 5, 1 / 8
-WEAKER = 0.1                 # torque that the winding of `real` is short of, saturated
-VOLTAGE_ERROR_V = 7.6e-3     # half a code of the board's leg voltages
-FOLLOWED_SWINGS = 8.0        # for so many 1/w_h the hold follows a load step
 
 
 class PlantKind(NamedTuple):
@@ -33,18 +30,16 @@ class PlantKind(NamedTuple):
     title: str
     settings: dict
     detent: bool = False
-    weaker: bool = False
-    exact: bool = False        # sensing, bridge, values
     step_judged: bool = False  # the load step's first 60 ms, too
 
 
 PLANTS = (
-    PlantKind("ideal", "ideal", {"model": "ideal"}, exact=True),
+    PlantKind("ideal", "ideal", {"model": "ideal"}),
     PlantKind("bench", "bench", {"model": "bench"}, step_judged=True),
-    PlantKind("real", "real", {"model": "real"}, detent=True, weaker=True),
+    PlantKind("real", "real", {"model": "real"}, detent=True),
     PlantKind("smooth", "real, no detent, no friction",
               {"model": "real", "detent_4": 0.0, "detent_2": 0.0, "detent_1": 0.0,
-               "coulomb_friction": 0.0}, weaker=True),
+               "coulomb_friction": 0.0}),
 )
 
 
@@ -145,22 +140,6 @@ def final_error_rad(motor, plant, feedback):
     return allowed_steps(plant) * motor.full_step_rad + count_rad
 
 
-def yield_steps(bearing, plant, feedback):
-    """By how much the hold without an encoder yields at most, full steps, of what `check-motor`
-    says of the motor: to a load step that it does not notice, detent torque and friction; and what
-    the error of the voltage feigns while a step is followed. None: no hold, or a motor that is
-    refused."""
-    if feedback.counts or bearing is None or bearing["refused_sensorless"]:
-        return None
-    load_Nm = (bearing["hold_noticed_step_Nm"]
-               + (bearing["detent_and_friction_Nm"] if plant.detent else 0.0))
-    torque_Nm = bearing["hold_torque_Nm"] * (1.0 - (WEAKER if plant.weaker else 0.0))
-    w_h = math.sqrt(bearing["rotor_teeth"] * bearing["hold_torque_Nm"] / bearing["inertia_kgm2"])
-    drift = (VOLTAGE_ERROR_V / bearing["torque_constant_Nm_A"] * FOLLOWED_SWINGS / w_h
-             * bearing["rotor_teeth"] if not plant.exact else 0.0)
-    return 2.0 / math.pi * (math.asin(min(1.0, load_Nm / torque_Nm)) + drift)
-
-
 def ready_error_rad(motor, feedback):
     """Of an encoder's zero."""
     return max(math.radians(READY_deg) / motor.rotor_teeth,
@@ -200,14 +179,9 @@ def reports_of(course):
 class Run(NamedTuple):
     """One scenario of the matrix: a motor on a plant, with a feedback, through a course."""
     motor: object
-    bearing: dict  # as `check-motor --json` has it; None: it refuses the file
     plant: PlantKind
     feedback: Feedback
     course: Course
-
-    @property
-    def yield_steps(self):
-        return yield_steps(self.bearing, self.plant, self.feedback)
 
     @property
     def name(self):
@@ -232,8 +206,8 @@ class Run(NamedTuple):
         })
 
 
-def runs_of(motor, bearing, plants=PLANTS, feedbacks=FEEDBACKS, moves=None):
+def runs_of(motor, plants=PLANTS, feedbacks=FEEDBACKS, moves=None):
     """Those of one motor in which one of the `moves` is judged."""
-    return [Run(motor, bearing, plant, feedback, course)
+    return [Run(motor, plant, feedback, course)
             for plant in plants for feedback in feedbacks for course in courses_of(motor)
             if moves is None or any(span.move in moves for span in course.spans)]

@@ -2,7 +2,7 @@
 from data_sheets.readme import replaced
 from motor_matrix.cells import FEEDBACKS, MOVES, PLANTS
 from motor_matrix.table import by_motor, settling_text
-from motor_matrix.verdict import HELD, LIMIT
+from motor_matrix.verdict import HELD, LIMIT, REFUSED
 
 BEGIN, END = "<!-- tools/motors --readme writes from here -->", "<!-- to here -->"
 
@@ -14,7 +14,7 @@ def held_text(row, plant, feedback):
     held = sum(cell["verdict"] == HELD for cell in cells)
     text = f"{held}/{len(cells)}"
     if not held:
-        return text
+        return "refused" if all(cell["verdict"] == REFUSED for cell in cells) else text
     limits = [cell["move"] for cell in cells if cell["verdict"] == LIMIT]
     misses = [cell["move"] for cell in cells if cell["verdict"] not in (HELD, LIMIT)]
     parts = ([f"limit {', '.join(limits)}"] if limits else []) + (
@@ -25,7 +25,8 @@ def held_text(row, plant, feedback):
 def final_text(row):
     """Worst final position error on bench, sensorless, full steps."""
     errors = [cell["final_steps"] for (plant, feedback, _), cell in row.items()
-              if plant == "bench" and feedback == "sensorless" and cell["final_steps"] is not None]
+              if plant == "bench" and feedback == "sensorless"
+              and cell.get("final_steps") is not None]
     return f"{max(errors):.3f}" if errors else "–"
 
 

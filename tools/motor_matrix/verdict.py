@@ -13,8 +13,9 @@ WORST_FIRST = (*KINDS, REFUSED, LIMIT)
 REFUSING_FAULTS = ("position-not-found",)
 
 
-def failure_of(run, expectations, limit_rad):
+def failure_of(run, expectations):
     """(kind, words) of one run in one cell; None: it held."""
+    limit_rad = run["hold_yield_rad"]
     if run["failure"] is not None:
         refused = any(f"fault {fault}" in run["failure"] for fault in REFUSING_FAULTS)
         return REFUSED if refused else "fault", run["failure"]
@@ -69,9 +70,7 @@ def cell(run_plan, span, first, runs):
     """Of the summaries of all seeds; `first`: index of the cell's first expectation."""
     count = len(expectations_of(span, run_plan.motor, run_plan.plant, run_plan.feedback))
     which = slice(first, first + count)
-    limit_steps = run_plan.yield_steps
-    limit_rad = None if limit_steps is None else limit_steps * run_plan.motor.full_step_rad
-    failures = [(run, failure_of(run, run["expectations"][which], limit_rad)) for run in runs]
+    failures = [(run, failure_of(run, run["expectations"][which])) for run in runs]
     failed = [(run, failure) for run, failure in failures if failure]
     verdict, words, seed = HELD, "", runs[0]["seed"]
     if failed:
@@ -83,7 +82,7 @@ def cell(run_plan, span, first, runs):
                    * run_plan.motor.rotor_teeth if run_plan.feedback.counts else None)
     return {
         **place(run_plan, span), "verdict": verdict, "words": words, "seeds": len(runs),
-        "held_seeds": len(runs) - len(failed), "worst_seed": seed, "limit_steps": limit_steps,
+        "held_seeds": len(runs) - len(failed), "worst_seed": seed, "limit_steps": in_steps(runs[0]["hold_yield_rad"], run_plan.motor),
         **figures,
         "wrong_ready": ready_limit is not None and ready is not None and ready > ready_limit,
     }
