@@ -1,18 +1,6 @@
 #include "firmware/application/settings_record.h"
 
-enum {
-    AT_MOTOR = 0,
-    AT_TEETH = 56,
-    AT_ENCODER = 60,
-    AT_CHOICES = 64,
-    AT_FLAGS = 72,
-    AT_NUMBERS = 80,
-    AT_GAINS = 216,
-    AT_DETENT = 312,
-    MOTOR_NUMBERS = 7,
-    NUMBERS = 17,
-    FLAGS = 9
-};
+#include "firmware/interface/settings.h"
 
 static const struct record_log log_of_settings = {.first_page = SETTINGS_RECORD_FIRST_PAGE,
                                                   .format = SETTINGS_RECORD_FORMAT,
@@ -24,123 +12,120 @@ union double_bits {
     uint64_t bits;
 };
 
-static void put_double(uint8_t *at, double value)
+enum { SIZE_1, SIZE_4, SIZE_8, SIZE_SHIFT = 14, ENCODER_INDEX = 0x2009 };
+
+static const uint8_t bytes_of[] = {[SIZE_1] = 1, [SIZE_4] = 4, [SIZE_8] = 8};
+
+static uint8_t *put_entry(uint8_t *at, uint16_t index, unsigned size, uint64_t value)
 {
-    record_put(at, (union double_bits){.value = value}.bits, 8);
+    record_put(at, index | size << SIZE_SHIFT, 2);
+    record_put(at + 2, value, bytes_of[size]);
+    return at + 2 + bytes_of[size];
 }
 
-static double get_double(const uint8_t *at)
+static uint8_t *put_setting(uint8_t *at, const struct drive_settings *settings,
+                            const struct setting *setting, size_t element)
 {
-    return (union double_bits){.bits = record_get(at, 8)}.value;
-}
+    const uint16_t index = (uint16_t)(setting->index + element);
+    const double value = setting_get(settings, setting, element);
 
-/* Addresses of the fields in the order of the record, of settings that may be read or written. */
-struct fields {
-    double *motor[MOTOR_NUMBERS];
-    double *number[NUMBERS];
-    bool *flag[FLAGS];
-};
-
-static struct fields fields_of(struct drive_settings *s)
-{
-    struct motor_params *m = &s->motor;
-
-    return (struct fields){
-        .motor = {&m->resistance_ohm, &m->inductance_H, &m->torque_constant_Nm_A,
-                  &m->viscous_friction_Nms_rad, &m->inertia_kgm2, &m->rated_current_A,
-                  &m->supply_V},
-        .number = {&s->law_bandwidth_rad_s, &s->current_bandwidth_rad_s, &s->current_limit_A,
-                   &s->overcurrent_trip_A, &s->speed_limit_rad_s, &s->observer_bandwidth_rad_s,
-                   &s->high_gain_epsilon_s, &s->encoder_zero_rad, &s->initial_load_torque_Nm,
-                   &s->hold_on_enable_s, &s->hold_current_A, &s->hold_ramp_s, &s->hold_delay_s,
-                   &s->hold_bandwidth_rad_s, &s->initial_angle_rad, &s->initial_angle_error_rad,
-                   &s->motion_current_A},
-        .flag = {&s->feed_forward, &s->detent_learning, &s->bridge_loss_compensation,
-                 &s->resistance_adaptation, &s->encoder_zero_known, &s->calibrate_offsets,
-                 &s->hold_on_enable, &s->hold_at_rest, &s->standstill_pulses},
-    };
+    if (setting->type == SETTING_COUNT) {
+        return put_entry(at, index, SIZE_4, (uint32_t)(int32_t)value);
+    }
+    if (setting->type != SETTING_REAL) {
+        return put_entry(at, index, SIZE_1, (uint8_t)value);
+    }
+    return value == value ? put_entry(at, index, SIZE_8, (union double_bits){.value = value}.bits)
+                          : at;
 }
 
 static void encode(const struct stored_settings *settings, uint8_t *payload)
 {
-    struct drive_settings drive = settings->drive;
-    const struct fields fields = fields_of(&drive);
-    uint32_t flags = 0;
+    uint8_t *at = payload;
 
-    for (int i = 0; i < MOTOR_NUMBERS; i++) {
-        put_double(&payload[AT_MOTOR + 8 * i], *fields.motor[i]);
+    for (size_t i = 0; setting_number(i) != NULL; i++) {
+        for (size_t element = 0; element < setting_number(i)->count; element++) {
+            at = put_setting(at, &settings->drive, setting_number(i), element);
+        }
     }
-    record_put(&payload[AT_TEETH], (uint32_t)drive.motor.rotor_teeth, 4);
-    record_put(&payload[AT_ENCODER], settings->encoder_counts_per_turn, 4);
-    payload[AT_CHOICES + 0] = (uint8_t)drive.law;
-    payload[AT_CHOICES + 1] = (uint8_t)drive.feedback;
-    payload[AT_CHOICES + 2] = (uint8_t)drive.estimator;
-    payload[AT_CHOICES + 3] = (uint8_t)drive.observer;
-    payload[AT_CHOICES + 4] = (uint8_t)drive.voltage_source;
-    payload[AT_CHOICES + 5] = (uint8_t)drive.initial_position;
-    payload[AT_CHOICES + 6] = (uint8_t)drive.synchronism_policy;
-    payload[AT_CHOICES + 7] = 0;
-    for (int i = 0; i < FLAGS; i++) {
-        flags |= *fields.flag[i] ? 1u << i : 0u;
-    }
-    record_put(&payload[AT_FLAGS], flags, 8);
-    for (int i = 0; i < NUMBERS; i++) {
-        put_double(&payload[AT_NUMBERS + 8 * i], *fields.number[i]);
-    }
-    for (int i = 0; i < DRIVE_LAW_GAINS; i++) {
-        put_double(&payload[AT_GAINS + 8 * i], drive.law_gains[i]);
-    }
-    for (int i = 0; i < DRIVE_DETENT_COEFFICIENTS; i++) {
-        put_double(&payload[AT_DETENT + 8 * i], drive.detent_torque_Nm[i]);
+    at = put_entry(at, ENCODER_INDEX, SIZE_4, settings->encoder_counts_per_turn);
+    while (at != payload + SETTINGS_RECORD_PAYLOAD) {
+        *at++ = 0;
     }
 }
 
-static bool choices_are_known(const uint8_t *payload)
+/* The next entry; false at the end. */
+struct entry {
+    uint16_t index;
+    unsigned size;
+    uint64_t value;
+};
+
+static bool next_entry(const uint8_t *payload, size_t *at, struct entry *entry)
 {
-    return payload[AT_CHOICES + 0] < POSITION_LAW_COUNT &&
-           payload[AT_CHOICES + 1] < DRIVE_FEEDBACKS &&
-           payload[AT_CHOICES + 2] < DRIVE_ESTIMATORS &&
-           payload[AT_CHOICES + 3] < DRIVE_OBSERVERS &&
-           payload[AT_CHOICES + 4] < DRIVE_VOLTAGE_SOURCES &&
-           payload[AT_CHOICES + 5] < DRIVE_INITIAL_POSITIONS &&
-           payload[AT_CHOICES + 6] < DRIVE_SYNCHRONISM_POLICIES;
+    if (*at + 2u > SETTINGS_RECORD_PAYLOAD) {
+        return false;
+    }
+    const uint32_t key = (uint32_t)record_get(&payload[*at], 2);
+
+    entry->index = (uint16_t)(key & ((1u << SIZE_SHIFT) - 1u));
+    entry->size = key >> SIZE_SHIFT;
+    if (key == 0u || entry->size > SIZE_8 ||
+        *at + 2u + bytes_of[entry->size] > SETTINGS_RECORD_PAYLOAD) {
+        return false;
+    }
+    entry->value = record_get(&payload[*at + 2u], bytes_of[entry->size]);
+    *at += 2u + bytes_of[entry->size];
+    return true;
+}
+
+/* false: a choice that there is not. */
+static bool take(struct drive_settings *settings, const struct setting *setting,
+                 const struct entry *entry)
+{
+    const double value = entry->size == SIZE_8 ? (union double_bits){.bits = entry->value}.value
+                                               : (double)(int32_t)(uint32_t)entry->value;
+
+    if (setting->type == SETTING_CHOICE && !(value >= 0.0 && value <= setting->most)) {
+        return false;
+    }
+    setting_put(settings, setting, (size_t)(entry->index - setting->index),
+                setting->type == SETTING_FLAG ? value != 0.0 : value);
+    return true;
+}
+
+/* Entries of the motor, or all others; how many of them, or -1 for one that is unknown. */
+static int take_entries(struct stored_settings *settings, const uint8_t *payload, bool of_motor)
+{
+    struct entry entry;
+    int count = 0;
+
+    for (size_t at = 0; next_entry(payload, &at, &entry);) {
+        const struct setting *setting = setting_of_index(entry.index);
+
+        if (entry.index == ENCODER_INDEX) {
+            settings->encoder_counts_per_turn = (uint32_t)entry.value;
+        } else if (setting != NULL && setting_is_of_motor(setting) == of_motor) {
+            if (!take(&settings->drive, setting, &entry)) {
+                return -1;
+            }
+            count++;
+        }
+    }
+    return count;
 }
 
 static bool decode(struct stored_settings *settings, const uint8_t *payload)
 {
-    struct drive_settings *drive = &settings->drive;
+    struct motor_params motor;
 
-    if (!choices_are_known(payload)) {
+    settings->encoder_counts_per_turn = 0;
+    if (take_entries(settings, payload, true) != SETTINGS_OF_MOTOR) {
         return false;
     }
-    const struct fields fields = fields_of(drive);
-    const uint32_t flags = (uint32_t)record_get(&payload[AT_FLAGS], 4);
-
-    for (int i = 0; i < MOTOR_NUMBERS; i++) {
-        *fields.motor[i] = get_double(&payload[AT_MOTOR + 8 * i]);
-    }
-    drive->motor.rotor_teeth = (int32_t)(uint32_t)record_get(&payload[AT_TEETH], 4);
-    settings->encoder_counts_per_turn = (uint32_t)record_get(&payload[AT_ENCODER], 4);
-    drive->law = (enum position_law)payload[AT_CHOICES + 0];
-    drive->feedback = (enum drive_feedback)payload[AT_CHOICES + 1];
-    drive->estimator = (enum drive_estimator)payload[AT_CHOICES + 2];
-    drive->observer = (enum drive_observer)payload[AT_CHOICES + 3];
-    drive->voltage_source = (enum drive_voltage_source)payload[AT_CHOICES + 4];
-    drive->initial_position = (enum drive_initial_position)payload[AT_CHOICES + 5];
-    drive->synchronism_policy = (enum drive_synchronism_policy)payload[AT_CHOICES + 6];
-    for (int i = 0; i < FLAGS; i++) {
-        *fields.flag[i] = ((flags >> i) & 1u) != 0u;
-    }
-    for (int i = 0; i < NUMBERS; i++) {
-        *fields.number[i] = get_double(&payload[AT_NUMBERS + 8 * i]);
-    }
-    for (int i = 0; i < DRIVE_LAW_GAINS; i++) {
-        drive->law_gains[i] = get_double(&payload[AT_GAINS + 8 * i]);
-    }
-    for (int i = 0; i < DRIVE_DETENT_COEFFICIENTS; i++) {
-        drive->detent_torque_Nm[i] = get_double(&payload[AT_DETENT + 8 * i]);
-    }
-    return true;
+    motor = settings->drive.motor;
+    drive_settings_default(&settings->drive, &motor);
+    return take_entries(settings, payload, false) >= 0;
 }
 
 void settings_record_encode(const struct stored_settings *settings, uint32_t sequence,

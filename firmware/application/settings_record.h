@@ -1,27 +1,16 @@
 /*
  * The settings of a drive as a record in the parameter store, pages 2 and 3 (drive/record_log.h,
- * format 0x5303). Independent of number format, compiler and layout of structs: every field stands
- * at its own place, little-endian, a real number as the 64 bits of its IEEE 754 double. What comes
- * back is what went in, bit for bit.
+ * format 0x5304). Independent of number format, compiler and layout of structs: entries by the
+ * index of their setting (interface/settings_table.h), so that a record survives settings that are
+ * added, moved or dropped. What comes back is what went in, bit for bit; what a record does not
+ * have, keeps its default, and what the firmware does not know is passed over.
  *
- *   payload     0   motor, a double each: resistance_ohm, inductance_H, torque_constant_Nm_A,
- *                   viscous_friction_Nms_rad, inertia_kgm2, rated_current_A, supply_V
- *              56   rotor_teeth of the motor, 4 bytes
- *              60   encoder counts per turn of the board, 4 bytes; 0: none
- *              64   law (position_laws.h), 1 byte; then from drive_interface.h, 1 byte each:
- *              65   feedback, estimator, observer, voltage_source, initial_position,
- *                   synchronism_policy; one byte free
- *              72   flags, 8 bytes; from bit 0 on: feed_forward, detent_learning,
- *                   bridge_loss_compensation, resistance_adaptation, encoder_zero_known,
- *                   calibrate_offsets, hold_on_enable, hold_at_rest, standstill_pulses
- *              80   a double each: law_bandwidth_rad_s, current_bandwidth_rad_s, current_limit_A,
- *                   overcurrent_trip_A, speed_limit_rad_s, observer_bandwidth_rad_s,
- *                   high_gain_epsilon_s, encoder_zero_rad, initial_load_torque_Nm,
- *                   hold_on_enable_s, hold_current_A, hold_ramp_s, hold_delay_s,
- *                   hold_bandwidth_rad_s, initial_angle_rad, initial_angle_error_rad,
- *                   motion_current_A
- *             216   law_gains, 12 doubles; NaN: not given
- *             312   detent_torque_Nm, 6 doubles
+ *   entry   0   key, 2 bytes, little-endian: index, and in the two highest bits the size of the
+ *               value: 0, 1 and 2 for 1, 4 and 8 bytes
+ *           2   value: a flag or a choice 1 byte, a whole number 4, a real number the 8 bytes of
+ *               its IEEE 754 double, which is left out where it is NaN, not given
+ *
+ * A key of 0 ends them. Index 0x2009 is the encoder's counts per turn, a whole number.
  */
 #ifndef STEADYSTEP_SETTINGS_RECORD_H
 #define STEADYSTEP_SETTINGS_RECORD_H
@@ -35,8 +24,8 @@ extern "C" {
 
 enum {
     SETTINGS_RECORD_FIRST_PAGE = 2,
-    SETTINGS_RECORD_FORMAT = 0x5303,
-    SETTINGS_RECORD_PAYLOAD = 360,
+    SETTINGS_RECORD_FORMAT = 0x5304,
+    SETTINGS_RECORD_PAYLOAD = 516, /* all of them, and room for two dozen more numbers */
     SETTINGS_RECORD_BYTES = RECORD_BYTES(SETTINGS_RECORD_PAYLOAD)
 };
 
@@ -50,8 +39,8 @@ struct stored_settings {
 void settings_record_encode(const struct stored_settings *settings, uint32_t sequence,
                             uint8_t record[SETTINGS_RECORD_BYTES]);
 
-/* false: no record of this format, harmed, or a law or feedback that this firmware does not know.
- */
+/* false: no record of this format, harmed, without a whole motor, or with a choice that this
+   firmware does not know. */
 bool settings_record_decode(struct stored_settings *settings,
                             const uint8_t record[SETTINGS_RECORD_BYTES]);
 

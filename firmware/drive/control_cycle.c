@@ -259,7 +259,7 @@ __attribute__((noinline)) static struct hal_outputs control_in_full(struct drive
         predict(&next, drive, estimate);
     }
     expect_current(drive, estimate, &next);
-    if (params->detent_learning && !drive->aligns) {
+    if (ESTIMATORS_READ_ENCODER && params->detent_learning && !drive->aligns) {
         compensate_detent(drive, estimate, &next);
     }
     voltage = !drive->hold.active && position_law_gives_voltage(params->position_law)

@@ -140,6 +140,9 @@ static bool design_estimator(struct drive *drive, const struct drive_settings *s
     const struct estimator_start start = {.position = drive->params.initial_position,
                                           .encoder_position = drive->params.initial_position,
                                           .resistance = drive->params.model.nominal_resistance};
+    if (settings->feedback == DRIVE_FEEDBACK_ENCODER && !ESTIMATORS_READ_ENCODER) {
+        return design_refuse(error, "feedback = encoder: this image is for a board without one");
+    }
     const bool designed = settings->feedback == DRIVE_FEEDBACK_ENCODER
                               ? design_encoder_observers(drive, settings, period_s, error)
                           : settings->estimator == DRIVE_ESTIMATOR_STEADY_STATE_EKF
@@ -180,6 +183,28 @@ static bool check_law_gains(const struct drive_settings *settings, char error[DR
     return true;
 }
 
+static void design_detent_compensation(struct drive *drive, const struct drive_settings *settings,
+                                       double period_s)
+{
+    const struct detent_compensation_task detent = {
+        .motor = &settings->motor,
+        .base = &drive->base,
+        .period_s = period_s,
+        .observer_bandwidth_rad_s = settings->observer_bandwidth_rad_s,
+        .counts_per_turn = settings->feedback == DRIVE_FEEDBACK_ENCODER
+                               ? drive->board->facts->encoder_counts_per_turn
+                               : 0u,
+    };
+    struct learned_parameters learned;
+
+    drive->params.detent_learning = settings->detent_learning;
+    drive->params.detent = detent_compensation_design(&detent);
+    detent_compensation_set(&drive->detent, &drive->params.detent, &drive->base,
+                            parameter_store_read(drive->board, &learned)
+                                ? learned.detent_torque_Nm
+                                : settings->detent_torque_Nm);
+}
+
 static bool design_law(struct drive *drive, const struct drive_settings *settings, double period_s,
                        char error[DRIVE_ERROR_TEXT])
 {
@@ -195,24 +220,9 @@ static bool design_law(struct drive *drive, const struct drive_settings *setting
         .gains = settings->law_gains,
     };
 
-    const struct detent_compensation_task detent = {
-        .motor = &settings->motor,
-        .base = &drive->base,
-        .period_s = period_s,
-        .observer_bandwidth_rad_s = settings->observer_bandwidth_rad_s,
-        .counts_per_turn = settings->feedback == DRIVE_FEEDBACK_ENCODER
-                               ? drive->board->facts->encoder_counts_per_turn
-                               : 0u,
-    };
-
-    struct learned_parameters learned;
-
-    drive->params.detent_learning = settings->detent_learning;
-    drive->params.detent = detent_compensation_design(&detent);
-    detent_compensation_set(&drive->detent, &drive->params.detent, &drive->base,
-                            parameter_store_read(drive->board, &learned)
-                                ? learned.detent_torque_Nm
-                                : settings->detent_torque_Nm);
+    if (ESTIMATORS_READ_ENCODER) {
+        design_detent_compensation(drive, settings, period_s);
+    }
     drive->params.position_law = settings->law;
     return check_law_gains(settings, error) &&
            position_law_design(settings->law, &drive->params.law, &task, error);

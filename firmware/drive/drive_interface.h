@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "firmware/control/position_laws.h"
+#include "firmware/interface/settings_table.h"
 #include "firmware/motor/motor_params.h"
 
 struct hal_facts;
@@ -45,52 +46,21 @@ enum drive_fault {
     DRIVE_FAULTS
 };
 
-/* Where the rotor's position comes from. */
-enum drive_feedback {
-    DRIVE_FEEDBACK_SENSORLESS, /* the estimator, from currents and voltages */
-    DRIVE_FEEDBACK_ENCODER,    /* an observer on the encoder's counts */
-    DRIVE_FEEDBACKS
-};
-
-/* Of sensorless feedback. */
-enum drive_estimator {
-    DRIVE_ESTIMATOR_INVARIANT_EKF,    /* constant-gain invariant EKF, exact current prediction */
-    DRIVE_ESTIMATOR_STEADY_STATE_EKF, /* Bendjedia 2012: constant gain, Euler predictor */
-    DRIVE_ESTIMATORS
-};
-
-/* Of encoder feedback. */
-enum drive_observer {
-    DRIVE_OBSERVER_MODEL,     /* of the motor's mechanics, from counts and currents */
-    DRIVE_OBSERVER_HIGH_GAIN, /* Seshagiri and Khalil: from counts alone; for simulation */
-    DRIVE_OBSERVERS
-};
-
-/* Where the estimator's voltage comes from. */
+/* The settings that are one of several: settings_table.h says what each constant means. */
+#define DRIVE_CHOICE_CONSTANT(constant, text, sentence) constant,
+enum drive_feedback { DRIVE_FEEDBACK_CHOICES(DRIVE_CHOICE_CONSTANT) DRIVE_FEEDBACKS };
+enum drive_estimator { DRIVE_ESTIMATOR_CHOICES(DRIVE_CHOICE_CONSTANT) DRIVE_ESTIMATORS };
+enum drive_observer { DRIVE_OBSERVER_CHOICES(DRIVE_CHOICE_CONSTANT) DRIVE_OBSERVERS };
 enum drive_voltage_source {
-    DRIVE_VOLTAGE_MEASURED,  /* the board's leg voltages, averaged over a period */
-    DRIVE_VOLTAGE_COMMANDED, /* what was commanded, less what the bridge is known to take of it: for
-                                boards without leg-voltage dividers */
-    DRIVE_VOLTAGE_SOURCES
+    DRIVE_VOLTAGE_SOURCE_CHOICES(DRIVE_CHOICE_CONSTANT) DRIVE_VOLTAGE_SOURCES
 };
-
-/* How a sensorless drive knows where its rotor stands when it is enabled. */
 enum drive_initial_position {
-    DRIVE_INITIAL_POSITION_TOLD,     /* initial_angle_rad, into which the hold draws it */
-    DRIVE_INITIAL_POSITION_IMPULSES, /* found by voltage impulses within the electrical turn nearest
-                                        to initial_angle_rad; by alignment if the motor does not
-                                        show it */
-    DRIVE_INITIAL_POSITION_PUBLISHED_IMPULSES, /* the same in Bendjedia's order; for comparison */
-    DRIVE_INITIAL_POSITIONS
+    DRIVE_INITIAL_POSITION_CHOICES(DRIVE_CHOICE_CONSTANT) DRIVE_INITIAL_POSITIONS
 };
-
-/* What comes of a rotor that has lost step with its estimate. */
 enum drive_synchronism_policy {
-    DRIVE_SYNCHRONISM_FAULT, /* opens the bridge */
-    DRIVE_SYNCHRONISM_WARN,  /* says so and goes on */
-    DRIVE_SYNCHRONISM_OFF,
-    DRIVE_SYNCHRONISM_POLICIES
+    DRIVE_SYNCHRONISM_POLICY_CHOICES(DRIVE_CHOICE_CONSTANT) DRIVE_SYNCHRONISM_POLICIES
 };
+#undef DRIVE_CHOICE_CONSTANT
 
 /* Whether a sensorless drive's rotor runs with its estimate, in operation. */
 enum drive_synchronism {
@@ -104,74 +74,27 @@ enum drive_synchronism {
 /* Room for the gains that a law can be given by name. */
 enum { DRIVE_LAW_GAINS = 12 };
 
+/* a_1, b_1, a_2, b_2, a_4, b_4 (control/detent_compensation.h). */
 enum { DRIVE_DETENT_COEFFICIENTS = 6 };
 
-/* Everything a drive is told before it is enabled. Fill with drive_settings_default first. */
+/*
+ * Everything a drive is told before it is enabled: a member for each row of settings_table.h, with
+ * its unit, range, default and meaning there. Fill with drive_settings_default first. A real number
+ * may be NaN, not given, where the table says that it follows from motor, board and period.
+ */
+#define DRIVE_CHOICE_MEMBER(index, member, type, constants, preset, sentence) enum type member;
+#define DRIVE_FLAG_MEMBER(index, member, preset, sentence)                    bool member;
+#define DRIVE_REAL_MEMBER(index, member, unit, least, most, preset, sentence) double member;
+#define DRIVE_REALS_MEMBER(index, member, count, unit, least, most, preset, sentence)              \
+    double member[count];
 struct drive_settings {
     struct motor_params motor;
-
-    /* law and feedback */
-    enum position_law law;
-    enum drive_feedback feedback;                     /* sensorless */
-    enum drive_estimator estimator;                   /* of sensorless feedback; invariant EKF */
-    enum drive_observer observer;                     /* on the encoder; model */
-    enum drive_voltage_source voltage_source;         /* measured */
-    enum drive_initial_position initial_position;     /* told */
-    enum drive_synchronism_policy synchronism_policy; /* fault; of sensorless feedback */
-    bool feed_forward;                 /* reference speed and acceleration into the law; true */
-    bool detent_learning;              /* with an encoder only; true for its default law */
-    bool bridge_loss_compensation;     /* dead time and diodes; true */
-    bool resistance_adaptation;        /* track the series resistance while holding; true */
-    double law_bandwidth_rad_s;        /* w0 of the position law, pole pair; NaN: not given, 200, of
-                                          the default law 300, with an encoder 900, or what the
-                                          period bears (drive/default_settings.h) */
-    double current_bandwidth_rad_s;    /* of the loop inside it; NaN: 1500, with that law 2000, or
-                                          what the period bears */
-    double law_gains[DRIVE_LAW_GAINS]; /* given to the law instead of what the bandwidths make of
-                                          them and not checked against their limits, in the order
-                                          of firmware_image.law_gain; NaN: not given */
-    double detent_torque_Nm[DRIVE_DETENT_COEFFICIENTS]; /* a_1, b_1, a_2, b_2, a_4, b_4 at harmonics
-                                          of the electrical angle (control/detent_compensation.h):
-                                          where learning begins if nothing is kept; 0 */
-
-    /* limits */
-    double current_limit_A;    /* of the current reference; rated current */
-    double overcurrent_trip_A; /* software trip on a sampled phase current; NaN: not given, 1.8 x
-                                  rated, cut to what the board measures (board_limits.h) */
-    double speed_limit_rad_s;  /* estimates beyond it open the bridge; 1.3 supply/Km, of a law
-                                  without  current control N w L/R = 4; cut to 0.24 electrical turn
-                                  per  period */
-
-    /* encoder */
-    double observer_bandwidth_rad_s; /* triple pole of the model observer; NaN: 1000, of the default
-                                        law with an encoder 1400, or what the period bears */
-    double high_gain_epsilon_s;      /* of the high-gain observer; 1e-3 */
-    double encoder_zero_rad;         /* rotor angle where count 0 begins; 0 */
-    double initial_load_torque_Nm;   /* load that the model observer begins with; 0 */
-
-    /* enabling and hold */
-    bool encoder_zero_known; /* absolute encoder or indexed: the rotor's angle follows from the
-                                count; else it is initial_angle_rad at the end of the hold; false */
-    bool calibrate_offsets;  /* step of enabling, with the bridge off, then on; true */
-    bool hold_on_enable; /* step of enabling: hold_on_enable_s before ready; with an encoder whose
-                            zero is not known it is found first; true */
-    bool hold_at_rest;   /* d-axis current at rest; true, with an encoder false */
-    bool standstill_pulses;  /* pulses on the hold current show the rotor's angle under load; needs
-                                a motor that saturates; false */
-    double hold_on_enable_s; /* 0.150; half of it behind the search for an encoder's zero */
-    double hold_current_A;   /* d-axis current at rest; NaN: half the rated current, or what of it
-                                the hold's own check passes (design/hold_check.h) */
-    double motion_current_A; /* d-axis current in motion; 0 */
-    double hold_ramp_s;      /* time for the hold current to ramp in or out; 0.010 */
-    double hold_delay_s;     /* from the end of a profile to the hold; NaN: not given,
-                                0.015, of a hold quicker than 280 rad/s 4.2 over that */
-    double hold_bandwidth_rad_s;    /* w0 of the state feedback whose damping the hold takes; NaN:
-                                       200 or a quarter of sqrt(N Km hold_current_A / J), or what
-                                       the current loop bears */
-    double initial_angle_rad;       /* mechanical rotor angle the drive is told; 0 */
-    double initial_angle_error_rad; /* added to it, to tell the drive something wrong; an encoder
-                                       whose zero is known still measures right; 0 */
+    DRIVE_SETTINGS(DRIVE_CHOICE_MEMBER, DRIVE_FLAG_MEMBER, DRIVE_REAL_MEMBER, DRIVE_REALS_MEMBER)
 };
+#undef DRIVE_CHOICE_MEMBER
+#undef DRIVE_FLAG_MEMBER
+#undef DRIVE_REAL_MEMBER
+#undef DRIVE_REALS_MEMBER
 
 enum drive_command_kind {
     DRIVE_COMMAND_ENABLE,

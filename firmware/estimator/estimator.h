@@ -14,6 +14,14 @@ enum estimator_kind {
     ESTIMATOR_HIGH_GAIN_OBSERVER
 };
 
+/* Those in an image: all, or, for a board that reads no encoder, what goes without one. */
+#ifdef STEADYSTEP_WITHOUT_ENCODER
+enum { ESTIMATOR_KINDS = ESTIMATOR_ENCODER_OBSERVER };
+#else
+enum { ESTIMATOR_KINDS = ESTIMATOR_HIGH_GAIN_OBSERVER + 1 };
+#endif
+enum { ESTIMATORS_READ_ENCODER = (int)ESTIMATOR_KINDS > (int)ESTIMATOR_ENCODER_OBSERVER };
+
 /* Only the one in use is designed and stepped. */
 struct estimator_params {
     enum estimator_kind kind;
@@ -47,20 +55,25 @@ struct estimator_start {
     int32_t encoder_count;
 };
 
+static inline bool estimator_is(const struct estimator_params *params, enum estimator_kind kind)
+{
+    return (int)kind < ESTIMATOR_KINDS && params->kind == kind;
+}
+
 static inline void estimator_reset(struct estimator *estimator,
                                    const struct estimator_params *params,
                                    const struct estimator_start *start)
 {
-    if (params->kind == ESTIMATOR_INVARIANT_EKF) {
+    if (estimator_is(params, ESTIMATOR_INVARIANT_EKF)) {
         invariant_ekf_reset(&estimator->invariant, &params->invariant, start->position,
                             start->resistance, start->unloaded_periods);
-    } else if (params->kind == ESTIMATOR_STEADY_STATE_EKF) {
+    } else if (estimator_is(params, ESTIMATOR_STEADY_STATE_EKF)) {
         steady_state_ekf_reset(&estimator->steady_state, &params->steady_state, start->position,
                                start->resistance);
-    } else if (params->kind == ESTIMATOR_ENCODER_OBSERVER) {
+    } else if (estimator_is(params, ESTIMATOR_ENCODER_OBSERVER)) {
         encoder_observer_reset(&estimator->encoder, &params->encoder, start->encoder_position,
                                start->load_torque, start->resistance, start->encoder_count);
-    } else {
+    } else if (estimator_is(params, ESTIMATOR_HIGH_GAIN_OBSERVER)) {
         high_gain_observer_reset(&estimator->high_gain, &params->high_gain, start->position,
                                  start->encoder_position, start->resistance, start->encoder_count);
     }
@@ -71,10 +84,10 @@ static inline void estimator_take_current(struct estimator *estimator,
                                           const struct estimator_params *params,
                                           struct phases current)
 {
-    if (params->kind == ESTIMATOR_INVARIANT_EKF) {
+    if (estimator_is(params, ESTIMATOR_INVARIANT_EKF)) {
         estimator->invariant.estimate.current = current;
         estimate_look_ahead(&estimator->invariant.estimate, &params->invariant.model);
-    } else if (params->kind == ESTIMATOR_STEADY_STATE_EKF) {
+    } else if (estimator_is(params, ESTIMATOR_STEADY_STATE_EKF)) {
         estimator->steady_state.estimate.current = current;
         estimator->steady_state.current =
             park(current, estimate_begin_of_period(&estimator->steady_state.estimate));
@@ -90,7 +103,7 @@ static inline struct phases estimator_expected_current(const struct estimator *e
     const struct estimate *x = &estimator->estimate;
     struct phases driving = voltage;
 
-    if (params->kind == ESTIMATOR_INVARIANT_EKF) {
+    if (estimator_is(params, ESTIMATOR_INVARIANT_EKF)) {
         driving.a -= estimator->invariant.bias.a;
         driving.b -= estimator->invariant.bias.b;
     }
@@ -102,11 +115,11 @@ static inline void estimator_tell_rotor(struct estimator *estimator,
                                         const struct estimator_params *params,
                                         const struct rotor *rotor)
 {
-    if (params->kind == ESTIMATOR_INVARIANT_EKF) {
+    if (estimator_is(params, ESTIMATOR_INVARIANT_EKF)) {
         estimator->invariant.estimate.rotor = *rotor;
         estimator->invariant.settled_load = rotor->load_torque;
         estimate_look_ahead(&estimator->invariant.estimate, &params->invariant.model);
-    } else if (params->kind == ESTIMATOR_STEADY_STATE_EKF) {
+    } else if (estimator_is(params, ESTIMATOR_STEADY_STATE_EKF)) {
         estimator->steady_state.estimate.rotor = *rotor;
         estimate_look_ahead(&estimator->steady_state.estimate, &params->steady_state.model);
     }
@@ -116,8 +129,8 @@ static inline void estimator_tell_rotor(struct estimator *estimator,
 static inline struct phases estimator_bias(const struct estimator *estimator,
                                            const struct estimator_params *params)
 {
-    return params->kind == ESTIMATOR_INVARIANT_EKF ? estimator->invariant.bias
-                                                   : (struct phases){NUM(0.0), NUM(0.0)};
+    return estimator_is(params, ESTIMATOR_INVARIANT_EKF) ? estimator->invariant.bias
+                                                         : (struct phases){NUM(0.0), NUM(0.0)};
 }
 
 /*
@@ -128,7 +141,7 @@ static inline void estimator_tell_bias_along(struct estimator *estimator,
                                              const struct estimator_params *params,
                                              struct phases known, struct sincos frame)
 {
-    if (params->kind == ESTIMATOR_INVARIANT_EKF) {
+    if (estimator_is(params, ESTIMATOR_INVARIANT_EKF)) {
         struct phases *bias = &estimator->invariant.bias;
         const struct phases change = {known.a - bias->a, known.b - bias->b};
         const num_t along = park(change, frame).d;
@@ -140,15 +153,15 @@ static inline void estimator_tell_bias_along(struct estimator *estimator,
 
 static inline bool estimator_has_encoder(const struct estimator_params *params)
 {
-    return params->kind == ESTIMATOR_ENCODER_OBSERVER ||
-           params->kind == ESTIMATOR_HIGH_GAIN_OBSERVER;
+    return estimator_is(params, ESTIMATOR_ENCODER_OBSERVER) ||
+           estimator_is(params, ESTIMATOR_HIGH_GAIN_OBSERVER);
 }
 
 /* Torque that the next prediction takes into account besides the load; the model observer's. */
 static inline void estimator_tell_torque(struct estimator *estimator,
                                          const struct estimator_params *params, num_t torque)
 {
-    if (params->kind == ESTIMATOR_ENCODER_OBSERVER) {
+    if (estimator_is(params, ESTIMATOR_ENCODER_OBSERVER)) {
         estimator->encoder.known_torque = torque;
     }
 }
@@ -158,9 +171,9 @@ static inline void estimator_place(struct estimator *estimator,
                                    const struct estimator_params *params, struct position position,
                                    int32_t count)
 {
-    if (params->kind == ESTIMATOR_ENCODER_OBSERVER) {
+    if (estimator_is(params, ESTIMATOR_ENCODER_OBSERVER)) {
         encoder_observer_place(&estimator->encoder, &params->encoder, position, count);
-    } else if (params->kind == ESTIMATOR_HIGH_GAIN_OBSERVER) {
+    } else if (estimator_is(params, ESTIMATOR_HIGH_GAIN_OBSERVER)) {
         high_gain_observer_place(&estimator->high_gain, position, count);
     }
 }
@@ -171,16 +184,16 @@ static inline const struct estimate *estimator_step(struct estimator *estimator,
                                                     const struct channels *winding,
                                                     int32_t encoder_count, struct rotor_hold hold)
 {
-    if (params->kind == ESTIMATOR_INVARIANT_EKF) {
+    if (estimator_is(params, ESTIMATOR_INVARIANT_EKF)) {
         invariant_ekf_step(&estimator->invariant, &params->invariant, winding->current,
                            winding->voltage, hold);
-    } else if (params->kind == ESTIMATOR_STEADY_STATE_EKF) {
+    } else if (estimator_is(params, ESTIMATOR_STEADY_STATE_EKF)) {
         steady_state_ekf_step(&estimator->steady_state, &params->steady_state, winding->current,
                               winding->voltage);
-    } else if (params->kind == ESTIMATOR_ENCODER_OBSERVER) {
+    } else if (estimator_is(params, ESTIMATOR_ENCODER_OBSERVER)) {
         encoder_observer_step(&estimator->encoder, &params->encoder, winding->current,
                               winding->voltage, encoder_count, hold.active);
-    } else {
+    } else if (estimator_is(params, ESTIMATOR_HIGH_GAIN_OBSERVER)) {
         high_gain_observer_step(&estimator->high_gain, &params->high_gain, winding->current,
                                 encoder_count);
     }

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <filesystem>
 
+#include "firmware/interface/settings.h"
 #include "sil/scenario/table_reader.h"
 #include "sil/scenario/text.h"
 
@@ -121,108 +122,101 @@ void apply_command_line(Value &document, const Catalogue &catalogue, const Comma
     parameters = given.parameters;
 }
 
-/* Gains by the law's own names; without a unit in common, so the drive checks their ranges. */
-void read_law_gains(const Value &table, drive_settings &drive)
+/* Gains by the law's own names. */
+void read_law_gains(TableReader &above, const setting &row, drive_settings &drive)
 {
-    TableReader reader(table, "drive.law_gains");
+    const Value *table = above.table(row.name);
+    if (table == nullptr) {
+        return;
+    }
+    TableReader reader(*table, std::string("drive.") + row.name);
     const char *name = nullptr;
     for (std::size_t gain = 0; (name = firmware_image_float.law_gain(drive.law, gain)) != nullptr;
          ++gain) {
-        reader.number(name, drive.law_gains[gain], -1e12, 1e12);
+        reader.number(name, drive.law_gains[gain], row.least, row.most);
     }
     reader.finish();
 }
 
-void read_detent_torque(TableReader &reader, drive_settings &drive)
+void read_reals(TableReader &reader, const setting &row, drive_settings &drive)
 {
-    const char *const key = "detent_torque_Nm";
-    const Value *list = reader.list(key, "an array of six torques");
+    const Value *list = reader.list(row.name, "an array of numbers");
     if (list == nullptr) {
         return;
     }
-    if (list->items.size() != DRIVE_DETENT_COEFFICIENTS) {
-        reader.fail(key, "expected six numbers: a_1, b_1, a_2, b_2, a_4, b_4");
+    if (list->items.size() != row.count) {
+        reader.fail(row.name, "expected " + std::to_string(row.count) +
+                                  " numbers: " + setting_sentence(&row));
     }
     for (std::size_t i = 0; i < list->items.size(); ++i) {
         const Value &item = list->items[i];
         if (item.kind != Value::Kind::number && item.kind != Value::Kind::integer) {
-            reader.fail(key, "expected numbers");
+            reader.fail(row.name, "expected numbers");
         }
-        drive.detent_torque_Nm[i] = item.number;
+        setting_put(&drive, &row, i, item.number);
+    }
+}
+
+/* Feedback and law bring the defaults of others, which stand behind them in the table. */
+void choose(const setting &row, drive_settings &drive, std::size_t choice)
+{
+    if (row.offset == offsetof(drive_settings, feedback)) {
+        drive_settings_select_feedback(&drive, static_cast<drive_feedback>(choice));
+    } else if (row.offset == offsetof(drive_settings, law)) {
+        drive_settings_select_law(&drive, static_cast<position_law>(choice));
+    } else {
+        setting_put(&drive, &row, 0, static_cast<double>(choice));
+    }
+}
+
+void read_setting(TableReader &reader, const setting &row, drive_settings &drive)
+{
+    double value = setting_get(&drive, &row, 0);
+    bool flag = value != 0;
+    std::size_t choice = 0;
+    if (row.offset == offsetof(drive_settings, law_gains)) {
+        read_law_gains(reader, row, drive);
+    } else if (row.count > 1) {
+        read_reals(reader, row, drive);
+    } else if (row.type == SETTING_CHOICE) {
+        const std::vector<std::string> texts(row.choices,
+                                             row.choices + static_cast<std::size_t>(row.most) + 1);
+        if (reader.choice(row.name, choice, texts)) {
+            choose(row, drive, choice);
+        }
+    } else if (row.type == SETTING_FLAG
+                   ? reader.boolean(row.name, flag)
+                   : reader.number(row.name, value, setting_least(&drive, &row),
+                                   setting_most(&drive, &row))) {
+        setting_put(&drive, &row, 0, row.type == SETTING_FLAG ? flag : value);
     }
 }
 
 void read_drive(const Value &table, drive_settings &drive)
 {
     TableReader reader(table, "drive");
-    std::size_t law = 0, estimator = 0, feedback = 0, observer = 0;
-    std::size_t voltage_source = 0, initial_position = 0, synchronism_policy = 0;
-    if (reader.choice("feedback", feedback, names_of(drive_feedback_name, DRIVE_FEEDBACKS))) {
-        drive_settings_select_feedback(&drive, static_cast<drive_feedback>(feedback));
+    const setting *row = nullptr;
+    for (std::size_t i = 0; (row = setting_number(i)) != nullptr; ++i) {
+        if (!setting_is_of_motor(row)) {
+            read_setting(reader, *row, drive);
+        }
     }
-    if (reader.choice("law", law, names_of(drive_law_name, POSITION_LAW_COUNT))) {
-        drive_settings_select_law(&drive, static_cast<position_law>(law));
-    }
-    if (reader.choice("estimator", estimator, names_of(drive_estimator_name, DRIVE_ESTIMATORS))) {
-        drive.estimator = static_cast<drive_estimator>(estimator);
-    }
-    reader.number("law_bandwidth_rad_s", drive.law_bandwidth_rad_s, 1, 1e5);
-    if (const Value *gains = reader.table("law_gains")) {
-        read_law_gains(*gains, drive);
-    }
-    if (reader.choice("observer", observer, names_of(drive_observer_name, DRIVE_OBSERVERS))) {
-        drive.observer = static_cast<drive_observer>(observer);
-    }
-    if (reader.choice("voltage_source", voltage_source,
-                      names_of(drive_voltage_source_name, DRIVE_VOLTAGE_SOURCES))) {
-        drive.voltage_source = static_cast<drive_voltage_source>(voltage_source);
-    }
-    if (reader.choice("initial_position", initial_position,
-                      names_of(drive_initial_position_name, DRIVE_INITIAL_POSITIONS))) {
-        drive.initial_position = static_cast<drive_initial_position>(initial_position);
-    }
-    if (reader.choice("synchronism_policy", synchronism_policy,
-                      names_of(drive_synchronism_policy_name, DRIVE_SYNCHRONISM_POLICIES))) {
-        drive.synchronism_policy = static_cast<drive_synchronism_policy>(synchronism_policy);
-    }
-    reader.number("observer_bandwidth_rad_s", drive.observer_bandwidth_rad_s, 1, 1e6);
-    reader.number("high_gain_epsilon_s", drive.high_gain_epsilon_s, 1e-7, 1);
-    reader.boolean("encoder_zero_known", drive.encoder_zero_known);
-    reader.number("encoder_zero_rad", drive.encoder_zero_rad, -largest_position_rad,
-                  largest_position_rad);
-    reader.number("initial_load_torque_Nm", drive.initial_load_torque_Nm, -100, 100);
-    reader.boolean("bridge_loss_compensation", drive.bridge_loss_compensation);
-    reader.boolean("detent_learning", drive.detent_learning);
-    read_detent_torque(reader, drive);
-    reader.boolean("feed_forward", drive.feed_forward);
-    reader.number("current_bandwidth_rad_s", drive.current_bandwidth_rad_s, 1, 1e6);
-    reader.number("current_limit_A", drive.current_limit_A, 0, 1000);
-    reader.number("overcurrent_trip_A", drive.overcurrent_trip_A, 0, 1000);
-    reader.number("speed_limit_rad_s", drive.speed_limit_rad_s, 0, 1e5);
-    reader.boolean("resistance_adaptation", drive.resistance_adaptation);
-    reader.number("hold_current_A", drive.hold_current_A, 0, 1000);
-    reader.number("motion_current_A", drive.motion_current_A, 0, 1000);
-    reader.number("hold_ramp_s", drive.hold_ramp_s, 0, 10);
-    reader.number("hold_delay_s", drive.hold_delay_s, 0, 10);
-    reader.boolean("hold_at_rest", drive.hold_at_rest);
-    reader.boolean("standstill_pulses", drive.standstill_pulses);
-    reader.number("hold_bandwidth_rad_s", drive.hold_bandwidth_rad_s, 1, 1e4);
-    reader.boolean("calibrate_offsets", drive.calibrate_offsets);
-    reader.boolean("hold_on_enable", drive.hold_on_enable);
-    reader.number("hold_on_enable_s", drive.hold_on_enable_s, 0, 10);
-    reader.number("initial_angle_rad", drive.initial_angle_rad, -largest_position_rad,
-                  largest_position_rad);
-    reader.number("initial_angle_error_rad", drive.initial_angle_error_rad, -1, 1);
     reader.finish();
 }
 
-/* A motor file's detent torque is the peak of the harmonics' sum and keeps their ratio. */
+/* Harmonics 4, 2 and 1 of the detent torque, as shares of the holding torque. A motor file's detent
+   torque is the peak of their sum and keeps their ratio. */
 void set_detent(plant::ImperfectionConfig &imperfections, const Motor &motor)
 {
-    const double scale = motor.detent_peak_Nm() / (detent_share_peak * motor.holding_torque_Nm());
-    imperfections.detent_4 = detent_share_4 * scale;
-    imperfections.detent_2 = detent_share_2 * scale;
-    imperfections.detent_1 = detent_share_1 * scale;
+    constexpr double detent_4 = 0.05, detent_2 = 0.015, detent_1 = 0.0075;
+    constexpr double peak = 1.2789059088441; /* of sin 4x + 0.3 sin 2x + 0.15 sin x */
+    const double scale =
+        motor.detent_torque_Nm.has_value()
+            ? *motor.detent_torque_Nm / (peak * detent_4 * motor.holding_torque_Nm())
+            : 1.0;
+    imperfections.detent_4 = detent_4 * scale;
+    imperfections.detent_2 = detent_2 * scale;
+    imperfections.detent_1 = detent_1 * scale;
 }
 
 /* What `real` adds to `bench`; sources: sil/plant/README.md. */
@@ -232,7 +226,7 @@ void make_real(plant::Config &plant, const Motor &motor)
     plant.imperfections.saturation_depth = 0.10;
     plant.imperfections.flux_harmonic_3 = 0.02;
     set_detent(plant.imperfections, motor);
-    plant.imperfections.coulomb_friction = coulomb_friction_share;
+    plant.imperfections.coulomb_friction = 0.015;
     plant.imperfections.bridge_resistance_ohm = 2 * 0.11;
     plant.imperfections.phase_voltage_filter_s = 10e-6;
     plant.supply.bus_source_ohm = 0.1;

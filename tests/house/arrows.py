@@ -11,7 +11,7 @@ import sys
 import tempfile
 
 NUMERIC = ["firmware/numeric/", "firmware/linkage.h"]
-MOTOR = ["firmware/motor/", *NUMERIC]
+MOTOR = ["firmware/motor/", "firmware/interface/settings_table.h", *NUMERIC]
 DESIGN = ["firmware/design/", *MOTOR]  # blocks are scaled from its gains at start-up
 
 # What each room may include, by prefix; the longest matching room decides. A file is a room of its
@@ -24,9 +24,13 @@ ROOMS = {
     "firmware/estimator/": ["firmware/estimator/", *DESIGN],
     "firmware/control/": ["firmware/control/", *DESIGN],
     "firmware/motion/": ["firmware/motion/", *DESIGN],
-    "firmware/drive/": ["firmware/drive/", "firmware/estimator/", "firmware/control/",
+    "firmware/interface/settings_table.h": [],
+    "firmware/interface/": ["firmware/interface/", "firmware/drive/drive_interface.h",
+                            "firmware/control/position_laws.h", *DESIGN],
+    "firmware/drive/": ["firmware/drive/", "firmware/interface/", "firmware/estimator/", "firmware/control/",
                         "firmware/motion/", *DESIGN, "hal/hal.h"],
-    "firmware/application/": ["firmware/application/", "firmware/drive/", "firmware/estimator/",
+    "firmware/application/": ["firmware/application/", "firmware/interface/", "firmware/drive/",
+                              "firmware/estimator/",
                               "firmware/control/", "firmware/motion/", *DESIGN, "hal/hal.h"],
     "hal/hal.h": [],
     "hal/sil/": ["hal/sil/", "hal/hal.h"],
@@ -46,8 +50,8 @@ ROOMS = {
                            "hal/hal.h", "firmware/drive/drive_interface.h",
                            "firmware/drive/drive_hash.h",
                            "firmware/application/settings_record.h"],
-    "sil/scenario/": ["sil/scenario/", "sil/board/typed_line.h", "board.h's",
-                      "sil/virtual_board/virtual_board.h", "sil/virtual_board/board_facts.h"],
+    "sil/scenario/": ["sil/scenario/", "firmware/interface/settings.h",
+                      "sil/board/typed_line.h", "board.h's", "sil/virtual_board/virtual_board.h", "sil/virtual_board/board_facts.h"],
 }
 EXPOSED_BY = "sil/board/board.h"
 

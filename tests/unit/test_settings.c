@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/settings.h"
 #include "tests/unit/bench.h"
 #include "tests/unit/num_assert.h"
 
@@ -51,44 +51,23 @@ static void test_the_defaults_pass_the_check(void)
     TEST_ASSERT_TRUE(drive_settings_check(&settings, error));
 }
 
-/* The contract once more, from outside: name, range for a motor rated 3 A, unit. */
-static const struct {
-    const char *name;
-    size_t offset;
-    double min, max;
-    const char *unit;
-} ranges[] = {
-#define MOTOR(field) #field, offsetof(struct drive_settings, motor.field)
-#define FIELD(field) #field, offsetof(struct drive_settings, field)
-    {MOTOR(resistance_ohm), 1e-3, 1e3, "ohm"},
-    {MOTOR(inductance_H), 1e-6, 1.0, "H"},
-    {MOTOR(torque_constant_Nm_A), 1e-4, 100.0, "N m/A"},
-    {MOTOR(viscous_friction_Nms_rad), 0.0, 10.0, "N m s/rad"},
-    {MOTOR(inertia_kgm2), 1e-9, 10.0, "kg m2"},
-    {MOTOR(supply_V), 5.0, 400.0, "V"},
-    {FIELD(law_bandwidth_rad_s), 1.0, 1e4, "rad/s"},
-    {FIELD(current_bandwidth_rad_s), 10.0, 1e6, "rad/s"},
-    {FIELD(observer_bandwidth_rad_s), 1.0, 1e6, "rad/s"},
-    {FIELD(hold_bandwidth_rad_s), 1.0, 1e4, "rad/s"},
-    {FIELD(encoder_zero_rad), -1e4, 1e4, "rad"},
-    {FIELD(initial_load_torque_Nm), -100.0, 100.0, "N m"},
-    {FIELD(current_limit_A), 0.01 * 3.0, 2.0 * 3.0, "A"},
-    {FIELD(overcurrent_trip_A), 0.1 * 3.0, 6.0 * 3.0, "A"},
-    {FIELD(speed_limit_rad_s), 0.1, 1e4, "rad/s"},
-    {FIELD(hold_current_A), 0.01 * 3.0, 3.0, "A"},
-    {FIELD(hold_ramp_s), 1e-3, 1.0, "s"},
-    {FIELD(hold_delay_s), 0.0, 100.0, "s"},
-    {FIELD(hold_on_enable_s), 0.01, 10.0, "s"},
-    {FIELD(initial_angle_rad), -1e4, 1e4, "rad"},
-    {FIELD(initial_angle_error_rad), -10.0, 10.0, "rad"},
-};
+/* Every real number but the rated current, of which others are shares; NULL behind the last. */
+static const struct setting *next_real(size_t *number)
+{
+    const struct setting *row = setting_number(*number);
 
-enum { RANGES = sizeof ranges / sizeof ranges[0] };
+    while (row != NULL && (row->type != SETTING_REAL || row->index == 0x2006)) {
+        row = setting_number(++*number);
+    }
+    ++*number;
+    return row;
+}
 
-static bool accepts(int range, double value)
+/* In the last of its elements. */
+static bool accepts(const struct setting *row, double value)
 {
     setUp();
-    memcpy((char *)&settings + ranges[range].offset, &value, sizeof value);
+    setting_put(&settings, row, row->count - 1u, value);
     return drive_settings_check(&settings, error);
 }
 
@@ -99,18 +78,20 @@ static bool contains(const char *text)
 
 static void test_every_setting_may_take_the_bounds_of_its_range(void)
 {
-    for (int i = 0; i < RANGES; i++) {
-        TEST_ASSERT_TRUE_MESSAGE(accepts(i, ranges[i].min), error);
-        TEST_ASSERT_TRUE_MESSAGE(accepts(i, ranges[i].max), error);
+    const struct setting *row;
+
+    for (size_t i = 0; (row = next_real(&i)) != NULL;) {
+        TEST_ASSERT_TRUE_MESSAGE(accepts(row, setting_least(&settings, row)), error);
+        TEST_ASSERT_TRUE_MESSAGE(accepts(row, setting_most(&settings, row)), error);
     }
 }
 
-static void refused_with(int range, double value, const char *relation)
+static void refused_with(const struct setting *row, double value, const char *relation)
 {
-    TEST_ASSERT_FALSE_MESSAGE(accepts(range, value), ranges[range].name);
-    TEST_ASSERT_EQUAL_MEMORY_MESSAGE(ranges[range].name, error, strlen(ranges[range].name), error);
+    TEST_ASSERT_FALSE_MESSAGE(accepts(row, value), row->name);
+    TEST_ASSERT_EQUAL_MEMORY_MESSAGE(row->name, error, strlen(row->name), error);
     TEST_ASSERT_TRUE_MESSAGE(contains(relation), error);
-    TEST_ASSERT_TRUE_MESSAGE(contains(ranges[range].unit), error);
+    TEST_ASSERT_TRUE_MESSAGE(contains(row->unit), error);
 }
 
 static void test_what_is_not_given_follows_from_motor_and_period(void)
@@ -176,39 +157,51 @@ static void test_an_observer_does_not_chase_counts(void)
 
 static void test_every_setting_is_refused_beyond_its_range_by_name_bound_and_unit(void)
 {
-    for (int i = 0; i < RANGES; i++) {
-        const double below = ranges[i].min > 0.0 ? 0.999 * ranges[i].min : ranges[i].min - 1e-3;
+    const struct setting *row;
 
-        refused_with(i, below, "must be at least");
-        refused_with(i, 1.001 * ranges[i].max, "must be at most");
+    for (size_t i = 0; (row = next_real(&i)) != NULL;) {
+        const double least = setting_least(&settings, row);
+
+        refused_with(row, least > 0.0 ? 0.999 * least : 1.001 * least - 1e-3, "must be at least");
+        refused_with(row, 1.001 * setting_most(&settings, row), "must be at most");
     }
 }
 
-static bool follows_from_motor(const char *name)
+static void test_shares_of_the_rated_current_are_of_the_motors(void)
 {
-    static const char *const names[] = {
-        "law_bandwidth_rad_s",  "current_bandwidth_rad_s", "observer_bandwidth_rad_s",
-        "hold_bandwidth_rad_s", "hold_current_A",          "overcurrent_trip_A",
-        "hold_delay_s"};
+    const struct setting *const trip = setting_of_index(0x2121);
 
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        if (strcmp(name, names[i]) == 0) {
-            return true;
-        }
-    }
-    return false;
+    TEST_ASSERT_EQUAL_STRING("overcurrent_trip_A", trip->name);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.1 * 3.0, setting_least(&settings, trip));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 6.0 * 3.0, setting_most(&settings, trip));
 }
 
 static void test_a_setting_that_is_not_finite_is_refused(void)
 {
-    for (int i = 0; i < RANGES; i++) {
-        const bool may_be_not_given = follows_from_motor(ranges[i].name);
+    const struct setting *row;
 
-        TEST_ASSERT_EQUAL(may_be_not_given, accepts(i, __builtin_nan("")));
+    for (size_t i = 0; (row = next_real(&i)) != NULL;) {
+        const bool may_be_not_given = row->preset_base == SETTING_FOLLOWS;
+
+        TEST_ASSERT_EQUAL(may_be_not_given, accepts(row, __builtin_nan("")));
         TEST_ASSERT_TRUE(may_be_not_given || contains("(not finite)"));
-        TEST_ASSERT_FALSE(accepts(i, __builtin_inf()));
-        TEST_ASSERT_FALSE(accepts(i, -__builtin_inf()));
+        TEST_ASSERT_FALSE(accepts(row, __builtin_inf()));
+        TEST_ASSERT_FALSE(accepts(row, -__builtin_inf()));
     }
+}
+
+/* A number is given once and never again: records would be read wrongly. */
+static void test_every_element_has_an_index_of_its_own(void)
+{
+    for (size_t i = 0; setting_number(i) != NULL; i++) {
+        for (size_t element = 0; element < setting_number(i)->count; element++) {
+            const size_t index = setting_number(i)->index + element;
+
+            TEST_ASSERT_TRUE(setting_of_index((uint16_t)index) == setting_number(i));
+            TEST_ASSERT_TRUE(index >= 0x2000u && index < 0x4000u);
+        }
+    }
+    TEST_ASSERT_NULL(setting_of_index(0x2000));
 }
 
 static void test_a_refusal_says_what_was_asked_and_what_is_allowed(void)
@@ -292,7 +285,9 @@ int main(void)
     RUN_TEST(test_defaults_fit_a_longer_period);
     RUN_TEST(test_an_observer_does_not_chase_counts);
     RUN_TEST(test_every_setting_is_refused_beyond_its_range_by_name_bound_and_unit);
+    RUN_TEST(test_shares_of_the_rated_current_are_of_the_motors);
     RUN_TEST(test_a_setting_that_is_not_finite_is_refused);
+    RUN_TEST(test_every_element_has_an_index_of_its_own);
     RUN_TEST(test_a_refusal_says_what_was_asked_and_what_is_allowed);
     RUN_TEST(test_the_rated_current_has_a_range_of_its_own);
     RUN_TEST(test_names_are_spelt_as_scenarios_and_the_serial_line_do);

@@ -1,7 +1,10 @@
 #include "firmware/application/settings_record.h"
 
+#include <math.h>
 #include <string.h>
 #include <unity.h>
+
+#include "firmware/interface/settings.h"
 
 #include "tests/unit/console_bench.h"
 
@@ -19,63 +22,29 @@ void tearDown(void)
 {
 }
 
-/* Every field another value, none of them a default. */
+/* Every setting another value, none of them a default. */
 static struct stored_settings peculiar(void)
 {
     struct stored_settings s = {.encoder_counts_per_turn = 16384};
-    struct drive_settings *d = &s.drive;
     double next = 0.1;
 
-    drive_settings_default(d, &bench_params);
-    double *const numbers[] = {&d->motor.resistance_ohm,
-                               &d->motor.inductance_H,
-                               &d->motor.torque_constant_Nm_A,
-                               &d->motor.viscous_friction_Nms_rad,
-                               &d->motor.inertia_kgm2,
-                               &d->motor.rated_current_A,
-                               &d->motor.supply_V,
-                               &d->law_bandwidth_rad_s,
-                               &d->current_bandwidth_rad_s,
-                               &d->current_limit_A,
-                               &d->overcurrent_trip_A,
-                               &d->speed_limit_rad_s,
-                               &d->observer_bandwidth_rad_s,
-                               &d->high_gain_epsilon_s,
-                               &d->encoder_zero_rad,
-                               &d->initial_load_torque_Nm,
-                               &d->hold_on_enable_s,
-                               &d->hold_current_A,
-                               &d->hold_ramp_s,
-                               &d->hold_delay_s,
-                               &d->hold_bandwidth_rad_s,
-                               &d->initial_angle_rad,
-                               &d->initial_angle_error_rad,
-                               &d->motion_current_A};
-    bool *const flags[] = {
-        &d->feed_forward,          &d->detent_learning,    &d->bridge_loss_compensation,
-        &d->resistance_adaptation, &d->encoder_zero_known, &d->calibrate_offsets,
-        &d->hold_on_enable,        &d->hold_at_rest,       &d->standstill_pulses};
+    drive_settings_default(&s.drive, &bench_params);
+    for (size_t i = 0; setting_number(i) != NULL; i++) {
+        const struct setting *row = setting_number(i);
 
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++, next += 0.7) {
-        *numbers[i] = next;
+        for (size_t element = 0; element < row->count; element++, next += 0.7) {
+            const double before = setting_get(&s.drive, row, element);
+
+            setting_put(&s.drive, row, element,
+                        row->type == SETTING_REAL    ? next
+                        : row->type == SETTING_COUNT ? -before
+                        : before < row->most         ? before + 1.0
+                                                     : before - 1.0);
+        }
     }
-    for (size_t i = 0; i < sizeof flags / sizeof flags[0]; i++) {
-        *flags[i] = !*flags[i];
+    for (int i = 1; i < DRIVE_LAW_GAINS; i += 2) {
+        s.drive.law_gains[i] = NAN; /* not given */
     }
-    for (int i = 0; i < DRIVE_LAW_GAINS; i += 2, next -= 40.1) {
-        d->law_gains[i] = next; /* between them NaN */
-    }
-    for (int i = 0; i < DRIVE_DETENT_COEFFICIENTS; i++, next += 1e-7) {
-        d->detent_torque_Nm[i] = next;
-    }
-    d->motor.rotor_teeth = -50;
-    d->law = POSITION_LAW_FEEDBACK_LINEARISATION;
-    d->feedback = DRIVE_FEEDBACK_ENCODER;
-    d->estimator = DRIVE_ESTIMATOR_STEADY_STATE_EKF;
-    d->observer = DRIVE_OBSERVER_HIGH_GAIN;
-    d->voltage_source = DRIVE_VOLTAGE_COMMANDED;
-    d->initial_position = DRIVE_INITIAL_POSITION_IMPULSES;
-    d->synchronism_policy = DRIVE_SYNCHRONISM_WARN;
     return s;
 }
 
@@ -101,51 +70,48 @@ static void test_every_field_comes_back(void)
     TEST_ASSERT_TRUE(settings_record_decode(&out, record));
     TEST_ASSERT_EQUAL_UINT32(16384, out.encoder_counts_per_turn);
     TEST_ASSERT_EQUAL_INT32(-50, out.drive.motor.rotor_teeth);
-    TEST_ASSERT_TRUE(out.drive.motor.resistance_ohm == in.drive.motor.resistance_ohm);
-    TEST_ASSERT_TRUE(out.drive.initial_angle_error_rad == in.drive.initial_angle_error_rad);
     TEST_ASSERT_TRUE(out.drive.law_gains[10] == in.drive.law_gains[10]);
     TEST_ASSERT_TRUE(out.drive.law_gains[11] != out.drive.law_gains[11]);
-    TEST_ASSERT_TRUE(out.drive.detent_torque_Nm[5] == in.drive.detent_torque_Nm[5]);
-    TEST_ASSERT_EQUAL_INT(POSITION_LAW_FEEDBACK_LINEARISATION, out.drive.law);
-    TEST_ASSERT_EQUAL_INT(DRIVE_OBSERVER_HIGH_GAIN, out.drive.observer);
-    TEST_ASSERT_EQUAL_INT(DRIVE_VOLTAGE_COMMANDED, out.drive.voltage_source);
-    TEST_ASSERT_EQUAL_INT(DRIVE_INITIAL_POSITION_IMPULSES, out.drive.initial_position);
-    TEST_ASSERT_EQUAL_INT(DRIVE_SYNCHRONISM_WARN, out.drive.synchronism_policy);
-    TEST_ASSERT_FALSE(out.drive.hold_on_enable);
-    TEST_ASSERT_TRUE(out.drive.encoder_zero_known);
+    for (size_t i = 0; setting_number(i) != NULL; i++) {
+        const double value = setting_get(&in.drive, setting_number(i), 0);
+
+        TEST_ASSERT_TRUE(setting_get(&out.drive, setting_number(i), 0) == value);
+    }
     assert_same(&in, &out);
 }
 
-/* Each field has a place of its own: what differs in one, differs in the record. */
-static void test_every_field_has_its_own_place(void)
+static const struct record_log entries = {SETTINGS_RECORD_FIRST_PAGE, SETTINGS_RECORD_FORMAT,
+                                          SETTINGS_RECORD_PAYLOAD};
+
+/* A record with these bytes at the begin of its payload in place of what is encoded. */
+static bool decodes(struct stored_settings *out, const struct stored_settings *in,
+                    const void *bytes, size_t count)
+{
+    uint8_t record[SETTINGS_RECORD_BYTES];
+
+    settings_record_encode(in, 1, record);
+    memcpy(&record[RECORD_HEADER_BYTES], bytes, count);
+    record_seal(&entries, record, 1);
+    return settings_record_decode(out, record);
+}
+
+static void test_every_element_has_its_own_place(void)
 {
     const struct stored_settings in = peculiar();
-    uint8_t record[SETTINGS_RECORD_BYTES];
     struct stored_settings out;
+    uint8_t record[SETTINGS_RECORD_BYTES];
 
-    settings_record_encode(&in, 7, record);
-    for (size_t i = RECORD_HEADER_BYTES; i < RECORD_HEADER_BYTES + SETTINGS_RECORD_PAYLOAD; i++) {
-        if (i >= 72u && i < 80u) {
-            continue; /* choices */
+    for (size_t i = 0; setting_number(i) != NULL; i++) {
+        const struct setting *row = setting_number(i);
+
+        for (size_t element = 0; element < row->count; element++) {
+            struct stored_settings other = in;
+
+            setting_put(&other.drive, row, element, row->type == SETTING_CHOICE ? 0.0 : 1.0);
+            settings_record_encode(&other, 1, record);
+            TEST_ASSERT_TRUE_MESSAGE(settings_record_decode(&out, record), row->name);
+            assert_same(&other, &out);
         }
-        if (i > 81u && i < 88u) {
-            continue; /* flags: nine are in use */
-        }
-        uint8_t harmed[SETTINGS_RECORD_BYTES];
-
-        memcpy(harmed, record, sizeof harmed);
-        harmed[i] ^= 1u;
-        TEST_ASSERT_FALSE(settings_record_decode(&out, harmed));
-        const uint32_t sequence = 7;
-        const struct record_log log = {SETTINGS_RECORD_FIRST_PAGE, SETTINGS_RECORD_FORMAT,
-                                       SETTINGS_RECORD_PAYLOAD};
-
-        record_seal(&log, harmed, sequence);
-        TEST_ASSERT_TRUE(settings_record_decode(&out, harmed));
-        uint8_t again[SETTINGS_RECORD_BYTES];
-
-        settings_record_encode(&out, sequence, again);
-        TEST_ASSERT_EQUAL_UINT8_ARRAY(harmed, again, sizeof harmed);
     }
 }
 
@@ -154,37 +120,68 @@ static void test_the_layout_stays(void)
 {
     struct stored_settings in = peculiar();
     uint8_t record[SETTINGS_RECORD_BYTES];
-    static const uint8_t head[] = {0x03, 0x53, 0x74, 0x01, 0x04, 0x03, 0x02, 0x01};
-    static const uint8_t one[] = {0, 0, 0, 0, 0, 0, 0xf0, 0x3f};
-    static const uint8_t choices[] = {POSITION_LAW_FEEDBACK_LINEARISATION, 1, 1, 1, 1, 1, 1, 0};
+    static const uint8_t head[] = {0x04, 0x53, 0x10, 0x02, 0x04, 0x03, 0x02, 0x01};
+    static const uint8_t one[] = {0x01, 0xa0, 0, 0, 0, 0, 0, 0, 0xf0, 0x3f};
+    static const uint8_t teeth[] = {0x08, 0x60, 0xce, 0xff, 0xff, 0xff,
+                                    0x00, 0x21, 1,    0x01, 0x21, 2};
     const uint8_t *payload = &record[RECORD_HEADER_BYTES];
 
-    in.drive.motor.supply_V = 1.0;
-    in.drive.hold_delay_s = 1.0;
+    in.drive.motor.resistance_ohm = 1.0;
+    in.drive.law = POSITION_LAW_FEEDBACK_LINEARISATION;
     settings_record_encode(&in, 0x01020304, record);
     TEST_ASSERT_EQUAL_UINT8_ARRAY(head, record, sizeof head);
-    TEST_ASSERT_EQUAL_UINT8_ARRAY(one, &payload[48], sizeof one);
-    TEST_ASSERT_EQUAL_UINT8(0x40, payload[61]);
-    TEST_ASSERT_EQUAL_UINT8_ARRAY(choices, &payload[64], sizeof choices);
-    TEST_ASSERT_EQUAL_UINT8(0x12, payload[72]); /* detent learning, zero known */
-    TEST_ASSERT_EQUAL_UINT8(0x01, payload[73]); /* standstill pulses */
-    TEST_ASSERT_EQUAL_UINT8_ARRAY(one, &payload[176], sizeof one);
-    TEST_ASSERT_EQUAL_INT(360, SETTINGS_RECORD_PAYLOAD);
+    TEST_ASSERT_EQUAL_UINT8_ARRAY(one, payload, sizeof one);
+    TEST_ASSERT_EQUAL_UINT8_ARRAY(teeth, &payload[70], sizeof teeth);
 }
 
-static void test_an_unknown_law_is_no_record(void)
+/* Of a firmware that has other settings: a number 0x3abc, and nothing of the motor's resistance
+   in its place; what comes behind an end is not read. */
+static void test_settings_that_come_and_go_leave_the_others(void)
 {
-    const struct record_log log = {SETTINGS_RECORD_FIRST_PAGE, SETTINGS_RECORD_FORMAT,
-                                   SETTINGS_RECORD_PAYLOAD};
+    const struct stored_settings in = peculiar();
+    struct stored_settings out;
+    uint8_t record[SETTINGS_RECORD_BYTES], shorter[SETTINGS_RECORD_PAYLOAD] = {0};
+    static const uint8_t later[] = {0xbc, 0xba, 1, 2, 3, 4, 5, 6, 7, 8};
+    const size_t behind_motor = 7 * 10 + 6;
+
+    settings_record_encode(&in, 1, record);
+    memcpy(shorter, &record[RECORD_HEADER_BYTES], behind_motor);
+    memcpy(shorter + behind_motor, later, sizeof later);
+    memcpy(shorter + behind_motor + sizeof later, &record[RECORD_HEADER_BYTES + behind_motor],
+           3); /* feedback, and then the end */
+    TEST_ASSERT_TRUE(decodes(&out, &in, shorter, sizeof shorter));
+    TEST_ASSERT_EQUAL_INT(in.drive.feedback, out.drive.feedback);
+    TEST_ASSERT_TRUE(out.drive.hold_ramp_s == 0.010);
+    TEST_ASSERT_EQUAL_UINT32(0, out.encoder_counts_per_turn);
+    TEST_ASSERT_FALSE(decodes(&out, &in, later, sizeof later)); /* no whole motor */
+}
+
+static void test_an_unknown_choice_is_no_record(void)
+{
+    const struct stored_settings in = peculiar();
+    struct stored_settings out;
+    uint8_t record[SETTINGS_RECORD_BYTES];
+    const size_t behind_motor = RECORD_HEADER_BYTES + 7 * 10 + 6;
+
+    for (size_t choice = 0; choice < 7; choice++) {
+        settings_record_encode(&in, 1, record);
+        record[behind_motor + 3 * choice + 2] = 200;
+        record_seal(&entries, record, 1);
+        TEST_ASSERT_FALSE(settings_record_decode(&out, record));
+    }
+}
+
+static void test_a_harmed_record_is_none(void)
+{
     const struct stored_settings in = peculiar();
     struct stored_settings out;
     uint8_t record[SETTINGS_RECORD_BYTES];
 
-    for (int choice = 0; choice < 7; choice++) {
-        settings_record_encode(&in, 1, record);
-        record[RECORD_HEADER_BYTES + 64 + choice] = 200;
-        record_seal(&log, record, 1);
+    settings_record_encode(&in, 1, record);
+    for (size_t i = 0; i < sizeof record; i++) {
+        record[i] ^= 1u;
         TEST_ASSERT_FALSE(settings_record_decode(&out, record));
+        record[i] ^= 1u;
     }
 }
 
@@ -221,9 +218,11 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_every_field_comes_back);
-    RUN_TEST(test_every_field_has_its_own_place);
+    RUN_TEST(test_every_element_has_its_own_place);
     RUN_TEST(test_the_layout_stays);
-    RUN_TEST(test_an_unknown_law_is_no_record);
+    RUN_TEST(test_settings_that_come_and_go_leave_the_others);
+    RUN_TEST(test_an_unknown_choice_is_no_record);
+    RUN_TEST(test_a_harmed_record_is_none);
     RUN_TEST(test_the_newest_of_many_is_read_beside_what_is_learned);
     RUN_TEST(test_an_encoded_record_in_page_2_is_read);
     return UNITY_END();

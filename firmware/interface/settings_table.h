@@ -1,0 +1,154 @@
+/*
+ * The settings of a drive, declared once: a row each. From the rows follow the members of struct
+ * motor_params and struct drive_settings, their defaults, ranges and refusals, the stored record,
+ * the keys of a scenario's [drive] and the page settings.md. To add a setting: a row, and what
+ * makes use of it.
+ *
+ *   CHOICE(index, member, type, constants, preset, sentence)   one of an enumeration
+ *   FLAG(index, member, preset, sentence)
+ *   REAL(index, member, unit, least, most, preset, sentence)
+ *   REALS(index, member, count, unit, least, most, preset, sentence)   an array
+ *   COUNT(index, member, unit, least, most, sentence)          a whole number
+ *
+ * - index: of the object dictionary (CiA 301), manufacturer specific; it never changes and is never
+ *   used again. An array takes as many as it has elements.
+ * - least, most, preset: FIXED(value), or RATED(share) of the motor's rated current.
+ * - preset FOLLOWS: NaN, "not given"; what it is then follows from motor, board and period when the
+ *   drive starts (drive/default_settings.h, drive/board_limits.h). COMPUTED: from the motor at
+ * once.
+ *
+ * The order is that in which a scenario's keys are obeyed: feedback and law choose defaults of what
+ * stands below them.
+ */
+#ifndef STEADYSTEP_SETTINGS_TABLE_H
+#define STEADYSTEP_SETTINGS_TABLE_H
+
+/* What the drive is told of its motor; no preset: a motor file gives all of them. */
+#define MOTOR_SETTINGS(REAL, COUNT)                                                                \
+    REAL(0x2001, resistance_ohm, "ohm", FIXED(1e-3), FIXED(1e3), "R, of one phase")                \
+    REAL(0x2002, inductance_H, "H", FIXED(1e-6), FIXED(1.0), "L, of one phase")                    \
+    REAL(0x2003, torque_constant_Nm_A, "N m/A", FIXED(1e-4), FIXED(100.0),                         \
+         "Km, and the back-EMF constant in V s/rad")                                               \
+    REAL(0x2004, viscous_friction_Nms_rad, "N m s/rad", FIXED(0.0), FIXED(10.0), "Kv")             \
+    REAL(0x2005, inertia_kgm2, "kg m2", FIXED(1e-9), FIXED(10.0), "J, of rotor and rigid load")    \
+    REAL(0x2006, rated_current_A, "A", FIXED(1e-2), FIXED(50.0), "per phase, peak of the sine")    \
+    REAL(0x2007, supply_V, "V", FIXED(5.0), FIXED(400.0), "nominal voltage of the bus")            \
+    COUNT(0x2008, rotor_teeth, "", FIXED(1.0), FIXED(1000.0),                                      \
+          "N, pole pairs: electrical turns per turn")
+
+#define DRIVE_SETTINGS(CHOICE, FLAG, REAL, REALS)                                                  \
+    CHOICE(0x2100, feedback, drive_feedback, DRIVE_FEEDBACKS, DRIVE_FEEDBACK_SENSORLESS,           \
+           "where the rotor's position comes from")                                                \
+    CHOICE(0x2101, law, position_law, POSITION_LAW_COUNT, POSITION_LAW_STATE_FEEDBACK,             \
+           "position law; with an encoder feedback-linearisation")                                 \
+    CHOICE(0x2102, estimator, drive_estimator, DRIVE_ESTIMATORS, DRIVE_ESTIMATOR_INVARIANT_EKF,    \
+           "of sensorless feedback")                                                               \
+    CHOICE(0x2103, observer, drive_observer, DRIVE_OBSERVERS, DRIVE_OBSERVER_MODEL,                \
+           "on the encoder")                                                                       \
+    CHOICE(0x2104, voltage_source, drive_voltage_source, DRIVE_VOLTAGE_SOURCES,                    \
+           DRIVE_VOLTAGE_MEASURED, "where the estimator's voltage comes from")                     \
+    CHOICE(0x2105, initial_position, drive_initial_position, DRIVE_INITIAL_POSITIONS,              \
+           DRIVE_INITIAL_POSITION_TOLD, "how a sensorless drive knows where its rotor stands")     \
+    CHOICE(0x2106, synchronism_policy, drive_synchronism_policy, DRIVE_SYNCHRONISM_POLICIES,       \
+           DRIVE_SYNCHRONISM_FAULT, "what comes of a rotor that has lost step; sensorless")        \
+    FLAG(0x2107, feed_forward, true, "reference speed and acceleration into the law")              \
+    FLAG(0x2108, detent_learning, false,                                                           \
+         "learn and compensate the detent torque; with an encoder only, true for its default law") \
+    FLAG(0x2109, bridge_loss_compensation, true, "of dead time and diodes")                        \
+    FLAG(0x210a, resistance_adaptation, true, "track the series resistance while holding")         \
+    REAL(0x2110, law_bandwidth_rad_s, "rad/s", FIXED(1.0), FIXED(1e4), FOLLOWS,                    \
+         "w0 of the position law, a pair of poles: 200, of the default law 300, with an encoder "  \
+         "900, or what the period bears")                                                          \
+    REAL(0x2111, current_bandwidth_rad_s, "rad/s", FIXED(10.0), FIXED(1e6), FOLLOWS,               \
+         "of the current loop inside it: 1500, with feedback-linearisation 2000, twice the swing " \
+         "of a quicker hold, or what the period bears")                                            \
+    REALS(0x2180, law_gains, DRIVE_LAW_GAINS, "", FIXED(-1e12), FIXED(1e12), FOLLOWS,              \
+          "the law's gains by its own names, instead of what the bandwidths make of them")         \
+    REALS(0x21c0, detent_torque_Nm, DRIVE_DETENT_COEFFICIENTS, "N m", FIXED(-100.0), FIXED(100.0), \
+          FIXED(0.0),                                                                              \
+          "a_1, b_1, a_2, b_2, a_4, b_4 of the electrical angle's harmonics: where learning "      \
+          "begins if nothing is kept")                                                             \
+    REAL(0x2120, current_limit_A, "A", RATED(0.01), RATED(2.0), RATED(1.0),                        \
+         "of the current reference")                                                               \
+    REAL(0x2121, overcurrent_trip_A, "A", RATED(0.1), RATED(6.0), FOLLOWS,                         \
+         "a sampled phase current beyond it opens the bridge: 1.8 x rated current, cut to what "   \
+         "the board measures")                                                                     \
+    REAL(0x2122, speed_limit_rad_s, "rad/s", FIXED(0.1), FIXED(1e4), COMPUTED,                     \
+         "an estimate beyond it opens the bridge: 1.3 x supply / Km, of a law without current "    \
+         "control N w L / R = 4, cut to 0.24 electrical turn per period")                          \
+    REAL(0x2130, observer_bandwidth_rad_s, "rad/s", FIXED(1.0), FIXED(1e6), FOLLOWS,               \
+         "triple pole of the model observer: 1000, of the default law with an encoder 1400, or "   \
+         "what period and counts bear")                                                            \
+    REAL(0x2131, high_gain_epsilon_s, "s", FIXED(1e-7), FIXED(1.0), FIXED(1e-3),                   \
+         "of the high-gain observer")                                                              \
+    REAL(0x2132, encoder_zero_rad, "rad", FIXED(-1e4), FIXED(1e4), FIXED(0.0),                     \
+         "rotor angle where count 0 begins")                                                       \
+    REAL(0x2133, initial_load_torque_Nm, "N m", FIXED(-100.0), FIXED(100.0), FIXED(0.0),           \
+         "load that the model observer begins with")                                               \
+    FLAG(0x2134, encoder_zero_known, false,                                                        \
+         "absolute encoder or indexed: the rotor's angle follows from the count, else it is "      \
+         "initial_angle_rad at the end of the hold")                                               \
+    FLAG(0x2140, calibrate_offsets, true, "step of enabling, with the bridge off, then on")        \
+    FLAG(0x2141, hold_on_enable, true,                                                             \
+         "step of enabling: hold_on_enable_s before ready; an encoder's zero is found first")      \
+    FLAG(0x2142, hold_at_rest, true, "d-axis current at rest; with an encoder false")              \
+    FLAG(                                                                                          \
+        0x2143, standstill_pulses, false,                                                          \
+        "pulses on the hold current show the rotor's angle under load, of a motor that saturates") \
+    REAL(0x2144, hold_on_enable_s, "s", FIXED(0.01), FIXED(10.0), FIXED(0.150),                    \
+         "half of it behind the search for an encoder's zero")                                     \
+    REAL(0x2145, hold_current_A, "A", RATED(0.01), RATED(1.0), FOLLOWS,                            \
+         "d-axis current at rest: half the rated current, or what of it the hold's own check "     \
+         "passes")                                                                                 \
+    REAL(0x2146, motion_current_A, "A", FIXED(0.0), RATED(1.0), FIXED(0.0),                        \
+         "d-axis current in motion")                                                               \
+    REAL(0x2147, hold_ramp_s, "s", FIXED(1e-3), FIXED(1.0), FIXED(0.010),                          \
+         "time for the hold current to ramp in or out")                                            \
+    REAL(                                                                                          \
+        0x2148, hold_delay_s, "s", FIXED(0.0), FIXED(100.0), FOLLOWS,                              \
+        "from the end of a profile to the hold: 0.015, of a hold quicker than 280 rad/s 4.2 over " \
+        "that")                                                                                    \
+    REAL(0x2149, hold_bandwidth_rad_s, "rad/s", FIXED(1.0), FIXED(1e4), FOLLOWS,                   \
+         "w0 of the state feedback whose damping the hold takes: 200, a quarter of its swing, or " \
+         "what the current loop bears")                                                            \
+    REAL(0x214a, initial_angle_rad, "rad", FIXED(-1e4), FIXED(1e4), FIXED(0.0),                    \
+         "mechanical rotor angle that the drive is told")                                          \
+    REAL(0x214b, initial_angle_error_rad, "rad", FIXED(-10.0), FIXED(10.0), FIXED(0.0),            \
+         "added to it, to tell the drive something wrong; for simulation")
+
+/* The settings that are one of several: constant, text, sentence. */
+#define DRIVE_FEEDBACK_CHOICES(X)                                                                  \
+    X(DRIVE_FEEDBACK_SENSORLESS, "sensorless", "the estimator, from currents and voltages")        \
+    X(DRIVE_FEEDBACK_ENCODER, "encoder", "an observer on the encoder's counts")
+
+#define DRIVE_ESTIMATOR_CHOICES(X)                                                                 \
+    X(DRIVE_ESTIMATOR_INVARIANT_EKF, "invariant-ekf",                                              \
+      "constant-gain invariant EKF, exact current prediction")                                     \
+    X(DRIVE_ESTIMATOR_STEADY_STATE_EKF, "steady-state-ekf",                                        \
+      "Bendjedia 2012: constant gain, Euler predictor")
+
+#define DRIVE_OBSERVER_CHOICES(X)                                                                  \
+    X(DRIVE_OBSERVER_MODEL, "model", "of the motor's mechanics, from counts and currents")         \
+    X(DRIVE_OBSERVER_HIGH_GAIN, "high-gain",                                                       \
+      "Seshagiri and Khalil: from counts alone; for simulation")
+
+#define DRIVE_VOLTAGE_SOURCE_CHOICES(X)                                                            \
+    X(DRIVE_VOLTAGE_MEASURED, "measured", "the board's leg voltages, averaged over a period")      \
+    X(DRIVE_VOLTAGE_COMMANDED, "commanded",                                                        \
+      "what was commanded, less what the bridge is known to take of it: for boards without "       \
+      "leg-voltage dividers")
+
+#define DRIVE_INITIAL_POSITION_CHOICES(X)                                                          \
+    X(DRIVE_INITIAL_POSITION_TOLD, "told", "initial_angle_rad, into which the hold draws it")      \
+    X(DRIVE_INITIAL_POSITION_IMPULSES, "impulses",                                                 \
+      "found by voltage impulses within the electrical turn nearest to initial_angle_rad; by "     \
+      "alignment if the motor does not show it")                                                   \
+    X(DRIVE_INITIAL_POSITION_PUBLISHED_IMPULSES, "published-impulses",                             \
+      "the same in Bendjedia's order; for comparison")
+
+#define DRIVE_SYNCHRONISM_POLICY_CHOICES(X)                                                        \
+    X(DRIVE_SYNCHRONISM_FAULT, "fault", "opens the bridge")                                        \
+    X(DRIVE_SYNCHRONISM_WARN, "warn", "says so and goes on")                                       \
+    X(DRIVE_SYNCHRONISM_OFF, "off", "is not watched")
+
+#endif
