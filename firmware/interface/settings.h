@@ -68,7 +68,7 @@ void settings_put_presets(struct drive_settings *settings);
 bool setting_check(const struct drive_settings *settings, const struct setting *setting,
                    char error[DRIVE_ERROR_TEXT]);
 
-/* What it is, in a sentence; of a choice's value; on the host only. */
+/* What it is, in a sentence; and a choice of it. */
 const char *setting_sentence(const struct setting *setting);
 const char *setting_choice_sentence(const struct setting *setting, size_t choice);
 
