@@ -227,18 +227,6 @@ static bool value_of(const struct setting *setting, struct line_word word, doubl
                                               *value == (double)(int32_t)*value));
 }
 
-/* Feedback and law bring the defaults of others with them. */
-static void choose(struct drive_settings *settings, struct element element, double value)
-{
-    if (element.setting->offset == offsetof(struct drive_settings, feedback)) {
-        drive_settings_select_feedback(settings, (enum drive_feedback)(int)value);
-    } else if (element.setting->offset == offsetof(struct drive_settings, law)) {
-        drive_settings_select_law(settings, (enum position_law)(int)value);
-    } else {
-        setting_put(settings, element.setting, element.number, value);
-    }
-}
-
 static bool set(struct application *application, struct element element, struct line_word typed,
                 struct text *answer)
 {
@@ -258,7 +246,7 @@ static bool set(struct application *application, struct element element, struct 
         put_range(application, element.setting, answer);
         return false;
     }
-    choose(&changed, element, value);
+    setting_choose(&changed, element.setting, element.number, value);
     if (!setting_check(&changed, element.setting, refusal)) {
         text_put(answer, refusal);
         return false;

@@ -161,6 +161,18 @@ void setting_put(struct drive_settings *settings, const struct setting *setting,
     }
 }
 
+void setting_choose(struct drive_settings *settings, const struct setting *setting, size_t element,
+                    double value)
+{
+    if (setting->offset == offsetof(struct drive_settings, feedback)) {
+        drive_settings_select_feedback(settings, (enum drive_feedback)(int)value);
+    } else if (setting->offset == offsetof(struct drive_settings, law)) {
+        drive_settings_select_law(settings, (enum position_law)(int)value);
+    } else {
+        setting_put(settings, setting, element, value);
+    }
+}
+
 static double in_base(const struct drive_settings *settings, double value, unsigned base)
 {
     return base == SETTING_RATED ? value * settings->motor.rated_current_A : value;

@@ -4,7 +4,7 @@
 #ifndef STEADYSTEP_SETTINGS_H
 #define STEADYSTEP_SETTINGS_H
 
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -55,6 +55,10 @@ double setting_get(const struct drive_settings *settings, const struct setting *
                    size_t element);
 void setting_put(struct drive_settings *settings, const struct setting *setting, size_t element,
                  double value);
+
+/* The same as users mean it: feedback and law bring the defaults of others with them. */
+void setting_choose(struct drive_settings *settings, const struct setting *setting, size_t element,
+                    double value);
 
 /* For the motor of these settings. */
 double setting_least(const struct drive_settings *settings, const struct setting *setting);

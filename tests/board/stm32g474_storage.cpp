@@ -112,9 +112,10 @@ void encoder_is_asked_for(Expectations &expectations, const std::string &image)
 {
     Powered run(image, board_config(), ask_for_encoder);
     const std::string text = run.start();
-    expectations.expect(count(text, "settings: default") == 1 &&
-                            count(text, "not in force: feedback = encoder, but neither board") == 1,
-                        "without an encoder settings that ask for one are refused");
+    expectations.expect(
+        count(text, "settings: default") == 1 &&
+            count(text, "not in force: feedback = encoder, but the board has none") == 1,
+        "without an encoder settings that ask for one are refused");
 }
 
 /* Of an image built with STEADYSTEP_ENCODER_COUNTS=4000. */

@@ -532,10 +532,10 @@ MUTANTS = [
            "drive_settings_default(settings, &motor);", "(void)motor;"),
     Mutant(APPLICATION + "setting_lines.c", "setting_lines", "a_refused_set_changes_nothing",
            "if (!setting_check(&changed, element.setting, refusal)) {", "if (false) {"),
-    Mutant(APPLICATION + "setting_lines.c", "setting_lines",
+    Mutant("firmware/interface/settings.c", "setting_lines",
            "feedback_brings_its_law_and_an_encoder_its_counts",
            "drive_settings_select_feedback(settings, (enum drive_feedback)(int)value);",
-           "setting_put(settings, element.setting, element.number, value);"),
+           "setting_put(settings, setting, element, value);"),
     # ---- synchronism ----
     Mutant(ESTIMATOR + "synchronism_monitor.c", "synchronism_monitor",
            "the_voltage_allowed_grows_with_a_quarter_of_the_back_emf",

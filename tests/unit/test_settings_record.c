@@ -1,6 +1,5 @@
 #include "firmware/application/settings_record.h"
 
-#include <math.h>
 #include <string.h>
 #include <unity.h>
 
@@ -43,7 +42,7 @@ static struct drive_settings peculiar(void)
         }
     }
     for (int i = 1; i < DRIVE_LAW_GAINS; i += 2) {
-        s.law_gains[i] = NAN; /* not given */
+        s.law_gains[i] = __builtin_nan(""); /* not given */
     }
     return s;
 }
