@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Runs clang-tidy (.clang-tidy) over the portable firmware in one number format.
 
-usage: tidy.py ROOT BUILD NUMERIC    BUILD holds compile_commands.json; exit 1 with the findings,
-                                     77 (skipped) without clang-tidy
+usage: tidy.py ROOT BUILD NUMERIC [--without-analyzer]
+BUILD holds compile_commands.json; exit 1 with the findings, 77 (skipped) without clang-tidy.
+--without-analyzer leaves out the paths of the static analyzer: a fifteenth of the time.
 """
 import concurrent.futures
 import json
@@ -26,15 +27,16 @@ def jobs(root, build, numeric):
                                 "-Wconversion", f"-I{root}", definition]
 
 
-def check(tool, job):
+def check(tool, options, job):
     source, arguments = job
-    result = subprocess.run([tool, "--quiet", "--warnings-as-errors=*", source, "--", *arguments],
-                            check=False, capture_output=True, text=True)
+    result = subprocess.run([tool, "--quiet", "--warnings-as-errors=*", *options, source, "--",
+                             *arguments], check=False, capture_output=True, text=True)
     return result.stdout if result.returncode else ""
 
 
 def main(arguments):
-    if len(arguments) != 3:
+    options = ["--checks=-clang-analyzer-*"] if arguments[3:] == ["--without-analyzer"] else []
+    if len(arguments) != 3 + len(options):
         print(__doc__, file=sys.stderr)
         return 2
     root, build = (pathlib.Path(argument).resolve() for argument in arguments[:2])
@@ -47,7 +49,7 @@ def main(arguments):
         print(f"no firmware in {arguments[2]} in {build}/compile_commands.json")
         return 1
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        findings = list(filter(None, pool.map(lambda job: check(tool, job), work)))
+        findings = list(filter(None, pool.map(lambda job: check(tool, options, job), work)))
     print("\n".join(dict.fromkeys(findings)))
     print(f"{len(work)} firmware sources checked, {len(findings)} with findings")
     return 1 if findings else 0
