@@ -10,15 +10,6 @@ static const struct hal_outputs bridge_off = {.bridge_on = false};
 static bool start(struct application *application, const struct drive_settings *settings,
                   char error[DRIVE_ERROR_TEXT])
 {
-    application->chosen = *settings;
-    if (settings->encoder_counts_per_turn > 0) {
-        application->facts.encoder_counts_per_turn = (uint32_t)settings->encoder_counts_per_turn;
-    }
-    if (settings->feedback == DRIVE_FEEDBACK_ENCODER &&
-        application->facts.encoder_counts_per_turn == 0u) {
-        return design_refuse(error, "feedback = encoder, but the board has none that is known: set "
-                                    "encoder_counts_per_turn, or feedback = sensorless");
-    }
     if (!drive_init(&application->drive, &application->board, settings, error)) {
         return false;
     }
@@ -41,13 +32,22 @@ static void prepare(struct application *application, const struct hal *board)
 /* Kept apart: the settings of one way to start need no stack during the other. */
 __attribute__((noinline)) static bool start_with_stored(struct application *application)
 {
-    struct drive_settings stored;
+    struct stored_settings stored;
 
     if (!settings_record_read(&application->board, &stored)) {
         return false;
     }
     application->settings_from = APPLICATION_SETTINGS_STORED;
-    application->stored_refused = !start(application, &stored, application->stored_refusal);
+    if (stored.encoder_counts_per_turn != 0u) {
+        application->facts.encoder_counts_per_turn = stored.encoder_counts_per_turn;
+    }
+    application->stored_refused =
+        (stored.drive.feedback == DRIVE_FEEDBACK_ENCODER &&
+         application->facts.encoder_counts_per_turn == 0u &&
+         !design_refuse(application->stored_refusal,
+                        "feedback = encoder, but neither board nor stored settings have an "
+                        "encoder: store its counts per turn, or feedback = sensorless")) ||
+        !start(application, &stored.drive, application->stored_refusal);
     return !application->stored_refused;
 }
 

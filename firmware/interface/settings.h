@@ -4,7 +4,7 @@
 #ifndef STEADYSTEP_SETTINGS_H
 #define STEADYSTEP_SETTINGS_H
 
-#include "firmware/interface/drive_interface.h"
+#include "firmware/drive/drive_interface.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -56,10 +56,6 @@ double setting_get(const struct drive_settings *settings, const struct setting *
 void setting_put(struct drive_settings *settings, const struct setting *setting, size_t element,
                  double value);
 
-/* The same as users mean it: feedback and law bring the defaults of others with them. */
-void setting_choose(struct drive_settings *settings, const struct setting *setting, size_t element,
-                    double value);
-
 /* For the motor of these settings. */
 double setting_least(const struct drive_settings *settings, const struct setting *setting);
 double setting_most(const struct drive_settings *settings, const struct setting *setting);
@@ -72,7 +68,7 @@ void settings_put_presets(struct drive_settings *settings);
 bool setting_check(const struct drive_settings *settings, const struct setting *setting,
                    char error[DRIVE_ERROR_TEXT]);
 
-/* What it is, in a sentence; and a choice of it. */
+/* What it is, in a sentence; of a choice's value; on the host only. */
 const char *setting_sentence(const struct setting *setting);
 const char *setting_choice_sentence(const struct setting *setting, size_t choice);
 
