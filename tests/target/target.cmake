@@ -14,7 +14,9 @@ list(TRANSFORM recorders PREPEND tests/target/record_input_)
 host_build(host_recorder host_build PROGRAMS record_input BYPRODUCTS ${recorders})
 
 # As on the boards, what no replay counts is made small: the largest just fits the core's flash.
-set(made_small drive/board_limits drive/commands drive/default_settings drive/drive drive/drive_hash
+set(made_small application/command_line application/console application/report
+  application/settings_record interface/settings
+  drive/board_limits drive/commands drive/default_settings drive/drive drive/drive_hash
   drive/encoder_aligning drive/fault_reason drive/motion_request drive/parameter_store drive/settings
   estimator/encoder_alignment)
 list(TRANSFORM made_small REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/firmware/\\1.c")
