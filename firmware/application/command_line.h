@@ -6,7 +6,7 @@
 #define STEADYSTEP_COMMAND_LINE_H
 
 #include "firmware/design/text.h"
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 
 /* What a line asks for. */
 enum line_action {

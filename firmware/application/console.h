@@ -21,7 +21,7 @@
 #ifndef STEADYSTEP_CONSOLE_H
 #define STEADYSTEP_CONSOLE_H
 
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 #include "hal/hal.h"
 
 enum {

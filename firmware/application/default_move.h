@@ -2,7 +2,7 @@
 #ifndef STEADYSTEP_DEFAULT_MOVE_H
 #define STEADYSTEP_DEFAULT_MOVE_H
 
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 
 struct default_move_task {
     const struct drive_settings *settings;

@@ -3,7 +3,7 @@
 #define STEADYSTEP_REPORT_H
 
 #include "firmware/design/text.h"
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 
 struct application;
 struct line_form;

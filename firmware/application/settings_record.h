@@ -15,7 +15,7 @@
 #ifndef STEADYSTEP_SETTINGS_RECORD_H
 #define STEADYSTEP_SETTINGS_RECORD_H
 
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 #include "firmware/drive/record_log.h"
 
 #ifdef __cplusplus

@@ -5,7 +5,7 @@
 #ifndef STEADYSTEP_BOARD_LIMITS_H
 #define STEADYSTEP_BOARD_LIMITS_H
 
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 #include "hal/hal.h"
 
 /* Shares of the nominal supply beyond which the protection opens the bridge. */

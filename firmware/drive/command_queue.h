@@ -11,7 +11,7 @@
 #ifndef STEADYSTEP_COMMAND_QUEUE_H
 #define STEADYSTEP_COMMAND_QUEUE_H
 
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 #include "firmware/motion/profile.h"
 #include "firmware/motion/sine.h"
 

@@ -2,7 +2,7 @@
 #ifndef STEADYSTEP_DEFAULT_SETTINGS_H
 #define STEADYSTEP_DEFAULT_SETTINGS_H
 
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 
 /*
  * Puts in force what is not given (NaN) of law_bandwidth_rad_s, current_bandwidth_rad_s,

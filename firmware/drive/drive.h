@@ -11,7 +11,7 @@
 #include "firmware/control/position_law_dispatch.h"
 #include "firmware/control/standstill_hold.h"
 #include "firmware/drive/command_queue.h"
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 #include "firmware/drive/measurement.h"
 #include "firmware/drive/offset_calibration.h"
 #include "firmware/drive/planner.h"

@@ -1,4 +1,4 @@
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 
 #include "firmware/design/hold_check.h"
 #include "firmware/drive/default_settings.h"

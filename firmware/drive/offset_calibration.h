@@ -20,7 +20,7 @@
 #ifndef STEADYSTEP_OFFSET_CALIBRATION_H
 #define STEADYSTEP_OFFSET_CALIBRATION_H
 
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 #include "firmware/drive/measurement.h"
 
 /* Sample sets averaged in a stage: noise and quantisation fall to a twentieth. */

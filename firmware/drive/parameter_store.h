@@ -7,7 +7,7 @@
 #ifndef STEADYSTEP_PARAMETER_STORE_H
 #define STEADYSTEP_PARAMETER_STORE_H
 
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 #include "hal/hal.h"
 
 /* Independent of the number format of the drive that writes and the one that reads. */

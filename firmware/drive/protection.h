@@ -2,7 +2,7 @@
 #ifndef STEADYSTEP_PROTECTION_H
 #define STEADYSTEP_PROTECTION_H
 
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 #include "firmware/estimator/estimate.h"
 #include "hal/hal.h"
 

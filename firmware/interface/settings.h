@@ -4,7 +4,7 @@
 #ifndef STEADYSTEP_SETTINGS_H
 #define STEADYSTEP_SETTINGS_H
 
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -6,7 +6,7 @@
 #ifndef STEADYSTEP_FIRMWARE_IMAGE_H
 #define STEADYSTEP_FIRMWARE_IMAGE_H
 
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 #include "hal/hal.h"
 
 #ifdef __cplusplus

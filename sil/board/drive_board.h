@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <string>
 
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 #include "hal/hal.h"
 #include "sil/plant/plant.h"
 

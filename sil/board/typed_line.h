@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 
 namespace sil
 {

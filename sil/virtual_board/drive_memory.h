@@ -9,7 +9,7 @@
 #include <string>
 
 #include "firmware/drive/drive_hash.h"
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 #include "sil/virtual_board/image_map.h"
 #include "sil/virtual_board/machine.h"
 

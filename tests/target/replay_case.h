@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-#include "firmware/drive/drive_interface.h"
+#include "firmware/interface/drive_interface.h"
 #include "hal/sil/firmware_image.h"
 
 /* The image under test: firmware_image_<REPLAY_NUMERIC>. */
