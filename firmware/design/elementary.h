@@ -7,6 +7,8 @@
 
 #include <stdbool.h>
 
+#define DEGREES_PER_RAD 57.29577951308232
+
 /* e^x, relative error below 2 ulp for |x| <= 700; x beyond is taken as +-700. */
 double exponential(double x);
 

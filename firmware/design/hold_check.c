@@ -169,22 +169,21 @@ bool hold_control_check(const struct hold_task *task, char error[DESIGN_ERROR_TE
                            hold_control_damping(task, damping_As_rad));
 }
 
-double hold_drop_angle_rad(const struct hold_task *task)
+double hold_drop_angle_deg(const struct hold_task *task)
 {
     const struct motor_params *motor = task->motor;
     const double drop_V = motor->resistance_ohm * motor->rated_current_A;
 
-    return HOLD_DROP_ERROR * drop_V / motor->torque_constant_Nm_A * motor->rotor_teeth /
-           hold_frequency(motor, task->hold_current_A);
+    return DEGREES_PER_RAD * HOLD_DROP_ERROR * drop_V / motor->torque_constant_Nm_A *
+           motor->rotor_teeth / hold_frequency(motor, task->hold_current_A);
 }
 
 bool hold_estimator_check(const struct hold_task *task,
                           const struct invariant_ekf_hold_gains *gains,
                           char error[DESIGN_ERROR_TEXT])
 {
-    return design_require_within(error, "winding_drop_angle_error",
-                                 57.29577951308232 * hold_drop_angle_rad(task), 0.0, 20.0,
-                                 "degrees electrical",
+    return design_require_within(error, "winding_drop_angle_error", hold_drop_angle_deg(task), 0.0,
+                                 ANGLE_ERROR_MAX_DEG, "degrees electrical",
                                  "of 2.5 % of R x rated current: too little back-EMF for its "
                                  "inertia") &&
            require_damping(error, "damping of the hold's estimate",

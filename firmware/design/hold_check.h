@@ -84,14 +84,14 @@ bool hold_control_check(const struct hold_task *task, char error[DESIGN_ERROR_TE
 
 /*
  * What HOLD_DROP_ERROR of the drop at rated current feigns as speed, r R i / Km, takes the
- * estimated angle along by this much, electrical rad, within the 1/w_h in which the hold has its
- * rotor.
+ * estimated angle along by this much, electrical degrees, within the 1/w_h in which the hold has
+ * its rotor.
  */
-double hold_drop_angle_rad(const struct hold_task *task);
+double hold_drop_angle_deg(const struct hold_task *task);
 
 /*
  * The damping of the estimation error in a quiet hold and behind a load step; and that the angle
- * above is at most 20 degrees, half of what loses the rotor.
+ * above is at most ANGLE_ERROR_MAX_DEG.
  */
 bool hold_estimator_check(const struct hold_task *task,
                           const struct invariant_ekf_hold_gains *gains,

@@ -208,8 +208,8 @@ bool invariant_ekf_motion_design(const struct motor_params *motor, double period
     return gains_plausible(gains) || design_refuse(error, no_gain);
 }
 
-/* Half of what loses the rotor, and a little for parts that differ from the file's. */
-#define THROWN_MAX_DEG 20.0
+/* Load step, of the rated torque, that a motor has to bear in motion. */
+#define BORNE_LOAD_STEP 0.25
 
 /* Within so many periods a throw has reached its peak, or the motor is slow enough to be seen. */
 #define THROW_PERIODS 1000
@@ -244,22 +244,28 @@ double invariant_ekf_thrown_rad(const struct motor_params *motor, double period_
     return peak * motor->rotor_teeth;
 }
 
+double invariant_ekf_thrown_deg(const struct motor_params *motor, double period_s,
+                                const struct invariant_ekf_gains *gains)
+{
+    const double step_Nm = BORNE_LOAD_STEP * motor->torque_constant_Nm_A * motor->rated_current_A;
+
+    return DEGREES_PER_RAD * invariant_ekf_thrown_rad(motor, period_s, gains, step_Nm);
+}
+
 bool invariant_ekf_motion_check(const struct motor_params *motor, double period_s,
                                 const struct invariant_ekf_gains *gains,
                                 char error[DESIGN_ERROR_TEXT])
 {
-    const double step_Nm = BORNE_LOAD_STEP * motor->torque_constant_Nm_A * motor->rated_current_A;
-    const double thrown_deg =
-        invariant_ekf_thrown_rad(motor, period_s, gains, step_Nm) * 57.29577951308232;
+    const double thrown_deg = invariant_ekf_thrown_deg(motor, period_s, gains);
 
-    return thrown_deg <= THROWN_MAX_DEG ||
+    return thrown_deg <= ANGLE_ERROR_MAX_DEG ||
            design_refuse_limit(
                error,
                (struct refusal){
                    .quantity = "load_step_angle_error",
                    .value = thrown_deg,
                    .relation = "at most",
-                   .limit = THROWN_MAX_DEG,
+                   .limit = ANGLE_ERROR_MAX_DEG,
                    .unit = "degrees electrical",
                    .reason = "of 25 % of the rated torque: too little back-EMF for this supply"});
 }

@@ -60,8 +60,9 @@ struct invariant_ekf_hold_gains {
     double led_load_memory; /* of the mean change where the hold leads, share per period */
 };
 
-/* Load step, of the rated torque, that a motor has to bear in motion. */
-#define BORNE_LOAD_STEP 0.25
+/* Of an estimated angle, electrical: half of what loses the rotor, and a little for parts that
+   differ from the file's. */
+#define ANGLE_ERROR_MAX_DEG 20.0
 
 /* Gains in motion. False, with text in `error`, if the motor is outside what the model bears. */
 bool invariant_ekf_motion_design(const struct motor_params *motor, double period_s,
@@ -74,7 +75,11 @@ bool invariant_ekf_motion_design(const struct motor_params *motor, double period
 double invariant_ekf_thrown_rad(const struct motor_params *motor, double period_s,
                                 const struct invariant_ekf_gains *gains, double load_step_Nm);
 
-/* Whether that of 25 % of the rated torque stays within 20 degrees; the motor is blind else. */
+/* The same in degrees by the load step that a motor has to bear, 25 % of the rated torque. */
+double invariant_ekf_thrown_deg(const struct motor_params *motor, double period_s,
+                                const struct invariant_ekf_gains *gains);
+
+/* Whether that is within ANGLE_ERROR_MAX_DEG; the motor is blind else. */
 bool invariant_ekf_motion_check(const struct motor_params *motor, double period_s,
                                 const struct invariant_ekf_gains *gains,
                                 char error[DESIGN_ERROR_TEXT]);

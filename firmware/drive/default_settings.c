@@ -1,7 +1,6 @@
 #include "firmware/drive/default_settings.h"
 
 #include "firmware/design/feedback_linearisation_design.h"
-#include "firmware/design/hold_check.h"
 #include "firmware/design/loop_bandwidth.h"
 #include "firmware/design/mechanical_control_design.h"
 
@@ -61,16 +60,11 @@ static double law_bandwidth_wanted(const struct drive_settings *settings)
 
 static bool bears(const struct drive_settings *settings, double period_s, double hold_current_A)
 {
-    const struct hold_task task = {
-        .motor = &settings->motor,
-        .period_s = period_s,
-        .hold_current_A = hold_current_A,
-        .bandwidth_rad_s = settings->hold_bandwidth_rad_s,
-        .current_bandwidth_rad_s = settings->current_bandwidth_rad_s,
-    };
+    struct hold_task task = hold_task_of(settings, period_s);
     char limit[DESIGN_ERROR_TEXT];
     double damping_As_rad;
 
+    task.hold_current_A = hold_current_A;
     return !hold_damping_design(&task, &damping_As_rad, limit) || /* refused for itself, then */
            hold_control_check(&task, limit);
 }

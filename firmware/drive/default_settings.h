@@ -2,7 +2,20 @@
 #ifndef STEADYSTEP_DEFAULT_SETTINGS_H
 #define STEADYSTEP_DEFAULT_SETTINGS_H
 
+#include "firmware/design/hold_check.h"
 #include "firmware/interface/drive_interface.h"
+
+/* The hold that these settings ask for. */
+static inline struct hold_task hold_task_of(const struct drive_settings *settings, double period_s)
+{
+    return (struct hold_task){
+        .motor = &settings->motor,
+        .period_s = period_s,
+        .hold_current_A = settings->hold_current_A,
+        .bandwidth_rad_s = settings->hold_bandwidth_rad_s,
+        .current_bandwidth_rad_s = settings->current_bandwidth_rad_s,
+    };
+}
 
 /*
  * Puts in force what is not given (NaN) of law_bandwidth_rad_s, current_bandwidth_rad_s,

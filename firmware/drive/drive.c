@@ -2,7 +2,6 @@
 
 #include <stddef.h>
 
-#include "firmware/design/hold_check.h"
 #include "firmware/design/mechanical_control_design.h"
 #include "firmware/drive/board_limits.h"
 #include "firmware/drive/default_settings.h"
@@ -32,17 +31,6 @@ static bool design_high_gain_observer(struct drive *drive, const struct drive_se
 
     params->kind = ESTIMATOR_HIGH_GAIN_OBSERVER;
     return high_gain_observer_design(&params->high_gain, &drive->params.model, &task, error);
-}
-
-static struct hold_task hold_task_of(const struct drive_settings *settings, double period_s)
-{
-    return (struct hold_task){
-        .motor = &settings->motor,
-        .period_s = period_s,
-        .hold_current_A = settings->hold_current_A,
-        .bandwidth_rad_s = settings->hold_bandwidth_rad_s,
-        .current_bandwidth_rad_s = settings->current_bandwidth_rad_s,
-    };
 }
 
 static bool holds(const struct drive_settings *settings)

@@ -1,9 +1,6 @@
 #include "firmware/interface/drive_interface.h"
 
-#include "firmware/design/hold_check.h"
 #include "firmware/drive/default_settings.h"
-
-static const double degrees = 57.29577951308232;
 
 bool drive_hold_bearing_of(const struct drive_settings *given, double period_s,
                            struct drive_hold_bearing *bearing, char error[DRIVE_ERROR_TEXT])
@@ -15,13 +12,7 @@ bool drive_hold_bearing_of(const struct drive_settings *given, double period_s,
 
     default_settings_apply(&settings, period_s, 0u);
 
-    const struct hold_task task = {
-        .motor = motor,
-        .period_s = period_s,
-        .hold_current_A = settings.hold_current_A,
-        .bandwidth_rad_s = settings.hold_bandwidth_rad_s,
-        .current_bandwidth_rad_s = settings.current_bandwidth_rad_s,
-    };
+    const struct hold_task task = hold_task_of(&settings, period_s);
     const double torque_Nm = hold_torque_Nm(motor, settings.hold_current_A);
 
     if (!invariant_ekf_motion_design(motor, period_s, &moving, error) ||
@@ -36,11 +27,8 @@ bool drive_hold_bearing_of(const struct drive_settings *given, double period_s,
         .load_step_Nm = HOLD_LOAD_STEP_SHARE * torque_Nm,
         .noticed_step_Nm = holding.load_step_Nm,
         .creep_speed_rad_s = hold_creep_speed(motor, settings.hold_current_A),
-        .thrown_deg =
-            degrees * invariant_ekf_thrown_rad(motor, period_s, &moving,
-                                               BORNE_LOAD_STEP * motor->torque_constant_Nm_A *
-                                                   motor->rated_current_A),
-        .drop_deg = degrees * hold_drop_angle_rad(&task),
+        .thrown_deg = invariant_ekf_thrown_deg(motor, period_s, &moving),
+        .drop_deg = hold_drop_angle_deg(&task),
     };
     return true;
 }

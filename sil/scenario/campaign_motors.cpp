@@ -262,7 +262,6 @@ CampaignOutcome judge_motors(const Result &result, const Record &record)
     const double commutation_deg = errors.commutation_rad * degrees;
     const double allowed_rad = (detent ? 1.0 / 5 : 1.0 / 16) * full_step_rad + count_rad;
     const double zero_rad = std::max(3 / degrees, 0.75 * count_rad);
-    const double limit_rad = hold_yield_rad(scenario).value_or(0);
     const std::string &fault = result.all.metrics.fault;
     CampaignOutcome outcome;
     outcome.verdict = counts > 0 && !(errors.ready_rad <= zero_rad) ? "wrong ready"
@@ -272,8 +271,9 @@ CampaignOutcome judge_motors(const Result &result, const Record &record)
                       : !(commutation_deg <= 90)                    ? "lost silently"
                       : !(commutation_deg <= 45)           ? "commutation beyond 45 degrees"
                       : errors.position_rad <= allowed_rad ? "held"
-                      : errors.position_rad <= limit_rad   ? "within its computed limit"
-                                                           : "position at the end";
+                      : errors.position_rad <= hold_yield_rad(scenario).value_or(0)
+                          ? "within its computed limit"
+                          : "position at the end";
     outcome.figures = {commutation_deg, counts > 0 ? errors.ready_rad * degrees : Metrics::none,
                        fault == "none" ? errors.position_rad / full_step_rad : Metrics::none};
     return outcome;

@@ -485,7 +485,7 @@ MUTANTS = [
            "every_setting_is_refused_beyond_its_range_by_name_bound_and_unit",
            "if (!(value <= most))", "if (false)"),
     Mutant("firmware/interface/settings.c", "settings",
-           "shares_of_the_rated_current_are_of_the_motors",
+           "ranges_and_units_are_those_of_the_contract",
            "value * settings->motor.rated_current_A", "value"),
     Mutant("firmware/interface/settings_table.h", "settings",
            "every_element_has_an_index_of_its_own", "REAL(0x2147,", "REAL(0x2148,"),

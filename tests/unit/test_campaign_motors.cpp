@@ -3,6 +3,7 @@
 
 #include "sil/scenario/campaign.h"
 #include "sil/scenario/hold_yield.h"
+#include "tests/reference/motors.h"
 #include "unity.h"
 
 using namespace scenario;
@@ -57,15 +58,7 @@ class Course
     /* One that the drive bears: what its hold yields is then known. */
     Course &with_motor()
     {
-        motor_params motor = {};
-        motor.resistance_ohm = 0.37;
-        motor.inductance_H = 0.9e-3;
-        motor.torque_constant_Nm_A = 0.157;
-        motor.viscous_friction_Nms_rad = 5.7e-4;
-        motor.inertia_kgm2 = 1.562e-4;
-        motor.rated_current_A = 3.0;
-        motor.supply_V = 24.0;
-        motor.rotor_teeth = 50;
+        const motor_params motor = reference::bendjedia_2012();
         scenario_.motor.params = motor;
         drive_settings_default(&scenario_.drive, &motor);
         return *this;

@@ -51,6 +51,57 @@ static void test_the_defaults_pass_the_check(void)
     TEST_ASSERT_TRUE(drive_settings_check(&settings, error));
 }
 
+/* The contract once more, from outside: name, range for a motor rated 3 A, unit, and whether it may
+   be left to motor, board and period. */
+static const struct {
+    const char *name;
+    double min, max;
+    const char *unit;
+    bool follows;
+} ranges[] = {
+    {"resistance_ohm", 1e-3, 1e3, "ohm", false},
+    {"inductance_H", 1e-6, 1.0, "H", false},
+    {"torque_constant_Nm_A", 1e-4, 100.0, "N m/A", false},
+    {"viscous_friction_Nms_rad", 0.0, 10.0, "N m s/rad", false},
+    {"inertia_kgm2", 1e-9, 10.0, "kg m2", false},
+    {"supply_V", 5.0, 400.0, "V", false},
+    {"law_bandwidth_rad_s", 1.0, 1e4, "rad/s", true},
+    {"current_bandwidth_rad_s", 10.0, 1e6, "rad/s", true},
+    {"observer_bandwidth_rad_s", 1.0, 1e6, "rad/s", true},
+    {"hold_bandwidth_rad_s", 1.0, 1e4, "rad/s", true},
+    {"encoder_zero_rad", -1e4, 1e4, "rad", false},
+    {"initial_load_torque_Nm", -100.0, 100.0, "N m", false},
+    {"current_limit_A", 0.01 * 3.0, 2.0 * 3.0, "A", false},
+    {"overcurrent_trip_A", 0.1 * 3.0, 6.0 * 3.0, "A", true},
+    {"speed_limit_rad_s", 0.1, 1e4, "rad/s", false},
+    {"hold_current_A", 0.01 * 3.0, 3.0, "A", true},
+    {"hold_ramp_s", 1e-3, 1.0, "s", false},
+    {"hold_delay_s", 0.0, 100.0, "s", true},
+    {"hold_on_enable_s", 0.01, 10.0, "s", false},
+    {"initial_angle_rad", -1e4, 1e4, "rad", false},
+    {"initial_angle_error_rad", -10.0, 10.0, "rad", false},
+};
+
+static void test_ranges_and_units_are_those_of_the_contract(void)
+{
+    for (size_t range = 0; range < sizeof ranges / sizeof ranges[0]; range++) {
+        size_t i = 0;
+
+        while (setting_number(i) != NULL &&
+               strcmp(setting_number(i)->name, ranges[range].name) != 0) {
+            i++;
+        }
+        const struct setting *const row = setting_number(i);
+
+        TEST_ASSERT_NOT_NULL_MESSAGE(row, ranges[range].name);
+        TEST_ASSERT_TRUE_MESSAGE(setting_least(&settings, row) == ranges[range].min, row->name);
+        TEST_ASSERT_TRUE_MESSAGE(setting_most(&settings, row) == ranges[range].max, row->name);
+        TEST_ASSERT_EQUAL_STRING(ranges[range].unit, row->unit);
+        TEST_ASSERT_EQUAL_MESSAGE(ranges[range].follows, row->preset_base == SETTING_FOLLOWS,
+                                  row->name);
+    }
+}
+
 /* Every real number but the rated current, of which others are shares; NULL behind the last. */
 static const struct setting *next_real(size_t *number)
 {
@@ -167,15 +218,6 @@ static void test_every_setting_is_refused_beyond_its_range_by_name_bound_and_uni
     }
 }
 
-static void test_shares_of_the_rated_current_are_of_the_motors(void)
-{
-    const struct setting *const trip = setting_of_index(0x2121);
-
-    TEST_ASSERT_EQUAL_STRING("overcurrent_trip_A", trip->name);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.1 * 3.0, setting_least(&settings, trip));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 6.0 * 3.0, setting_most(&settings, trip));
-}
-
 static void test_a_setting_that_is_not_finite_is_refused(void)
 {
     const struct setting *row;
@@ -202,6 +244,7 @@ static void test_every_element_has_an_index_of_its_own(void)
         }
     }
     TEST_ASSERT_NULL(setting_of_index(0x2000));
+    TEST_ASSERT_NULL(setting_of_index(0x2009)); /* the stored counts of an encoder */
 }
 
 static void test_a_refusal_says_what_was_asked_and_what_is_allowed(void)
@@ -278,6 +321,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_defaults_are_those_of_the_interface);
     RUN_TEST(test_the_defaults_pass_the_check);
+    RUN_TEST(test_ranges_and_units_are_those_of_the_contract);
     RUN_TEST(test_every_setting_may_take_the_bounds_of_its_range);
     RUN_TEST(test_what_is_not_given_follows_from_motor_and_period);
     RUN_TEST(test_a_light_rotor_gets_a_wider_and_sooner_hold);
@@ -285,7 +329,6 @@ int main(void)
     RUN_TEST(test_defaults_fit_a_longer_period);
     RUN_TEST(test_an_observer_does_not_chase_counts);
     RUN_TEST(test_every_setting_is_refused_beyond_its_range_by_name_bound_and_unit);
-    RUN_TEST(test_shares_of_the_rated_current_are_of_the_motors);
     RUN_TEST(test_a_setting_that_is_not_finite_is_refused);
     RUN_TEST(test_every_element_has_an_index_of_its_own);
     RUN_TEST(test_a_refusal_says_what_was_asked_and_what_is_allowed);
