@@ -10,6 +10,15 @@ static const struct hal_outputs bridge_off = {.bridge_on = false};
 static bool start(struct application *application, const struct drive_settings *settings,
                   char error[DRIVE_ERROR_TEXT])
 {
+    application->chosen = *settings;
+    if (settings->encoder_counts_per_turn > 0) {
+        application->facts.encoder_counts_per_turn = (uint32_t)settings->encoder_counts_per_turn;
+    }
+    if (settings->feedback == DRIVE_FEEDBACK_ENCODER &&
+        application->facts.encoder_counts_per_turn == 0u) {
+        return design_refuse(error, "feedback = encoder, but the board has none that is known: set "
+                                    "encoder_counts_per_turn, or feedback = sensorless");
+    }
     if (!drive_init(&application->drive, &application->board, settings, error)) {
         return false;
     }
@@ -32,22 +41,13 @@ static void prepare(struct application *application, const struct hal *board)
 /* Kept apart: the settings of one way to start need no stack during the other. */
 __attribute__((noinline)) static bool start_with_stored(struct application *application)
 {
-    struct stored_settings stored;
+    struct drive_settings stored;
 
     if (!settings_record_read(&application->board, &stored)) {
         return false;
     }
     application->settings_from = APPLICATION_SETTINGS_STORED;
-    if (stored.encoder_counts_per_turn != 0u) {
-        application->facts.encoder_counts_per_turn = stored.encoder_counts_per_turn;
-    }
-    application->stored_refused =
-        (stored.drive.feedback == DRIVE_FEEDBACK_ENCODER &&
-         application->facts.encoder_counts_per_turn == 0u &&
-         !design_refuse(application->stored_refusal,
-                        "feedback = encoder, but neither board nor stored settings have an "
-                        "encoder: store its counts per turn, or feedback = sensorless")) ||
-        !start(application, &stored.drive, application->stored_refusal);
+    application->stored_refused = !start(application, &stored, application->stored_refusal);
     return !application->stored_refused;
 }
 
@@ -80,37 +80,6 @@ bool application_init_with(struct application *application, const struct hal *bo
     prepare(application, board);
     application->settings_from = APPLICATION_SETTINGS_GIVEN;
     return start(application, settings, error);
-}
-
-CALLED_FROM_OUTSIDE struct hal_outputs
-application_control_interrupt(struct application *application, const struct hal_samples *samples)
-{
-    application->outputs = drive_control_cycle(&application->drive, samples);
-    return application->outputs;
-}
-
-static void count(struct control_stage_cycles *stage, uint32_t cycles)
-{
-    stage->last = cycles;
-    stage->max = cycles > stage->max ? cycles : stage->max;
-    stage->sum += cycles;
-}
-
-CALLED_FROM_OUTSIDE void application_count_cycles(struct application *application,
-                                                  const struct control_cycles_of_period *cycles)
-{
-    struct control_cycles *counted = &application->cycles;
-    uint32_t total = 0;
-
-    if (counted->restart) {
-        *counted = (struct control_cycles){.periods = 0};
-    }
-    for (int stage = 0; stage < CONTROL_STAGES; stage++) {
-        count(&counted->stage[stage], cycles->stage[stage]);
-        total += cycles->stage[stage];
-    }
-    count(&counted->total, total);
-    counted->periods++;
 }
 
 /* A board whose control interrupt no longer comes is to be reset. */

@@ -34,8 +34,9 @@ struct application {
 
     /* background */
     struct hal board;       /* as given, with the facts below */
-    struct hal_facts facts; /* as given, with the encoder of the stored settings */
+    struct hal_facts facts; /* as given, with the encoder of the settings */
     enum application_settings settings_from;
+    struct drive_settings chosen;          /* as given, stored or set: what `store` keeps */
     bool stored_refused;                   /* by the drive: the defaults are in force */
     char stored_refusal[DRIVE_ERROR_TEXT]; /* why */
     uint32_t fed_in;                       /* period in which the watchdog was fed */

@@ -35,6 +35,13 @@ static const struct line_form forms[] = {
      "a speed for ever, from whatever motion"},
     {"retarget", LINE_COMMAND, DRIVE_COMMAND_RETARGET, BIT(POSITION) | BIT(SPEED) | LIMITS, 0, true,
      "to a position from whatever motion"},
+    {"get", LINE_GET, DRIVE_COMMANDS, 0, 0, false,
+     "a setting: value, unit, range, default; get hold* lists those that begin so"},
+    {"set", LINE_SET, DRIVE_COMMANDS, 0, 0, false,
+     "set hold_current_A 1.2, or default; acts once it is stored and the board starts again"},
+    {"store", LINE_STORE, DRIVE_COMMANDS, 0, 0, false, "keeps the settings across power cycles"},
+    {"defaults", LINE_DEFAULTS, DRIVE_COMMANDS, 0, 0, false,
+     "sets all settings but the motor's to their defaults"},
     {"save", LINE_COMMAND, DRIVE_COMMAND_SAVE, 0, 0, false,
      "keeps what has been learned across power cycles"},
 };
@@ -57,18 +64,12 @@ static const struct {
     [LINE_JERK_LIMIT] = {"jerk_rad_s3", offsetof(struct drive_command, jerk_rad_s3)},
 };
 
-/* A part of the typed line. */
-struct word {
-    const char *at;
-    size_t length;
-};
-
 const struct line_form *line_form_number(size_t number)
 {
     return number < sizeof forms / sizeof forms[0] ? &forms[number] : NULL;
 }
 
-static struct word next_word(const char **typed)
+static struct line_word next_word(const char **typed)
 {
     const char *at = *typed;
 
@@ -81,10 +82,10 @@ static struct word next_word(const char **typed)
         end++;
     }
     *typed = end;
-    return (struct word){at, (size_t)(end - at)};
+    return (struct line_word){at, (size_t)(end - at)};
 }
 
-static bool is(struct word word, const char *name)
+bool line_word_is(struct line_word word, const char *name)
 {
     size_t i = 0;
 
@@ -94,8 +95,7 @@ static bool is(struct word word, const char *name)
     return i == word.length && name[i] == '\0';
 }
 
-/* As typed, in quotes; what a terminal would not show as itself, as '?'. */
-static void quote(struct text *text, struct word word)
+void line_word_quote(struct text *text, struct line_word word)
 {
     enum { SHOWN = 40 };
 
@@ -108,10 +108,10 @@ static void quote(struct text *text, struct word word)
     text_put(text, word.length > SHOWN ? "...\"" : "\"");
 }
 
-static const struct line_form *form_of(struct word word)
+static const struct line_form *form_of(struct line_word word)
 {
     for (size_t i = 0; line_form_number(i) != NULL; i++) {
-        if (is(word, forms[i].name)) {
+        if (line_word_is(word, forms[i].name)) {
             return &forms[i];
         }
     }
@@ -140,23 +140,24 @@ void line_form_usage(struct text *text, const struct line_form *form)
     }
 }
 
-static bool refuse_word(struct text *answer, struct word word, const char *expected)
+static bool refuse_word(struct text *answer, struct line_word word, const char *expected)
 {
-    quote(answer, word);
+    line_word_quote(answer, word);
     text_put(answer, ": expected ");
     text_put(answer, expected);
     return false;
 }
 
-static bool refuse_parameter(const struct command_line *line, struct word word, struct text *answer)
+static bool refuse_parameter(const struct command_line *line, struct line_word word,
+                             struct text *answer)
 {
-    quote(answer, word);
+    line_word_quote(answer, word);
     text_put(answer, ": expected ");
     line_form_usage(answer, line->form);
     return false;
 }
 
-static bool read_number(struct command_line *line, int parameter, struct word value,
+static bool read_number(struct command_line *line, int parameter, struct line_word value,
                         struct text *answer)
 {
     double *target = (double *)(void *)((char *)&line->command + parameters[parameter].offset);
@@ -181,11 +182,11 @@ static bool read_number(struct command_line *line, int parameter, struct word va
 }
 
 /* name=value, or a value alone for the first required parameter. */
-static bool read_parameter(struct command_line *line, struct word word, struct text *answer)
+static bool read_parameter(struct command_line *line, struct line_word word, struct text *answer)
 {
     const uint32_t known = line->form->required | line->form->optional;
-    struct word name = {word.at, 0};
-    struct word value = word;
+    struct line_word name = {word.at, 0};
+    struct line_word value = word;
 
     while (name.length < word.length && word.at[name.length] != '=') {
         name.length++;
@@ -201,27 +202,42 @@ static bool read_parameter(struct command_line *line, struct word word, struct t
     }
     value.at += name.length + 1u;
     value.length -= name.length + 1u;
-    if (line->form->may_wait && is(name, "at")) {
+    if (line->form->may_wait && line_word_is(name, "at")) {
         line->at_given = true;
         return unsigned_from_text(value.at, value.length, &line->at_period) ||
                refuse_word(answer, value, "a control period, 0...4294967295");
     }
     for (int i = 0; i < LINE_PARAMETERS; i++) {
-        if ((known >> i & 1u) != 0u && is(name, parameters[i].name)) {
+        if ((known >> i & 1u) != 0u && line_word_is(name, parameters[i].name)) {
             return read_number(line, i, value, answer);
         }
     }
     return refuse_parameter(line, name, answer);
 }
 
-static bool read_word(struct command_line *line, struct word word, struct text *answer)
+/* false: there is one already. */
+static bool take_word(struct line_word *place, struct line_word word)
+{
+    if (place->length > 0u) {
+        return false;
+    }
+    *place = word;
+    return true;
+}
+
+static bool read_word(struct command_line *line, struct line_word word, struct text *answer)
 {
     switch (line->form->action) {
     case LINE_HELP:
         line->topic = form_of(word);
         return line->topic != NULL || refuse_word(answer, word, "a command; help lists them");
+    case LINE_GET:
+        return take_word(&line->name, word) || refuse_word(answer, word, "one name");
+    case LINE_SET:
+        return take_word(&line->name, word) || take_word(&line->value, word) ||
+               refuse_word(answer, word, "a name and a value");
     case LINE_CYCLES:
-        line->resets = is(word, "reset");
+        line->resets = line_word_is(word, "reset");
         return line->resets || refuse_word(answer, word, "cycles or cycles reset");
     default:
         return read_parameter(line, word, answer);
@@ -230,7 +246,7 @@ static bool read_word(struct command_line *line, struct word word, struct text *
 
 bool command_line_read(struct command_line *line, const char *typed, struct text *answer)
 {
-    struct word word = next_word(&typed);
+    struct line_word word = next_word(&typed);
 
     *line = (struct command_line){.form = form_of(word)};
     if (word.length == 0u) {
@@ -244,6 +260,16 @@ bool command_line_read(struct command_line *line, const char *typed, struct text
         if (!read_word(line, word, answer)) {
             return false;
         }
+    }
+    const struct line_word *last = line->form->action == LINE_GET   ? &line->name
+                                   : line->form->action == LINE_SET ? &line->value
+                                                                    : NULL;
+
+    if (last != NULL && last->length == 0u) {
+        text_put(answer, line->form->name);
+        text_put(answer, last == &line->name ? ": expected a name, or the begin of one and *"
+                                             : ": expected a name and a value");
+        return false;
     }
     const uint32_t missing = line->form->required & ~(uint32_t)line->given;
 

@@ -14,7 +14,11 @@ enum line_action {
     LINE_MOVE,    /* the same, of kind DRIVE_COMMAND_MOVE_SMOOTH; times not given are chosen */
     LINE_HELP,
     LINE_STATE,
-    LINE_CYCLES
+    LINE_CYCLES,
+    LINE_GET,   /* a setting, or those that begin alike */
+    LINE_SET,   /* a setting, to a value */
+    LINE_STORE, /* the settings that were set */
+    LINE_DEFAULTS
 };
 
 /* Numbers of a drive_command; bit n of a set of parameters is number n. */
@@ -49,8 +53,20 @@ const struct line_form *line_form_number(size_t number);
 /* "move position_rad= [duration_s= ramp_s= jerk_s= at=]" */
 void line_form_usage(struct text *text, const struct line_form *form);
 
+/* A part of the typed line. */
+struct line_word {
+    const char *at;
+    size_t length;
+};
+
+bool line_word_is(struct line_word word, const char *name);
+
+/* As typed, in quotes; what a terminal would not show as itself, as '?'. */
+void line_word_quote(struct text *text, struct line_word word);
+
 struct command_line {
     const struct line_form *form;
+    struct line_word name, value;  /* of get and set */
     const struct line_form *topic; /* of help; NULL: all */
     struct drive_command command;  /* at_period is the console's */
     uint16_t given;                /* parameters */

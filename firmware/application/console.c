@@ -4,6 +4,7 @@
 #include "firmware/application/command_line.h"
 #include "firmware/application/default_move.h"
 #include "firmware/application/report.h"
+#include "firmware/application/setting_lines.h"
 
 static uint32_t period_now(const struct application *application)
 {
@@ -243,6 +244,11 @@ static bool is_command(const struct command_line *line)
     return line->form->action == LINE_COMMAND || line->form->action == LINE_MOVE;
 }
 
+static bool is_of_settings(const struct command_line *line)
+{
+    return line->form->action >= LINE_GET && line->form->action <= LINE_DEFAULTS;
+}
+
 /* false: an empty line, which has no answer. */
 static bool obey_line(struct application *application, uint32_t line_period)
 {
@@ -264,7 +270,10 @@ static bool obey_line(struct application *application, uint32_t line_period)
         if (line.form == NULL) {
             return false;
         }
-        if (!is_command(&line) || obey_command(application, &line, line_period, &answer)) {
+        if (is_of_settings(&line)) {
+            answer = begin_answer(console);
+            (void)setting_line_obey(application, &line, &answer);
+        } else if (!is_command(&line) || obey_command(application, &line, line_period, &answer)) {
             answer = begin_answer(console);
             text_put(&answer, "ok ");
             report(application, &line, &answer);

@@ -12,7 +12,7 @@ union double_bits {
     uint64_t bits;
 };
 
-enum { SIZE_1, SIZE_4, SIZE_8, SIZE_SHIFT = 14, ENCODER_INDEX = 0x2009 };
+enum { SIZE_1, SIZE_4, SIZE_8, SIZE_SHIFT = 14 };
 
 static const uint8_t bytes_of[] = {[SIZE_1] = 1, [SIZE_4] = 4, [SIZE_8] = 8};
 
@@ -39,16 +39,15 @@ static uint8_t *put_setting(uint8_t *at, const struct drive_settings *settings,
                           : at;
 }
 
-static void encode(const struct stored_settings *settings, uint8_t *payload)
+static void encode(const struct drive_settings *settings, uint8_t *payload)
 {
     uint8_t *at = payload;
 
     for (size_t i = 0; setting_number(i) != NULL; i++) {
         for (size_t element = 0; element < setting_number(i)->count; element++) {
-            at = put_setting(at, &settings->drive, setting_number(i), element);
+            at = put_setting(at, settings, setting_number(i), element);
         }
     }
-    at = put_entry(at, ENCODER_INDEX, SIZE_4, settings->encoder_counts_per_turn);
     while (at != payload + SETTINGS_RECORD_PAYLOAD) {
         *at++ = 0;
     }
@@ -95,7 +94,7 @@ static bool take(struct drive_settings *settings, const struct setting *setting,
 }
 
 /* Entries of the motor, or all others; how many of them, or -1 for one that is unknown. */
-static int take_entries(struct stored_settings *settings, const uint8_t *payload, bool of_motor)
+static int take_entries(struct drive_settings *settings, const uint8_t *payload, bool of_motor)
 {
     struct entry entry;
     int count = 0;
@@ -103,10 +102,8 @@ static int take_entries(struct stored_settings *settings, const uint8_t *payload
     for (size_t at = 0; next_entry(payload, &at, &entry);) {
         const struct setting *setting = setting_of_index(entry.index);
 
-        if (entry.index == ENCODER_INDEX) {
-            settings->encoder_counts_per_turn = (uint32_t)entry.value;
-        } else if (setting != NULL && setting_is_of_motor(setting) == of_motor) {
-            if (!take(&settings->drive, setting, &entry)) {
+        if (setting != NULL && setting_is_of_motor(setting) == of_motor) {
+            if (!take(settings, setting, &entry)) {
                 return -1;
             }
             count++;
@@ -115,34 +112,32 @@ static int take_entries(struct stored_settings *settings, const uint8_t *payload
     return count;
 }
 
-static bool decode(struct stored_settings *settings, const uint8_t *payload)
+static bool decode(struct drive_settings *settings, const uint8_t *payload)
 {
-    struct motor_params motor;
-
-    settings->encoder_counts_per_turn = 0;
     if (take_entries(settings, payload, true) != SETTINGS_OF_MOTOR) {
         return false;
     }
-    motor = settings->drive.motor;
-    drive_settings_default(&settings->drive, &motor);
+    const struct motor_params motor = settings->motor;
+
+    drive_settings_default(settings, &motor);
     return take_entries(settings, payload, false) >= 0;
 }
 
-void settings_record_encode(const struct stored_settings *settings, uint32_t sequence,
+void settings_record_encode(const struct drive_settings *settings, uint32_t sequence,
                             uint8_t record[SETTINGS_RECORD_BYTES])
 {
     encode(settings, &record[RECORD_HEADER_BYTES]);
     record_seal(&log_of_settings, record, sequence);
 }
 
-bool settings_record_decode(struct stored_settings *settings,
+bool settings_record_decode(struct drive_settings *settings,
                             const uint8_t record[SETTINGS_RECORD_BYTES])
 {
     return record_is_valid(&log_of_settings, record) &&
            decode(settings, &record[RECORD_HEADER_BYTES]);
 }
 
-bool settings_record_read(const struct hal *board, struct stored_settings *settings)
+bool settings_record_read(const struct hal *board, struct drive_settings *settings)
 {
     uint8_t slot[RECORD_SLOT_BYTES(SETTINGS_RECORD_PAYLOAD)];
 
@@ -150,7 +145,7 @@ bool settings_record_read(const struct hal *board, struct stored_settings *setti
            decode(settings, &slot[RECORD_HEADER_BYTES]);
 }
 
-bool settings_record_write(const struct hal *board, const struct stored_settings *settings)
+bool settings_record_write(const struct hal *board, const struct drive_settings *settings)
 {
     uint8_t slot[RECORD_SLOT_BYTES(SETTINGS_RECORD_PAYLOAD)];
 

@@ -10,7 +10,7 @@
  *           2   value: a flag or a choice 1 byte, a whole number 4, a real number the 8 bytes of
  *               its IEEE 754 double, which is left out where it is NaN, not given
  *
- * A key of 0 ends them. Index 0x2009 is the encoder's counts per turn, a whole number.
+ * A key of 0 ends them.
  */
 #ifndef STEADYSTEP_SETTINGS_RECORD_H
 #define STEADYSTEP_SETTINGS_RECORD_H
@@ -29,27 +29,21 @@ enum {
     SETTINGS_RECORD_BYTES = RECORD_BYTES(SETTINGS_RECORD_PAYLOAD)
 };
 
-/* What is kept. */
-struct stored_settings {
-    struct drive_settings drive;
-    uint32_t encoder_counts_per_turn; /* of the encoder at the board; 0: none */
-};
-
 /* The whole record, header and checksum included; a store takes it at the begin of page 2. */
-void settings_record_encode(const struct stored_settings *settings, uint32_t sequence,
+void settings_record_encode(const struct drive_settings *settings, uint32_t sequence,
                             uint8_t record[SETTINGS_RECORD_BYTES]);
 
 /* false: no record of this format, harmed, without a whole motor, or with a choice that this
    firmware does not know. */
-bool settings_record_decode(struct stored_settings *settings,
+bool settings_record_decode(struct drive_settings *settings,
                             const uint8_t record[SETTINGS_RECORD_BYTES]);
 
 /* The newest record in the board's store. false: there is none; `settings` is not touched. */
-bool settings_record_read(const struct hal *board, struct stored_settings *settings);
+bool settings_record_read(const struct hal *board, struct drive_settings *settings);
 
 /* Background, up to 35 ms. false: the board has no store, or refused to write; the record before
    remains. */
-bool settings_record_write(const struct hal *board, const struct stored_settings *settings);
+bool settings_record_write(const struct hal *board, const struct drive_settings *settings);
 
 #ifdef __cplusplus
 }

@@ -54,10 +54,21 @@ void command_queue_put_urgent(struct command_queue *queue, struct urgent_command
     queue->attention = COMMAND_QUEUE_CALLS;
 }
 
-bool command_queue_take_urgent(struct command_queue *queue, struct urgent_command *urgent,
-                               uint32_t period)
+/* Whether the period has come; if not, `wait` lasts until then at most. */
+static inline bool come_or_wait(uint32_t at_period, uint32_t period, uint32_t *wait)
 {
-    if (!urgent->posted || !has_come(urgent->at_period, period)) {
+    const int32_t left = (int32_t)(at_period - period);
+
+    if (left > 0 && (uint32_t)left < *wait) {
+        *wait = (uint32_t)left;
+    }
+    return left <= 0;
+}
+
+bool command_queue_take_urgent(struct command_queue *queue, struct urgent_command *urgent,
+                               uint32_t period, uint32_t *wait)
+{
+    if (!urgent->posted || !come_or_wait(urgent->at_period, period, wait)) {
         return false;
     }
     urgent->posted = false;
@@ -87,11 +98,19 @@ bool command_queue_enable_waits(const struct command_queue *queue)
     return false;
 }
 
-struct queued_command *command_queue_due(struct command_queue *queue, uint32_t period)
+struct queued_command *command_queue_due(struct command_queue *queue, uint32_t coming,
+                                         uint32_t *wait)
 {
-    struct queued_command *oldest = &queue->entry[queue->read % COMMAND_QUEUE_LENGTH];
+    const uint32_t read = queue->read;
+    struct queued_command *oldest = &queue->entry[read % COMMAND_QUEUE_LENGTH];
 
-    return command_queue_holds_any(queue) && has_come(oldest->at_period, period) ? oldest : NULL;
+    if (queue->written == read || !come_or_wait(oldest->at_period, coming, wait)) {
+        return NULL;
+    }
+    if (oldest->at_period == coming) {
+        *wait = 1u;
+    }
+    return oldest;
 }
 
 void command_queue_drop(struct command_queue *queue)
@@ -118,11 +137,12 @@ void command_queue_withdraw_take_over(struct command_queue *queue)
     queue->take_over.posted = false;
 }
 
-const struct motion_plan *command_queue_take_over(struct command_queue *queue, uint32_t period)
+const struct motion_plan *command_queue_take_over(struct command_queue *queue, uint32_t period,
+                                                  uint32_t *wait)
 {
     struct take_over *own = &queue->take_over;
 
-    if (!own->posted || !has_come(own->at_period, period)) {
+    if (!own->posted || !come_or_wait(own->at_period, period, wait)) {
         return NULL;
     }
     own->posted = false;
@@ -134,38 +154,4 @@ void command_queue_accept_take_over(struct command_queue *queue)
     if (queue->take_over.of_command) {
         command_queue_drop(queue);
     }
-}
-
-/* The shorter wait. */
-static uint32_t sooner(uint32_t wait, bool posted, uint32_t other)
-{
-    return posted && other < wait ? other : wait;
-}
-
-/* Periods until the oldest command is to be looked at: a period ahead, and in its period. */
-static uint32_t wait_of_oldest(const struct command_queue *queue, uint32_t period)
-{
-    const uint32_t wait = queue->entry[queue->read % COMMAND_QUEUE_LENGTH].at_period - period;
-
-    return wait > 1u ? wait - 1u : wait;
-}
-
-void command_queue_rest(struct command_queue *queue, uint32_t period)
-{
-    uint32_t wait = UINT32_MAX;
-
-    queue->attention = COMMAND_QUEUE_QUIET;
-    if (command_queue_holds_any(queue)) {
-        if (command_queue_due(queue, period) != NULL) {
-            queue->attention = COMMAND_QUEUE_OVERDUE;
-        } else {
-            wait = wait_of_oldest(queue, period);
-        }
-    } else if (!queue->disable.posted && !queue->stop.posted && !queue->take_over.posted) {
-        return;
-    }
-    wait = sooner(wait, queue->disable.posted, queue->disable.at_period - period);
-    wait = sooner(wait, queue->stop.posted, queue->stop.at_period - period);
-    wait = sooner(wait, queue->take_over.posted, queue->take_over.at_period - period);
-    queue->wake = period + wait;
 }

@@ -95,18 +95,26 @@ bool command_queue_put(struct command_queue *queue, const struct queued_command 
 void command_queue_put_urgent(struct command_queue *queue, struct urgent_command *urgent,
                               uint32_t at_period);
 
+/*
+ * Interrupt, of the functions below with `wait`: it begins as COMMAND_QUEUE_NEVER and is lowered to
+ * the periods until what they look at is to be looked at again.
+ */
+#define COMMAND_QUEUE_NEVER UINT32_MAX
+
 /* Interrupt: true once, when the period of `urgent` has come; flushes the queue. */
 bool command_queue_take_urgent(struct command_queue *queue, struct urgent_command *urgent,
-                               uint32_t period);
+                               uint32_t period, uint32_t *wait);
 
 /* Background: an enable waits, for the disable's period or later if one waits, too. */
 bool command_queue_enable_waits(const struct command_queue *queue);
 
 /*
- * Interrupt: the oldest command if its period has come, else NULL. It leaves the queue when
- * dropped; its profile keeps until the command after the next one is posted behind a full queue.
+ * Interrupt: the oldest command if its period is `coming` or has come, else NULL: it is looked at a
+ * period ahead, and in its period. It leaves the queue when dropped; its profile keeps until the
+ * command after the next one is posted behind a full queue.
  */
-struct queued_command *command_queue_due(struct command_queue *queue, uint32_t period);
+struct queued_command *command_queue_due(struct command_queue *queue, uint32_t coming,
+                                         uint32_t *wait);
 
 void command_queue_drop(struct command_queue *queue);
 
@@ -120,7 +128,8 @@ void command_queue_withdraw_take_over(struct command_queue *queue);
  * Interrupt: the plan whose period has come and whose command has not been flushed, once; else
  * NULL.
  */
-const struct motion_plan *command_queue_take_over(struct command_queue *queue, uint32_t period);
+const struct motion_plan *command_queue_take_over(struct command_queue *queue, uint32_t period,
+                                                  uint32_t *wait);
 
 /* Interrupt: the reference has accepted it; its command leaves the queue. */
 void command_queue_accept_take_over(struct command_queue *queue);
@@ -141,8 +150,14 @@ static inline bool command_queue_calls(const struct command_queue *queue, uint32
            (attention != COMMAND_QUEUE_QUIET && (idle || attention == COMMAND_QUEUE_CALLS));
 }
 
-/* Interrupt, when nothing has acted: lowers `attention` until something is posted or due. The
-   background cannot run in between. */
-void command_queue_rest(struct command_queue *queue, uint32_t period);
+/* Interrupt, when nothing has acted: lowers `attention` until something is posted, `wait` periods
+   have passed, or, if the oldest command is overdue, the reference rests. The background cannot run
+   in between. */
+static inline void command_queue_rest(struct command_queue *queue, uint32_t period, uint32_t wait,
+                                      bool overdue)
+{
+    queue->attention = overdue ? COMMAND_QUEUE_OVERDUE : COMMAND_QUEUE_QUIET;
+    queue->wake = period + wait;
+}
 
 #endif

@@ -154,32 +154,35 @@ static void take_over(struct drive *drive, const struct motion_plan *plan)
 static void take_commands(struct drive *drive)
 {
     struct command_queue *queue = &drive->commands;
+    const uint32_t period = drive->period;
+    uint32_t wait = COMMAND_QUEUE_NEVER;
     const struct motion_plan *plan;
     struct queued_command *command;
 
     queue->attention = COMMAND_QUEUE_CALLS;
-    queue->looked = drive->period;
+    queue->looked = period;
     synchronism_wait(drive);
-    if (command_queue_take_urgent(queue, &queue->disable, drive->period)) {
+    if (command_queue_take_urgent(queue, &queue->disable, period, &wait)) {
         disable(drive);
         return;
     }
-    if (command_queue_take_urgent(queue, &queue->stop, drive->period)) {
+    if (command_queue_take_urgent(queue, &queue->stop, period, &wait)) {
         reference_stop(&drive->reference);
-        queue->stop_acted_in = drive->period;
+        queue->stop_acted_in = period;
         return;
     }
     /* A move is loaded a period ahead: it begins with the period it is addressed to. */
-    command = command_queue_due(queue, drive->period + 1u);
+    command = command_queue_due(queue, period + 1u, &wait);
     if (command != NULL && obey(drive, command)) {
         command_queue_drop(queue);
         return;
     }
-    plan = command_queue_take_over(queue, drive->period);
+    plan = command_queue_take_over(queue, period, &wait);
     if (plan != NULL) {
         take_over(drive, plan);
-    } else if (reference_goes_on(&drive->reference)) { /* no interrupt pays for both */
-        command_queue_rest(queue, drive->period);
+    } else {
+        command_queue_rest(queue, period, wait,
+                           command != NULL && command->at_period != period + 1u);
     }
 }
 

@@ -60,6 +60,19 @@ static const char *const synchronism_policy_texts[] = {
      .offset = offsetof(struct drive_settings, member)},
 #define REAL_ROW(at, member, unit, least, most, preset, sentence)                                  \
     REALS_ROW(at, member, 1, unit, least, most, preset, sentence)
+#define COUNT_ROW(at, member, in_unit, lowest, highest, initial, sentence)                         \
+    {.name = #member,                                                                              \
+     .index = (at),                                                                                \
+     .type = SETTING_COUNT,                                                                        \
+     .count = 1,                                                                                   \
+     .unit = (in_unit),                                                                            \
+     .least = VALUE_##lowest,                                                                      \
+     .most = VALUE_##highest,                                                                      \
+     .preset = VALUE_##initial,                                                                    \
+     .least_base = BASE_##lowest,                                                                  \
+     .most_base = BASE_##highest,                                                                  \
+     .size = SIZE_OF(member),                                                                      \
+     .offset = offsetof(struct drive_settings, member)},
 #define FLAG_ROW(at, member, initial, sentence)                                                    \
     {.name = #member,                                                                              \
      .index = (at),                                                                                \
@@ -83,7 +96,7 @@ static const char *const synchronism_policy_texts[] = {
      .offset = offsetof(struct drive_settings, member)},
 
 static const struct setting rows[] = {MOTOR_SETTINGS(MOTOR_REAL, MOTOR_COUNT) DRIVE_SETTINGS(
-    CHOICE_ROW, FLAG_ROW, REAL_ROW, REALS_ROW)};
+    CHOICE_ROW, FLAG_ROW, REAL_ROW, REALS_ROW, COUNT_ROW)};
 
 enum { ROWS = sizeof rows / sizeof rows[0] };
 
@@ -145,6 +158,18 @@ void setting_put(struct drive_settings *settings, const struct setting *setting,
         put_whole(at, setting->size, (int32_t)value);
     } else {
         memcpy(at, &value, sizeof value);
+    }
+}
+
+void setting_choose(struct drive_settings *settings, const struct setting *setting, size_t element,
+                    double value)
+{
+    if (setting->offset == offsetof(struct drive_settings, feedback)) {
+        drive_settings_select_feedback(settings, (enum drive_feedback)(int)value);
+    } else if (setting->offset == offsetof(struct drive_settings, law)) {
+        drive_settings_select_law(settings, (enum position_law)(int)value);
+    } else {
+        setting_put(settings, setting, element, value);
     }
 }
 

@@ -56,6 +56,10 @@ double setting_get(const struct drive_settings *settings, const struct setting *
 void setting_put(struct drive_settings *settings, const struct setting *setting, size_t element,
                  double value);
 
+/* The same as users mean it: feedback and law bring the defaults of others with them. */
+void setting_choose(struct drive_settings *settings, const struct setting *setting, size_t element,
+                    double value);
+
 /* For the motor of these settings. */
 double setting_least(const struct drive_settings *settings, const struct setting *setting);
 double setting_most(const struct drive_settings *settings, const struct setting *setting);
@@ -68,7 +72,7 @@ void settings_put_presets(struct drive_settings *settings);
 bool setting_check(const struct drive_settings *settings, const struct setting *setting,
                    char error[DRIVE_ERROR_TEXT]);
 
-/* What it is, in a sentence; of a choice's value; on the host only. */
+/* What it is, in a sentence; and a choice of it. */
 const char *setting_sentence(const struct setting *setting);
 const char *setting_choice_sentence(const struct setting *setting, size_t choice);
 

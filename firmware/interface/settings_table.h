@@ -8,7 +8,7 @@
  *   FLAG(index, member, preset, sentence)
  *   REAL(index, member, unit, least, most, preset, sentence)
  *   REALS(index, member, count, unit, least, most, preset, sentence)   an array
- *   COUNT(index, member, unit, least, most, sentence)          a whole number
+ *   COUNT(index, member, unit, least, most, preset, sentence)  a whole number
  *
  * - index: of the object dictionary (CiA 301), manufacturer specific; it never changes and is never
  *   used again. An array takes as many as it has elements.
@@ -36,7 +36,7 @@
     COUNT(0x2008, rotor_teeth, "", FIXED(1.0), FIXED(1000.0),                                      \
           "N, pole pairs: electrical turns per turn")
 
-#define DRIVE_SETTINGS(CHOICE, FLAG, REAL, REALS)                                                  \
+#define DRIVE_SETTINGS(CHOICE, FLAG, REAL, REALS, COUNT)                                           \
     CHOICE(0x2100, feedback, drive_feedback, DRIVE_FEEDBACKS, DRIVE_FEEDBACK_SENSORLESS,           \
            "where the rotor's position comes from")                                                \
     CHOICE(0x2101, law, position_law, POSITION_LAW_COUNT, POSITION_LAW_STATE_FEEDBACK,             \
@@ -81,6 +81,8 @@
          "what period and counts bear")                                                            \
     REAL(0x2131, high_gain_epsilon_s, "s", FIXED(1e-7), FIXED(1.0), FIXED(1e-3),                   \
          "of the high-gain observer")                                                              \
+    COUNT(0x2009, encoder_counts_per_turn, "", FIXED(0.0), FIXED(1073741824.0), FIXED(0.0),        \
+          "quadrature counts; 0: as the board has it")                                             \
     REAL(0x2132, encoder_zero_rad, "rad", FIXED(-1e4), FIXED(1e4), FIXED(0.0),                     \
          "rotor angle where count 0 begins")                                                       \
     REAL(0x2133, initial_load_torque_Nm, "N m", FIXED(-100.0), FIXED(100.0), FIXED(0.0),           \

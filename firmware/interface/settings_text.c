@@ -1,4 +1,4 @@
-/* What settings and their choices are, in sentences: for whoever explains them, on the host. */
+/* What settings and their choices are, in sentences. */
 #include "firmware/interface/settings.h"
 
 struct sentence {
@@ -10,11 +10,12 @@ struct sentence {
 #define CHOICE_SENTENCE(index, member, type, constants, preset, sentence)         {index, sentence},
 #define FLAG_SENTENCE(index, member, preset, sentence)                            {index, sentence},
 #define REAL_SENTENCE(index, member, unit, least, most, preset, sentence)         {index, sentence},
+#define COUNT_SENTENCE(index, member, unit, least, most, preset, sentence)        {index, sentence},
 #define REALS_SENTENCE(index, member, count, unit, least, most, preset, sentence) {index, sentence},
 
 static const struct sentence sentences[] = {
-    MOTOR_SETTINGS(MOTOR_SENTENCE, MOTOR_SENTENCE)
-        DRIVE_SETTINGS(CHOICE_SENTENCE, FLAG_SENTENCE, REAL_SENTENCE, REALS_SENTENCE)};
+    MOTOR_SETTINGS(MOTOR_SENTENCE, MOTOR_SENTENCE) DRIVE_SETTINGS(
+        CHOICE_SENTENCE, FLAG_SENTENCE, REAL_SENTENCE, REALS_SENTENCE, COUNT_SENTENCE)};
 
 #define OF_CHOICE(constant, text, sentence) sentence,
 

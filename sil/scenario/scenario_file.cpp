@@ -157,18 +157,6 @@ void read_reals(TableReader &reader, const setting &row, drive_settings &drive)
     }
 }
 
-/* Feedback and law bring the defaults of others, which stand behind them in the table. */
-void choose(const setting &row, drive_settings &drive, std::size_t choice)
-{
-    if (row.offset == offsetof(drive_settings, feedback)) {
-        drive_settings_select_feedback(&drive, static_cast<drive_feedback>(choice));
-    } else if (row.offset == offsetof(drive_settings, law)) {
-        drive_settings_select_law(&drive, static_cast<position_law>(choice));
-    } else {
-        setting_put(&drive, &row, 0, static_cast<double>(choice));
-    }
-}
-
 void read_setting(TableReader &reader, const setting &row, drive_settings &drive)
 {
     double value = setting_get(&drive, &row, 0);
@@ -182,7 +170,7 @@ void read_setting(TableReader &reader, const setting &row, drive_settings &drive
         const std::vector<std::string> texts(row.choices,
                                              row.choices + static_cast<std::size_t>(row.most) + 1);
         if (reader.choice(row.name, choice, texts)) {
-            choose(row, drive, choice);
+            setting_choose(&drive, &row, 0, static_cast<double>(choice));
         }
     } else if (row.type == SETTING_FLAG
                    ? reader.boolean(row.name, flag)

@@ -120,10 +120,8 @@ VirtualBoard::VirtualBoard(const plant::Config &plant, const std::string &image_
     std::vector<std::uint8_t> &flash = impl_->device.flash().memory();
     const std::size_t page = impl_->facts.parameter_page_bytes;
     const std::size_t record_at = impl_->store() + SETTINGS_RECORD_FIRST_PAGE * page;
-    stored_settings stored = {};
-    stored.drive = settings;
-    stored.encoder_counts_per_turn =
-        static_cast<std::uint32_t>(plant.sensors.encoder_counts_per_turn);
+    drive_settings stored = settings;
+    stored.encoder_counts_per_turn = plant.sensors.encoder_counts_per_turn;
     settings_record_encode(&stored, 1, &flash[record_at]);
     impl_->machine.power_on();
 }

@@ -37,7 +37,7 @@ void expect(bool held, const char *what)
 class Powered
 {
   public:
-    explicit Powered(const ElfImage &image, const stored_settings *stored = nullptr)
+    explicit Powered(const ElfImage &image, const drive_settings *stored = nullptr)
         : machine(stm32g071_board()),
           board(machine, stm32g071::plant_config(), stm32g071::host_baud),
           alarm_([this] { machine.stop(); }), bridge_opens_([this] { watch_bridge(); })
@@ -180,9 +180,9 @@ void flash_is_written(const ElfImage &image)
 
 void settings_with_encoder(const ElfImage &image)
 {
-    stored_settings stored = {};
-    drive_settings_default(&stored.drive, &stm32g071::motor);
-    stored.drive.motor.rated_current_A = 2.5;
+    drive_settings stored;
+    drive_settings_default(&stored, &stm32g071::motor);
+    stored.motor.rated_current_A = 2.5;
     {
         Powered run(image, &stored);
         run.run_for(1000 * ms);

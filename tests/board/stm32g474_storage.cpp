@@ -98,9 +98,9 @@ constexpr Ticks alignment_time = 6000 * ms; /* of an encoder, with the reference
 void ask_for_encoder(std::vector<std::uint8_t> &flash)
 {
     const motor_params motor = {0.37, 0.9e-3, 0.157, 0.000307, 15.62e-5, 3.0, 24.0, 50};
-    stored_settings stored = {};
-    drive_settings_default(&stored.drive, &motor);
-    stored.drive.feedback = DRIVE_FEEDBACK_ENCODER;
+    drive_settings stored;
+    drive_settings_default(&stored, &motor);
+    stored.feedback = DRIVE_FEEDBACK_ENCODER;
     settings_record_encode(&stored, 1,
                            &flash[store + SETTINGS_RECORD_FIRST_PAGE * Flash::page_bytes]);
 }
@@ -112,9 +112,10 @@ void encoder_is_asked_for(Expectations &expectations, const std::string &image)
 {
     Powered run(image, board_config(), ask_for_encoder);
     const std::string text = run.start();
-    expectations.expect(count(text, "settings: default") == 1 &&
-                            count(text, "not in force: feedback = encoder, but neither board") == 1,
-                        "without an encoder settings that ask for one are refused");
+    expectations.expect(
+        count(text, "settings: default") == 1 &&
+            count(text, "not in force: feedback = encoder, but the board has none") == 1,
+        "without an encoder settings that ask for one are refused");
 }
 
 /* Of an image built with STEADYSTEP_ENCODER_COUNTS=4000. */

@@ -13,17 +13,8 @@ set(recorders ${STEADYSTEP_NUMERICS})
 list(TRANSFORM recorders PREPEND tests/target/record_input_)
 host_build(host_recorder host_build PROGRAMS record_input BYPRODUCTS ${recorders})
 
-# As on the boards, what no replay counts is made small: the largest just fits the core's flash.
-set(made_small application/command_line application/console application/report
-  application/settings_record interface/settings
-  drive/board_limits drive/commands drive/default_settings drive/drive drive/drive_hash
-  drive/encoder_aligning drive/fault_reason drive/motion_request drive/parameter_store drive/settings
-  estimator/encoder_alignment)
-list(TRANSFORM made_small REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/firmware/\\1.c")
 add_custom_target(replays) # what tools/cycles counts
 foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
-  set_source_files_properties(${made_small}
-    TARGET_DIRECTORY firmware_${numeric} PROPERTIES COMPILE_OPTIONS -Os)
   add_library(firmware_image_${numeric} OBJECT ${PROJECT_SOURCE_DIR}/hal/sil/firmware_image.c)
   target_link_libraries(firmware_image_${numeric} PUBLIC firmware_${numeric})
   target_compile_definitions(firmware_image_${numeric} PRIVATE FIRMWARE_IMAGE_NUMERIC=${numeric})
@@ -40,11 +31,11 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
     list(FILTER unit_tests EXCLUDE REGEX "test_encoder_alignment\\.c$")
   endif()
   # An application, its test's board and the stack of the design take more than 16 KB.
-  set(large_tests application console)
+  set(large_tests application console setting_lines)
   # In fixed point each test runs on one core: the M4F has the long ones, the M0+ all others.
   # Arithmetic, which knows the core, runs on both. The replays run the code of some of the long ones:
   # those are left to tools/test --full.
-  set(long_tests "application|console|initial_position|invariant_ekf|motion|sliding_mode")
+  set(long_tests "application|console|setting_lines|initial_position|invariant_ekf|motion|sliding_mode")
   if(STEADYSTEP_CORE STREQUAL m0plus)
     list(FILTER unit_tests EXCLUDE REGEX "test_(${long_tests})\\.c$")
   elseif(numeric STREQUAL fixed)

@@ -30,7 +30,9 @@ static bool start(void)
 
 static void store(const struct drive_settings *settings, uint32_t encoder_counts_per_turn)
 {
-    const struct stored_settings stored = {*settings, encoder_counts_per_turn};
+    struct drive_settings stored = *settings;
+
+    stored.encoder_counts_per_turn = (int32_t)encoder_counts_per_turn;
 
     TEST_ASSERT_TRUE(settings_record_write(&board, &stored));
 }
@@ -55,8 +57,8 @@ static void test_stored_settings_for_an_encoder_that_is_not_there_say_what_to_do
     store(&settings, 0);
     TEST_ASSERT_TRUE_MESSAGE(start(), error);
     TEST_ASSERT_EQUAL_INT(APPLICATION_SETTINGS_DEFAULT, bench.application.settings_from);
-    TEST_ASSERT_EQUAL_STRING("feedback = encoder, but neither board nor stored settings have an "
-                             "encoder: store its counts per turn, or feedback = sensorless",
+    TEST_ASSERT_EQUAL_STRING("feedback = encoder, but the board has none that is known: set "
+                             "encoder_counts_per_turn, or feedback = sensorless",
                              bench.application.stored_refusal);
 }
 

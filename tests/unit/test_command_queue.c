@@ -25,9 +25,23 @@ static bool put(int64_t mark, uint32_t at_period)
     return command_queue_put(&queue, &command);
 }
 
+static struct queued_command *due(uint32_t period)
+{
+    uint32_t wait = COMMAND_QUEUE_NEVER;
+
+    return command_queue_due(&queue, period, &wait);
+}
+
+static bool takes(struct urgent_command *urgent, uint32_t period)
+{
+    uint32_t wait = COMMAND_QUEUE_NEVER;
+
+    return command_queue_take_urgent(&queue, urgent, period, &wait);
+}
+
 static bool is_due(int64_t mark, uint32_t period)
 {
-    const struct queued_command *command = command_queue_due(&queue, period);
+    const struct queued_command *command = due(period);
 
     return command != NULL && command->kind == DRIVE_COMMAND_MOVE_TRAPEZOID &&
            command->profile.jerk == mark;
@@ -35,15 +49,15 @@ static bool is_due(int64_t mark, uint32_t period)
 
 static bool nothing_is_due(uint32_t period)
 {
-    return command_queue_due(&queue, period) == NULL;
+    return due(period) == NULL;
 }
 
 static void test_an_empty_queue_has_nothing_due(void)
 {
     TEST_ASSERT_TRUE(nothing_is_due(0));
     TEST_ASSERT_TRUE(nothing_is_due(UINT32_MAX));
-    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.stop, 0));
-    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.disable, 0));
+    TEST_ASSERT_FALSE(takes(&queue.stop, 0));
+    TEST_ASSERT_FALSE(takes(&queue.disable, 0));
 }
 
 static void test_a_command_is_due_from_its_period_on_until_it_is_dropped(void)
@@ -117,7 +131,7 @@ static void test_the_queue_goes_on_when_its_counters_wrap(void)
     command_queue_put_urgent(&queue, &queue.stop, 0);
     command_queue_drop(&queue);
     TEST_ASSERT_TRUE(is_due(1, 0));
-    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.stop, 0));
+    TEST_ASSERT_TRUE(takes(&queue.stop, 0));
     TEST_ASSERT_TRUE(nothing_is_due(0));
 }
 
@@ -136,8 +150,8 @@ static void test_a_command_addressed_across_the_wrap_of_the_period_waits_for_it(
     TEST_ASSERT_TRUE(is_due(2, 5));
 
     command_queue_put_urgent(&queue, &queue.stop, 7);
-    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.stop, UINT32_MAX));
-    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.stop, 7));
+    TEST_ASSERT_FALSE(takes(&queue.stop, UINT32_MAX));
+    TEST_ASSERT_TRUE(takes(&queue.stop, 7));
 }
 
 static void test_a_stop_overtakes_the_commands_before_it_and_flushes_them(void)
@@ -146,16 +160,16 @@ static void test_a_stop_overtakes_the_commands_before_it_and_flushes_them(void)
     put(2, 1000);
     command_queue_put_urgent(&queue, &queue.stop, 50);
     put(3, 60);
-    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.stop, 49));
-    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.stop, 50));
+    TEST_ASSERT_FALSE(takes(&queue.stop, 49));
+    TEST_ASSERT_TRUE(takes(&queue.stop, 50));
     TEST_ASSERT_TRUE(is_due(3, 60));
 }
 
 static void test_an_urgent_command_is_taken_once(void)
 {
     command_queue_put_urgent(&queue, &queue.disable, 10);
-    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.disable, 12));
-    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.disable, 13));
+    TEST_ASSERT_TRUE(takes(&queue.disable, 12));
+    TEST_ASSERT_FALSE(takes(&queue.disable, 13));
 }
 
 /* One for later does not withdraw the one that waits. */
@@ -163,17 +177,17 @@ static void test_of_two_disables_the_earlier_period_counts(void)
 {
     command_queue_put_urgent(&queue, &queue.disable, 10);
     command_queue_put_urgent(&queue, &queue.disable, 20);
-    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.disable, 9));
-    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.disable, 10));
-    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.disable, 20));
+    TEST_ASSERT_FALSE(takes(&queue.disable, 9));
+    TEST_ASSERT_TRUE(takes(&queue.disable, 10));
+    TEST_ASSERT_FALSE(takes(&queue.disable, 20));
 
     command_queue_put_urgent(&queue, &queue.stop, UINT32_MAX);
     command_queue_put_urgent(&queue, &queue.stop, 3); /* behind the wrap */
-    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.stop, UINT32_MAX));
+    TEST_ASSERT_TRUE(takes(&queue.stop, UINT32_MAX));
     command_queue_put_urgent(&queue, &queue.stop, 40);
     command_queue_put_urgent(&queue, &queue.stop, 30);
-    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.stop, 30));
-    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.stop, 40));
+    TEST_ASSERT_TRUE(takes(&queue.stop, 30));
+    TEST_ASSERT_FALSE(takes(&queue.stop, 40));
 }
 
 /* What the second one was to flush acts after neither. */
@@ -184,7 +198,7 @@ static void test_of_two_disables_all_that_was_posted_before_is_flushed(void)
     put(2, 11);
     command_queue_put_urgent(&queue, &queue.disable, 20);
     put(3, 12);
-    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.disable, 10));
+    TEST_ASSERT_TRUE(takes(&queue.disable, 10));
     TEST_ASSERT_TRUE(is_due(3, 12));
 }
 
@@ -192,9 +206,9 @@ static void test_stop_and_disable_do_not_stand_in_each_others_way(void)
 {
     command_queue_put_urgent(&queue, &queue.stop, 10);
     command_queue_put_urgent(&queue, &queue.disable, 20);
-    TEST_ASSERT_FALSE(command_queue_take_urgent(&queue, &queue.disable, 10));
-    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.stop, 10));
-    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.disable, 20));
+    TEST_ASSERT_FALSE(takes(&queue.disable, 10));
+    TEST_ASSERT_TRUE(takes(&queue.stop, 10));
+    TEST_ASSERT_TRUE(takes(&queue.disable, 20));
 }
 
 /* What had been posted before the stop has acted meanwhile: nothing behind it is lost. */
@@ -206,7 +220,7 @@ static void test_a_flush_never_brings_commands_back(void)
     put(2, 0);
     command_queue_drop(&queue);
     put(3, 0);
-    TEST_ASSERT_TRUE(command_queue_take_urgent(&queue, &queue.stop, 50));
+    TEST_ASSERT_TRUE(takes(&queue.stop, 50));
     TEST_ASSERT_TRUE(is_due(3, 50));
 }
 
@@ -221,34 +235,45 @@ static int calls_from(uint32_t from, uint32_t to, bool idle)
     return -1;
 }
 
+/* As the interrupt does, where nothing that is due in the period can act. */
+static void look(uint32_t period)
+{
+    uint32_t wait = COMMAND_QUEUE_NEVER;
+
+    (void)command_queue_take_urgent(&queue, &queue.disable, period, &wait);
+    (void)command_queue_take_urgent(&queue, &queue.stop, period, &wait);
+    const struct queued_command *command = command_queue_due(&queue, period + 1u, &wait);
+
+    (void)command_queue_take_over(&queue, period, &wait);
+    command_queue_rest(&queue, period, wait, command != NULL && command->at_period != period + 1u);
+}
+
 /* What lets the interrupt pass the queue by. */
 static void test_the_queue_calls_when_something_was_posted_and_when_it_is_due(void)
 {
     const struct take_over take_over = {.at_period = 130};
 
-    command_queue_rest(&queue, 10);
+    look(10);
     TEST_ASSERT_EQUAL_INT(-1, calls_from(11, 200, true));
     put(1, 100);
     TEST_ASSERT_EQUAL_INT(11, calls_from(11, 200, false));
-    command_queue_rest(&queue, 11);
+    look(11);
     TEST_ASSERT_EQUAL_INT(99, calls_from(12, 200, false)); /* a move is loaded a period ahead */
-    command_queue_rest(&queue, 99);
+    look(99);
     TEST_ASSERT_EQUAL_INT(100, calls_from(100, 200, false)); /* all else acts in its period */
     command_queue_drop(&queue);
 
     command_queue_put_urgent(&queue, &queue.disable, 120);
     command_queue_put_urgent(&queue, &queue.stop, 110);
     command_queue_put_take_over(&queue, &take_over);
-    command_queue_rest(&queue, 100);
+    look(100);
     TEST_ASSERT_EQUAL_INT(110, calls_from(101, 200, true));
-    (void)command_queue_take_urgent(&queue, &queue.stop, 110);
-    command_queue_rest(&queue, 110);
+    look(110);
     TEST_ASSERT_EQUAL_INT(120, calls_from(111, 200, true));
-    (void)command_queue_take_urgent(&queue, &queue.disable, 120);
-    command_queue_rest(&queue, 120);
+    look(120);
     TEST_ASSERT_EQUAL_INT(130, calls_from(121, 200, true));
     command_queue_withdraw_take_over(&queue);
-    command_queue_rest(&queue, 130);
+    look(130);
     TEST_ASSERT_EQUAL_INT(-1, calls_from(131, 200, true));
 }
 
@@ -256,7 +281,7 @@ static void test_the_queue_calls_when_something_was_posted_and_when_it_is_due(vo
 static void test_the_queue_calls_at_rest_for_a_command_that_is_overdue(void)
 {
     put(1, 50);
-    command_queue_rest(&queue, 60);
+    look(60);
     TEST_ASSERT_EQUAL_INT(-1, calls_from(61, 200, false));
     TEST_ASSERT_EQUAL_INT(61, calls_from(61, 200, true));
 }

@@ -244,7 +244,6 @@ static void test_every_element_has_an_index_of_its_own(void)
         }
     }
     TEST_ASSERT_NULL(setting_of_index(0x2000));
-    TEST_ASSERT_NULL(setting_of_index(0x2009)); /* the stored counts of an encoder */
 }
 
 static void test_a_refusal_says_what_was_asked_and_what_is_allowed(void)

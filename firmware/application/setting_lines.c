@@ -1,0 +1,329 @@
+#include "firmware/application/setting_lines.h"
+
+#include "firmware/application/application.h"
+#include "firmware/application/number_text.h"
+#include "firmware/application/settings_record.h"
+#include "firmware/interface/settings.h"
+
+/* One number, or one of several. */
+struct element {
+    const struct setting *setting; /* NULL: there is none of this name */
+    size_t number;
+};
+
+static size_t same_letters(struct line_word word, const char *name)
+{
+    size_t i = 0;
+
+    while (i < word.length && name[i] != '\0' && name[i] == word.at[i]) {
+        i++;
+    }
+    return i;
+}
+
+/* name, or name.N of an array; N from 1 on. */
+static struct element element_of(struct line_word word)
+{
+    for (size_t i = 0; setting_number(i) != NULL; i++) {
+        const struct setting *setting = setting_number(i);
+        const size_t same = same_letters(word, setting->name);
+        uint32_t number = 1;
+
+        if (setting->name[same] != '\0') {
+            continue;
+        }
+        if (same == word.length
+                ? setting->count == 1u
+                : word.at[same] == '.' &&
+                      unsigned_from_text(&word.at[same + 1u], word.length - same - 1u, &number) &&
+                      number >= 1u && number <= setting->count) {
+            return (struct element){setting, number - 1u};
+        }
+    }
+    return (struct element){NULL, 0};
+}
+
+static bool refuse_name(struct line_word word, struct text *answer)
+{
+    line_word_quote(answer, word);
+    text_put(answer, ": expected a setting; get * lists them, an array's with .1, .2, ...");
+    return false;
+}
+
+static void put_value(struct text *text, const struct setting *setting, double value)
+{
+    if (setting->type == SETTING_FLAG) {
+        text_put(text, value != 0.0 ? "true" : "false");
+    } else if (setting->type == SETTING_CHOICE) {
+        text_put(text, setting->choices[(size_t)value]);
+    } else {
+        text_number(text, value, TEXT_DIGITS_MAX);
+    }
+}
+
+static void put_name(struct text *text, struct element element)
+{
+    text_put(text, element.setting->name);
+    if (element.setting->count > 1u) {
+        text_put(text, ".");
+        text_unsigned(text, (uint32_t)element.number + 1u);
+    }
+}
+
+static bool is_given(double value)
+{
+    return value == value;
+}
+
+/* " 1.5 A", or what follows instead. */
+static void put_setting(const struct application *application, struct element element,
+                        struct text *text)
+{
+    const struct setting *setting = element.setting;
+    const double chosen = setting_get(&application->chosen, setting, element.number);
+    const double in_force = setting_get(&application->drive.settings, setting, element.number);
+
+    put_name(text, element);
+    text_put(text, "=");
+    if (is_given(chosen)) {
+        put_value(text, setting, chosen);
+    } else if (is_given(in_force)) {
+        put_value(text, setting, in_force);
+        text_put(text, "(follows)");
+    } else {
+        text_put(text, "(not given)");
+    }
+}
+
+static void put_range(const struct application *application, const struct setting *setting,
+                      struct text *text)
+{
+    if (setting->type == SETTING_FLAG) {
+        text_put(text, "; true or false");
+    } else if (setting->type == SETTING_CHOICE) {
+        for (size_t i = 0; i <= (size_t)setting->most; i++) {
+            text_put(text, i == 0u ? "; " : ", ");
+            text_put(text, setting->choices[i]);
+        }
+    } else {
+        text_put(text, "; ");
+        text_number(text, setting_least(&application->chosen, setting), TEXT_DIGITS_MAX);
+        text_put(text, "...");
+        text_number(text, setting_most(&application->chosen, setting), TEXT_DIGITS_MAX);
+    }
+}
+
+static void put_default(const struct application *application, struct element element,
+                        struct text *text)
+{
+    struct drive_settings defaults;
+
+    if (setting_is_of_motor(element.setting)) {
+        return;
+    }
+    drive_settings_default(&defaults, &application->chosen.motor);
+
+    const double preset = setting_get(&defaults, element.setting, element.number);
+
+    text_put(text, "; default ");
+    if (is_given(preset)) {
+        put_value(text, element.setting, preset);
+    } else {
+        text_put(text, "follows");
+    }
+}
+
+static void put_sentence(const struct setting *setting, struct text *text)
+{
+#ifndef STEADYSTEP_WITHOUT_SENTENCES
+    text_put(text, "; ");
+    text_put(text, setting_sentence(setting));
+#else
+    (void)setting;
+    (void)text;
+#endif
+}
+
+/* Those that begin so, as many as there is room for. */
+static bool list(const struct application *application, struct line_word begin, struct text *answer)
+{
+    enum { ROOM_OF_ONE = 60 };
+    size_t found = 0;
+    size_t left_out = 0;
+
+    for (size_t i = 0; setting_number(i) != NULL; i++) {
+        const struct setting *setting = setting_number(i);
+
+        for (size_t n = 0; same_letters(begin, setting->name) == begin.length && n < setting->count;
+             n++) {
+            found++;
+            if (answer->length + ROOM_OF_ONE > answer->room) {
+                left_out++;
+                continue;
+            }
+            text_put(answer, " ");
+            put_setting(application, (struct element){setting, n}, answer);
+        }
+    }
+    if (left_out > 0u) {
+        text_put(answer, " and ");
+        text_unsigned(answer, (uint32_t)left_out);
+        text_put(answer, " more: give a longer begin");
+    }
+    return found > 0u;
+}
+
+static bool get(const struct application *application, struct line_word name, struct text *answer)
+{
+    const struct text empty = *answer;
+
+    if (name.at[name.length - 1u] == '*') {
+        const struct line_word begin = {name.at, name.length - 1u};
+
+        text_put(answer, "ok get");
+        if (list(application, begin, answer)) {
+            return true;
+        }
+        *answer = empty;
+        text_put(answer, "error: ");
+        return refuse_name(name, answer);
+    }
+    const struct element element = element_of(name);
+
+    if (element.setting == NULL) {
+        text_put(answer, "error: ");
+        return refuse_name(name, answer);
+    }
+    text_put(answer, "ok get ");
+    put_setting(application, element, answer);
+    if (element.setting->unit[0] != '\0') {
+        text_put(answer, " ");
+        text_put(answer, element.setting->unit);
+    }
+    put_range(application, element.setting, answer);
+    put_default(application, element, answer);
+    put_sentence(element.setting, answer);
+    return true;
+}
+
+/* false: not a value of this type. */
+static bool value_of(const struct setting *setting, struct line_word word, double *value)
+{
+    if (setting->type == SETTING_FLAG) {
+        *value = line_word_is(word, "true") ? 1.0 : 0.0;
+        return line_word_is(word, "true") || line_word_is(word, "false");
+    }
+    if (setting->type == SETTING_CHOICE) {
+        for (size_t i = 0; i <= (size_t)setting->most; i++) {
+            if (line_word_is(word, setting->choices[i])) {
+                *value = (double)i;
+                return true;
+            }
+        }
+        return false;
+    }
+    return number_from_text(word.at, word.length, value) == NUMBER_TEXT_READ &&
+           (setting->type == SETTING_REAL || (*value >= setting->least && *value <= setting->most &&
+                                              *value == (double)(int32_t)*value));
+}
+
+static bool set(struct application *application, struct element element, struct line_word typed,
+                struct text *answer)
+{
+    struct drive_settings changed = application->chosen;
+    char refusal[DRIVE_ERROR_TEXT];
+    double value;
+
+    if (line_word_is(typed, "default") && !setting_is_of_motor(element.setting)) {
+        struct drive_settings defaults;
+
+        drive_settings_default(&defaults, &changed.motor);
+        value = setting_get(&defaults, element.setting, element.number);
+    } else if (!value_of(element.setting, typed, &value)) {
+        line_word_quote(answer, typed);
+        text_put(answer, ": expected a value of ");
+        text_put(answer, element.setting->name);
+        put_range(application, element.setting, answer);
+        return false;
+    }
+    setting_choose(&changed, element.setting, element.number, value);
+    if (!setting_check(&changed, element.setting, refusal)) {
+        text_put(answer, refusal);
+        return false;
+    }
+    application->chosen = changed;
+    return true;
+}
+
+static bool store(const struct application *application, struct text *answer)
+{
+    char refusal[DRIVE_ERROR_TEXT];
+
+    if (!drive_settings_check(&application->chosen, refusal)) {
+        text_put(answer, refusal);
+        return false;
+    }
+    if (!settings_record_write(&application->board, &application->chosen)) {
+        text_put(answer, "the board has no parameter store, or refused to write");
+        return false;
+    }
+    return true;
+}
+
+static void put_set(const struct application *application, struct element element,
+                    struct text *answer)
+{
+    text_put(answer, "ok set ");
+    put_setting(application, element, answer);
+    text_put(answer, "; acts once it is stored and the board starts again");
+}
+
+static bool obey_set(struct application *application, const struct command_line *line,
+                     struct text *answer)
+{
+    const struct text empty = *answer;
+    const struct element element = element_of(line->name);
+
+    text_put(answer, "error: ");
+    if (element.setting == NULL) {
+        return refuse_name(line->name, answer);
+    }
+    if (!set(application, element, line->value, answer)) {
+        return false;
+    }
+    *answer = empty;
+    put_set(application, element, answer);
+    return true;
+}
+
+static bool obey_store(const struct application *application, struct text *answer)
+{
+    const struct text empty = *answer;
+
+    text_put(answer, "error: ");
+    if (!store(application, answer)) {
+        return false;
+    }
+    *answer = empty;
+    text_put(answer, "ok store");
+    return true;
+}
+
+bool setting_line_obey(struct application *application, const struct command_line *line,
+                       struct text *answer)
+{
+    const struct motor_params motor = application->chosen.motor;
+
+    switch (line->form->action) {
+    case LINE_GET:
+        return get(application, line->name, answer);
+    case LINE_SET:
+        return obey_set(application, line, answer);
+    case LINE_STORE:
+        return obey_store(application, answer);
+    default:
+        drive_settings_default(&application->chosen, &motor);
+        text_put(answer, "ok defaults");
+        return true;
+    }
+}

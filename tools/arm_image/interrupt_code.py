@@ -1,0 +1,80 @@
+"""What the control interrupt of a board's image can reach, by the static call graph.
+
+Constants are the addresses in flash that the reached functions load. What the interrupt calls only
+while the drive is being enabled may run from flash: ENABLING.
+"""
+
+import re
+
+from . import call_graph
+
+INTERRUPTS = ["control_interrupt", "deadline_guard_interrupt"]
+ENABLING = {"encoder_aligning_step", "offset_calibration_step"}  # and what they alone call
+CCM = range(0x10000000, 0x10008000)
+FLASH = range(0x08000000, 0x08080000)
+VENEER = re.compile(r"__(.+)_veneer")
+
+
+def loaded_constants(image, node):
+    """Values that a function loads whole: literals, and pairs of MOVW and MOVT."""
+    low = {}
+    for instruction in node.instructions:
+        literal = re.search(r"\[pc(?:, #(-?(?:0x)?[0-9a-f]+))?\]", instruction.operands)
+        if literal and instruction.base == "ldr":
+            at = (instruction.address + 4 & ~3) + int(literal.group(1) or "0", 0)
+            yield image.word(at)
+        half = re.fullmatch(r"(\w+), #(0x[0-9a-f]+|\d+)", instruction.operands)
+        if half and instruction.base in ("movw", "mov"):
+            low[half.group(1)] = int(half.group(2), 0)
+        elif half and instruction.base == "movt" and half.group(1) in low:
+            yield low[half.group(1)] | int(half.group(2), 0) << 16
+
+
+def object_at(image, address):
+    """Name of the symbol that begins nearest below an address."""
+    below = [(value & ~1, name) for name, value in image.symbols.items() if value & ~1 <= address]
+    return max(below)[1]
+
+
+def reached(image, roots):
+    nodes = {}
+    for root in roots:
+        nodes.update(call_graph.walk(image, root))
+    operating = {}
+    to_visit = [start for start, node in nodes.items() if node.name in roots]
+    while to_visit:
+        start = to_visit.pop()
+        if start not in operating and nodes[start].name not in ENABLING:
+            operating[start] = nodes[start]
+            to_visit.extend(nodes[start].calls)
+    return operating
+
+
+def outside(image, roots, inside=CCM):
+    """(functions, constants): names of what is reached and does not lie inside."""
+    nodes = reached(image, roots)
+    functions = {n.name for start, n in nodes.items() if start not in inside}
+    constants = set()
+    for node in nodes.values():
+        if VENEER.fullmatch(node.name):
+            continue
+        for value in loaded_constants(image, node):
+            if value is None or value in inside or value & ~1 in nodes:
+                continue
+            if value in FLASH or value in CCM:
+                constants.add(object_at(image, value))
+    return functions, constants
+
+
+def base_name(name):
+    """Without what the optimiser appends to the name of a function that it has split or copied."""
+    return re.sub(r"(\.(part|constprop|isra|cold|lto_priv|\d+))+$", "", name)
+
+
+def input_sections(image):
+    """Of a linker script: those that the interrupts need, wherever they lie in the image."""
+    functions, constants = outside(image, INTERRUPTS, inside=range(0))
+    for name in sorted({base_name(f) for f in functions if not VENEER.fullmatch(f)}):
+        yield f"*(.text.{name} .text.{name}.*)"
+    for name in sorted({base_name(c) for c in constants}):
+        yield f"*(.rodata.{name} .rodata.{name}.*)"
