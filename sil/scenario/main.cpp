@@ -27,6 +27,7 @@
 #include "sil/scenario/output.h"
 #include "sil/scenario/report.h"
 #include "sil/scenario/runner.h"
+#include "sil/scenario/settings_file.h"
 #include "sil/scenario/settings_page.h"
 #include "sil/scenario/sweep.h"
 #include "sil/scenario/text.h"
@@ -44,6 +45,7 @@ struct Options {
     CommandLine given;
     std::string sweep = "bendjedia-robustness";
     std::string campaign, scenario_file; /* --write-scenario */
+    std::string settings_to;             /* --write-settings */
     double campaign_duration_s = 0;      /* 0: the kind's own */
     std::string numeric, seed, seeds, out, folder;
     bool json = false;
@@ -191,8 +193,20 @@ void run_all(const Options &options, const Scenarios &scenarios, bool write, Del
         });
 }
 
+/* Behind all checks, before the first run. */
+void write_settings(const Options &options, const Scenario &scenario)
+{
+    if (!options.out.empty()) {
+        prepare_folder(options.out); /* refused before anything is written */
+    }
+    write_file(options.settings_to, settings_text(scenario.drive));
+}
+
 int run_command(Options options)
 {
+    if (!options.settings_to.empty() && options.scenarios.size() != 1) {
+        throw InputError("--write-settings " + options.settings_to + ": expected one scenario");
+    }
     if (options.numeric.empty() && !options.given.image.empty()) {
         options.numeric = virtual_board::VirtualBoard::numeric_of(options.given.image);
     }
@@ -200,6 +214,9 @@ int run_command(Options options)
     std::vector<const Scenario *> pointers;
     for (const Scenario &scenario : scenarios) {
         pointers.push_back(&scenario);
+    }
+    if (!options.settings_to.empty()) {
+        write_settings(options, scenarios.front());
     }
     std::size_t failed = 0;
     std::vector<Result> all;
@@ -459,6 +476,12 @@ int run_program(int argc, char **argv)
                     "image of the STM32G474 board, an .elf with its .map.json beside it: runs on "
                     "the virtual board, with typed lines")
         ->check(CLI::ExistingFile);
+    run->add_option("--settings", options.given.settings_file,
+                    "file of settings, on top of scenario, motor and --parameters, below --set")
+        ->check(not_empty());
+    run->add_option("--write-settings", options.settings_to,
+                    "file that receives the settings given to the drive")
+        ->check(not_empty());
     run->add_flag("--json", options.json, "one array of summaries on standard output, no report");
     add_run_options(*run, options);
     CLI::App *sweep = app.add_subcommand("sweep", "run a table of plant parameters");

@@ -180,6 +180,8 @@ Json summary(const Result &result)
     json["numeric"] = result.numeric;
     json["seed"] = result.seed;
     json["parameters"] = scenario.parameters.empty() ? Json() : Json(scenario.parameters);
+    json["settings"] =
+        scenario.given.settings_file.empty() ? Json() : Json(scenario.given.settings_file);
     json["law"] = drive_law_name(scenario.drive.law);
     json["set"] = scenario.given.settings;
     json["version"] = STEADYSTEP_VERSION;
@@ -278,6 +280,9 @@ std::string reproduce_command(const Scenario &scenario, const std::string &numer
                           " --seed " + std::to_string(seed);
     if (!scenario.given.parameters.empty()) {
         command += " --parameters " + quoted(scenario.given.parameters);
+    }
+    if (!scenario.given.settings_file.empty()) {
+        command += " --settings " + quoted(scenario.given.settings_file);
     }
     if (!scenario.given.image.empty()) {
         command += " --image " + quoted(scenario.given.image);

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <iterator>
 
-#include "firmware/interface/settings.h"
+#include "sil/scenario/settings_file.h"
 #include "sil/scenario/table_reader.h"
 #include "sil/scenario/text.h"
 
@@ -107,89 +108,50 @@ void lay_parameters_under(Value &document, const Catalogue &catalogue, std::stri
     merge_drive(document, above);
 }
 
-/* What the command line gives over all files, and the parameter set, wherever it is named. */
+/* Those of --set that are of the drive, or those that are not. */
+std::vector<std::string> sets_of(const CommandLine &given, bool of_drive)
+{
+    std::vector<std::string> sets;
+    std::copy_if(given.settings.begin(), given.settings.end(), std::back_inserter(sets),
+                 [&](const std::string &set) {
+                     return of_drive == (set.substr(0, set.find_first_of(".=")) == "drive");
+                 });
+    return sets;
+}
+
+/* What the command line gives over all files, and the parameter set, wherever it is named. A file
+   of settings and the --set of the drive above it come later. */
 void apply_command_line(Value &document, const Catalogue &catalogue, const CommandLine &given,
                         std::string &parameters)
 {
+    const std::vector<std::string> sets =
+        given.settings_file.empty() ? given.settings : sets_of(given, false);
     if (given.parameters.empty()) {
-        apply_settings(document, given.settings);
+        apply_settings(document, sets);
         lay_parameters_under(document, catalogue, parameters);
         return;
     }
     const std::string where = "--parameters " + given.parameters;
     merge_drive(document, read_parameters(catalogue.parameters(given.parameters, where, {})).drive);
-    apply_settings(document, given.settings);
+    apply_settings(document, sets);
     parameters = given.parameters;
 }
 
-/* Gains by the law's own names. */
-void read_law_gains(TableReader &above, const setting &row, drive_settings &drive)
+/* Over the settings of the scenario those of the file, and over these what --set gives. Complaints
+   find them in the scenario's document. */
+void lay_settings_over(Scenario &scenario, const CommandLine &given)
 {
-    const Value *table = above.table(row.name);
-    if (table == nullptr) {
-        return;
-    }
-    TableReader reader(*table, std::string("drive.") + row.name);
-    const char *name = nullptr;
-    for (std::size_t gain = 0; (name = firmware_image_float.law_gain(drive.law, gain)) != nullptr;
-         ++gain) {
-        reader.number(name, drive.law_gains[gain], row.least, row.most);
-    }
-    reader.finish();
-}
+    Value file = read_toml(given.settings_file);
+    file.location = {given.settings_file, 0};
+    read_settings(file, scenario.drive);
+    merge_drive(scenario.document, file);
 
-void read_reals(TableReader &reader, const setting &row, drive_settings &drive)
-{
-    const Value *list = reader.list(row.name, "an array of numbers");
-    if (list == nullptr) {
-        return;
+    Value above;
+    apply_settings(above, sets_of(given, true));
+    if (const Value *drive = above.find("drive")) {
+        read_drive(*drive, scenario.drive);
+        merge(scenario.document, above);
     }
-    if (list->items.size() != row.count) {
-        reader.fail(row.name, "expected " + std::to_string(row.count) +
-                                  " numbers: " + setting_sentence(&row));
-    }
-    for (std::size_t i = 0; i < list->items.size(); ++i) {
-        const Value &item = list->items[i];
-        if (item.kind != Value::Kind::number && item.kind != Value::Kind::integer) {
-            reader.fail(row.name, "expected numbers");
-        }
-        setting_put(&drive, &row, i, item.number);
-    }
-}
-
-void read_setting(TableReader &reader, const setting &row, drive_settings &drive)
-{
-    double value = setting_get(&drive, &row, 0);
-    bool flag = value != 0;
-    std::size_t choice = 0;
-    if (row.offset == offsetof(drive_settings, law_gains)) {
-        read_law_gains(reader, row, drive);
-    } else if (row.count > 1) {
-        read_reals(reader, row, drive);
-    } else if (row.type == SETTING_CHOICE) {
-        const std::vector<std::string> texts(row.choices,
-                                             row.choices + static_cast<std::size_t>(row.most) + 1);
-        if (reader.choice(row.name, choice, texts)) {
-            setting_choose(&drive, &row, 0, static_cast<double>(choice));
-        }
-    } else if (row.type == SETTING_FLAG
-                   ? reader.boolean(row.name, flag)
-                   : reader.number(row.name, value, setting_least(&drive, &row),
-                                   setting_most(&drive, &row))) {
-        setting_put(&drive, &row, 0, row.type == SETTING_FLAG ? flag : value);
-    }
-}
-
-void read_drive(const Value &table, drive_settings &drive)
-{
-    TableReader reader(table, "drive");
-    const setting *row = nullptr;
-    for (std::size_t i = 0; (row = setting_number(i)) != nullptr; ++i) {
-        if (!setting_is_of_motor(row)) {
-            read_setting(reader, *row, drive);
-        }
-    }
-    reader.finish();
 }
 
 /* Harmonics 4, 2 and 1 of the detent torque, as shares of the holding torque. A motor file's detent
@@ -442,6 +404,9 @@ Scenario interpreted(const Catalogue &catalogue, const Value &document, const Co
     scenario.drive.initial_angle_rad = scenario.plant.initial_theta_rad;
     if (const Value *drive = reader.table("drive")) {
         read_drive(*drive, scenario.drive);
+    }
+    if (!given.settings_file.empty()) {
+        lay_settings_over(scenario, given);
     }
     scenario.events = read_events(reader, scenario.duration_s);
     scenario.expectations = read_expectations(reader, scenario.duration_s);

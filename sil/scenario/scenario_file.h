@@ -24,6 +24,7 @@ struct CommandLine {
     std::vector<std::string> settings; /* of --set: "table.key=value" */
     bool typed = false;                /* of --typed: commands go to the drive as typed lines */
     std::string image{};               /* of --image: runs on the virtual board; "": on the SIL's */
+    std::string settings_file{};       /* of --settings; "" */
 };
 
 struct Scenario {
@@ -63,7 +64,8 @@ ParameterSet read_parameters(const std::filesystem::path &file);
 
 /*
  * Reads a scenario by name or path, its bases first. Where a key is given more than once, --set
- * counts, then --parameters, then the scenario's own, then the parameter set it names.
+ * counts, then --settings, then --parameters, then the scenario's own, then the parameter set it
+ * names.
  * Throws InputError.
  */
 Scenario read_scenario(const Catalogue &catalogue, const std::string &name,

@@ -160,6 +160,17 @@ bool TableReader::text(const std::string &key, std::string &target)
     return value != nullptr;
 }
 
+bool TableReader::is_nan(const std::string &key)
+{
+    const Value *value = table_.find(key);
+    const bool nan =
+        value != nullptr && value->kind == Value::Kind::number && value->number != value->number;
+    if (nan) {
+        known_.push_back(key);
+    }
+    return nan;
+}
+
 bool TableReader::choice(const std::string &key, std::size_t &target,
                          const std::vector<std::string> &names)
 {

@@ -41,6 +41,8 @@ class TableReader
     bool integer(const std::string &key, std::int64_t &target, std::int64_t min, std::int64_t max);
     bool boolean(const std::string &key, bool &target);
     bool text(const std::string &key, std::string &target);
+    /* Whether the number nan stands there, which number() refuses. */
+    bool is_nan(const std::string &key);
     /* A text out of `names`; gives its index. */
     bool choice(const std::string &key, std::size_t &target, const std::vector<std::string> &names);
     const Value *table(const std::string &key);

@@ -173,6 +173,28 @@ PARAMETERS = [
     ("no TOML", "description = \n", 1, ["not valid TOML"]),
 ]
 
+# name, text of the file of settings, line, what the complaint must contain
+SETTINGS = [
+    ("unknown key", 'law = "pid"\nhold_curent_A = 1.0\n', 2,
+     ["hold_curent_A", "did you mean hold_current_A?"]),
+    ("a key like no other", "colour = 1\n", 1,
+     ["colour: unknown key, expected one of resistance_ohm, ", "initial_angle_error_rad"]),
+    ("out of range", "hold_current_A = 3.5\n", 1,
+     ["hold_current_A: expected a number in 0.03...3, got 3.5"]),
+    ("out of range, of the motor", "supply_V = 1000.0\n", 1, ["supply_V", "5...400", "got 1000"]),
+    ("wrong type", 'hold_ramp_s = "slow"\n', 1, ["hold_ramp_s", "expected a number", '"slow"']),
+    ("not given where it must be", "hold_ramp_s = nan\n", 1, ["hold_ramp_s", "got nan"]),
+    ("a fraction of a tooth", "rotor_teeth = 50.5\n", 1, ["rotor_teeth", "expected an integer"]),
+    ("unknown choice", 'law = "pip"\n', 1, ["law", "did you mean pid?"]),
+    ("another law's gain", 'law = "pid"\nlaw_gains.k = 1.0\n', 2, ["law_gains.k", "unknown key"]),
+    ("what does not go together", "\nstandstill_pulses = true\n", 2,
+     ["standstill_pulses: needs initial_position impulses"]),
+    ("more than the board measures", "overcurrent_trip_A = 6.5\n", 1,
+     ["overcurrent_trip_A 6.5 A: must be at most 5.994 A, the board measures"]),
+    ("no TOML", 'law = "pid"\nsupply_V = 24 V\n', 2, ["not valid TOML"]),
+    ("a key twice", "supply_V = 24\nsupply_V = 24\n", 2, ["not valid TOML"]),
+]
+
 # name, arguments after a good scenario, what the complaint must contain
 ARGUMENTS = [
     ("a key set twice", ["--set", "plant.bus_V=24", "--set", "plant.bus_V=30"],
@@ -194,6 +216,14 @@ ARGUMENTS = [
      ["pip.toml", "no such file"]),
     ("a motor without parameter sets", ["--parameters", "bendjedia/pid"],
      ["did you mean bendjedia-2012/pid?"]),
+    ("a file of settings that is not there", ["--settings", "missing.toml"],
+     ["missing.toml", "no such file"]),
+    ("no file of settings", ["--settings", ""], ["--settings"]),
+    ("no file for settings", ["--write-settings", ""], ["--write-settings"]),
+    ("settings of a bad scenario", ["--set", "drive.lay=pid", "--write-settings", "settings.toml"],
+     ["drive.lay"]),
+    ("settings of two scenarios", ["bendjedia-fig12", "--write-settings", "settings.toml"],
+     ["--write-settings settings.toml", "one scenario"]),
     ("unknown format", ["--numeric", "half"], ["--numeric", "half"]),
     ("negative seed", ["--seed", "-1"], ["--seed"]),
     ("a seed beyond 64 bits", ["--seed", "99999999999999999999"],
@@ -256,6 +286,14 @@ def parameter_sets(folder):
                   expected, prefix)
 
 
+def settings_files(folder):
+    (folder / "scenario.toml").write_text(SMALL, encoding="utf-8")
+    for name, text, line, expected in SETTINGS:
+        (folder / "settings.toml").write_text(text, encoding="utf-8")
+        complains("settings: " + name, folder, ["scenario.toml", "--settings", "settings.toml"],
+                  expected, f"settings.toml:{line}: ")
+
+
 def arguments(folder):
     (folder / "scenario.toml").write_text(SMALL, encoding="utf-8")
     for name, more, expected in ARGUMENTS:
@@ -313,6 +351,10 @@ def nowhere_to_write(folder):
         CHECKS.that(full.returncode == 2 and "cannot be written" in full.stderr
                     and len(full.stderr.splitlines()) == 1,
                     f"{command} without room: {full.returncode} {full.stderr}")
+    result = run("run", "scenario.toml", "--write-settings", "sweep.toml/settings.toml", cwd=folder)
+    CHECKS.that(result.returncode == 2 and result.stdout == "" and result.stderr
+                == "steadystep-sil: sweep.toml/settings.toml: cannot be written\n",
+                f"--write-settings below a file: {result.returncode} {result.stderr}")
     result = run(*campaign, "--seed", "1", "--write-scenario", "", cwd=folder)
     CHECKS.that(result.returncode == 2, f"--write-scenario '': {result.returncode}")
     result = run("campaign", "long-run", "--duration", "nan", cwd=folder)
@@ -361,8 +403,8 @@ def broken_expectation(folder):
                 f"broken: named with its bound: {line}")
 
 
-for part in (scenario_files, motor_files, parameter_sets, arguments, output_folder, nowhere_to_write,
-             many_bases, good_input, broken_expectation):
+for part in (scenario_files, motor_files, parameter_sets, settings_files, arguments, output_folder,
+             nowhere_to_write, many_bases, good_input, broken_expectation):
     with scratch() as name:
         part(pathlib.Path(name))
 CHECKS.end()
