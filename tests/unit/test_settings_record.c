@@ -212,9 +212,44 @@ static void test_an_encoded_record_in_page_2_is_read(void)
     assert_same(&in, &out);
 }
 
+/* A record keeps a choice by its place: one that is added stands behind all others. */
+static void test_a_stored_choice_means_what_it_meant(void)
+{
+    static const char *const laws[] = {"state-feedback",
+                                       "pid",
+                                       "feedback-linearisation",
+                                       "microstepping",
+                                       "stmms",
+                                       "stmms-plus",
+                                       "foc",
+                                       "csmc",
+                                       "csmc-equivalent",
+                                       "csmc-servo",
+                                       "smc"};
+    static const char *const feedbacks[] = {"sensorless", "encoder"};
+    static const char *const positions[] = {"told", "impulses", "published-impulses"};
+    static const char *const policies[] = {"fault", "warn", "off"};
+
+    for (size_t i = 0; i < sizeof laws / sizeof laws[0]; i++) {
+        TEST_ASSERT_EQUAL_STRING(laws[i], drive_law_name((enum position_law)i));
+    }
+    for (size_t i = 0; i < sizeof feedbacks / sizeof feedbacks[0]; i++) {
+        TEST_ASSERT_EQUAL_STRING(feedbacks[i], drive_feedback_name((enum drive_feedback)i));
+    }
+    for (size_t i = 0; i < sizeof positions / sizeof positions[0]; i++) {
+        TEST_ASSERT_EQUAL_STRING(positions[i],
+                                 drive_initial_position_name((enum drive_initial_position)i));
+    }
+    for (size_t i = 0; i < sizeof policies / sizeof policies[0]; i++) {
+        TEST_ASSERT_EQUAL_STRING(policies[i],
+                                 drive_synchronism_policy_name((enum drive_synchronism_policy)i));
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_a_stored_choice_means_what_it_meant);
     RUN_TEST(test_every_field_comes_back);
     RUN_TEST(test_every_element_has_its_own_place);
     RUN_TEST(test_the_layout_stays);
