@@ -82,7 +82,8 @@ static void find_position_or_power_up(struct drive *drive)
     }
 }
 
-static void start_enabling(struct drive *drive)
+/* Apart: rare. */
+__attribute__((noinline)) static void start_enabling(struct drive *drive)
 {
     measurement_reset(&drive->measurement);
     offset_calibration_reset(&drive->calibration);
