@@ -26,6 +26,9 @@ CALLED_FROM_OUTSIDE void drive_settings_select_law(struct drive_settings *settin
 {
     const double not_given = __builtin_nan("");
 
+    for (int i = 0; law != settings->law && i < DRIVE_LAW_GAINS; i++) {
+        settings->law_gains[i] = not_given; /* the other law's, by other names */
+    }
     settings->law = law;
     settings->law_bandwidth_rad_s = not_given;
     settings->current_bandwidth_rad_s = not_given;

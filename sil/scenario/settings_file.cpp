@@ -15,8 +15,6 @@ namespace scenario
 namespace
 {
 
-constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
-
 bool is_law_gains(const setting &row)
 {
     return row.offset == offsetof(drive_settings, law_gains);
@@ -33,7 +31,7 @@ bool read_real(TableReader &reader, const std::string &key, const setting &row,
                const drive_settings &drive, double &value)
 {
     if (row.preset_base == SETTING_FOLLOWS && reader.is_nan(key)) {
-        value = not_given;
+        value = std::numeric_limits<double>::quiet_NaN();
         return true;
     }
     return reader.number(key, value, setting_least(&drive, &row), setting_most(&drive, &row));
@@ -81,18 +79,11 @@ void read_reals(TableReader &reader, const setting &row, drive_settings &drive)
 
 void read_choice(TableReader &reader, const setting &row, drive_settings &drive)
 {
-    const position_law law = drive.law;
     const std::vector<std::string> texts(row.choices,
                                          row.choices + static_cast<std::size_t>(row.most) + 1);
     std::size_t choice = 0;
-    if (!reader.choice(row.name, choice, texts)) {
-        return;
-    }
-    setting_choose(&drive, &row, 0, static_cast<double>(choice));
-    if (drive.law != law) {
-        for (double &gain : drive.law_gains) { /* another law's, by other names */
-            gain = not_given;
-        }
+    if (reader.choice(row.name, choice, texts)) {
+        setting_choose(&drive, &row, 0, static_cast<double>(choice));
     }
 }
 

@@ -116,6 +116,16 @@ static void test_feedback_brings_its_law_and_an_encoder_its_counts(void)
     TEST_ASSERT_EQUAL_UINT32(4000, bench.application.facts.encoder_counts_per_turn);
 }
 
+/* By their places they would be another law's. */
+static void test_another_law_drops_the_gains_of_the_one_before(void)
+{
+    (void)bench_ask("set law_gains.1 5");
+    (void)bench_ask("set law state-feedback");
+    TEST_ASSERT_NOT_NULL(strstr(bench_ask("get law_gains.1"), "law_gains.1=5; "));
+    (void)bench_ask("set law pid");
+    TEST_ASSERT_NOT_NULL(strstr(bench_ask("get law_gains.1"), "law_gains.1=(not given); "));
+}
+
 static void test_a_refused_set_changes_nothing(void)
 {
     static const char *const lines[][2] = {
@@ -169,6 +179,7 @@ int main(void)
     RUN_TEST(test_what_is_not_stored_is_gone_with_the_power);
     RUN_TEST(test_a_motor_is_set_like_anything_else);
     RUN_TEST(test_feedback_brings_its_law_and_an_encoder_its_counts);
+    RUN_TEST(test_another_law_drops_the_gains_of_the_one_before);
     RUN_TEST(test_a_refused_set_changes_nothing);
     RUN_TEST(test_settings_that_do_not_go_together_are_not_stored);
     return UNITY_END();
