@@ -10,6 +10,8 @@ import shutil
 import sys
 import tempfile
 
+import check
+
 NUMERIC = ["firmware/numeric/", "firmware/linkage.h"]
 MOTOR = ["firmware/motor/", "firmware/interface/settings_table.h", *NUMERIC]
 DESIGN = ["firmware/design/", *MOTOR]  # blocks are scaled from its gains at start-up
@@ -182,18 +184,5 @@ def self_test(root):
     return missed == 0
 
 
-def main(arguments):
-    if len(arguments) == 2 and arguments[0] == "--self-test":
-        return 0 if self_test(pathlib.Path(arguments[1])) else 1
-    if len(arguments) != 1:
-        print(__doc__, file=sys.stderr)
-        return 2
-    found = list(violations(pathlib.Path(arguments[0])))
-    for text in found:
-        print(text)
-    print(f"{len(found)} violations of the arrows")
-    return 1 if found else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(check.of_root(__doc__, violations, self_test, sys.argv[1:], "violations of the arrows"))

@@ -10,6 +10,8 @@ import shutil
 import sys
 import tempfile
 
+import check
+
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
 WORKFLOW = ".github/workflows/ci.yml"
@@ -91,18 +93,5 @@ def self_test(root):
     return missed == 0
 
 
-def main(arguments):
-    if len(arguments) == 2 and arguments[0] == "--self-test":
-        return 0 if self_test(pathlib.Path(arguments[1])) else 1
-    if len(arguments) != 1:
-        print(__doc__, file=sys.stderr)
-        return 2
-    found = list(violations(pathlib.Path(arguments[0])))
-    for text in found:
-        print(text)
-    print(f"{len(found)} violations")
-    return 1 if found else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(check.of_root(__doc__, violations, self_test, sys.argv[1:]))

@@ -11,6 +11,8 @@ import subprocess
 import sys
 import tempfile
 
+import check
+
 # What a freestanding compiler may call of its own accord; the rest must be ours.
 FREESTANDING = {"memcpy", "memmove", "memset", "memcmp"}
 COMPILER_RUNTIME = ("__aeabi_", "__gnu_", "__stack_chk_fail", "_GLOBAL_OFFSET_TABLE_")
@@ -96,10 +98,7 @@ def main(arguments):
     else:
         print(__doc__, file=sys.stderr)
         return 2
-    for text in found:
-        print(text)
-    print(f"{len(found)} violations")
-    return 1 if found else 0
+    return check.report(found)
 
 
 if __name__ == "__main__":

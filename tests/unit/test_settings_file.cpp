@@ -8,6 +8,7 @@
 
 #include "firmware/interface/settings.h"
 #include "sil/scenario/settings_file.h"
+#include "tests/reference/motors.h"
 #include "unity.h"
 
 using namespace scenario;
@@ -17,18 +18,9 @@ namespace
 
 constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 
-/* The motor of Bendjedia 2012. */
 drive_settings defaults()
 {
-    motor_params motor{};
-    motor.resistance_ohm = 0.37;
-    motor.inductance_H = 0.9e-3;
-    motor.torque_constant_Nm_A = 0.157;
-    motor.viscous_friction_Nms_rad = 3.07e-4;
-    motor.inertia_kgm2 = 15.62e-5;
-    motor.rated_current_A = 3;
-    motor.supply_V = 24;
-    motor.rotor_teeth = 50;
+    const motor_params motor = reference::bendjedia_2012();
     drive_settings drive{};
     drive_settings_default(&drive, &motor);
     return drive;
