@@ -28,14 +28,6 @@ double motion_distance(const struct motion_state *from, struct position to)
     return ((double)high - (double)(uint32_t)from->fraction / two_to_32) / two_to_32;
 }
 
-struct position motion_position(const struct motion_state *state)
-{
-    const uint64_t rounded = state->fraction + ((uint64_t)1 << 31);
-
-    return (struct position){.turns = state->turns + (rounded < state->fraction ? 1 : 0),
-                             .fraction = (angle_t)(rounded >> 32)};
-}
-
 static int32_t nearest(double x)
 {
     return (int32_t)(x < 0.0 ? x - 0.5 : x + 0.5);

@@ -74,8 +74,14 @@ double motion_to_turns(int64_t x);
 /* From a state to a position, in electrical turns. */
 double motion_distance(const struct motion_state *from, struct position to);
 
-/* Nearest position. */
-struct position motion_position(const struct motion_state *state);
+/* Nearest position. The interrupt asks, too. */
+static inline struct position motion_position(const struct motion_state *state)
+{
+    const uint64_t rounded = state->fraction + ((uint64_t)1 << 31);
+
+    return (struct position){.turns = state->turns + (rounded < state->fraction ? 1 : 0),
+                             .fraction = (angle_t)(rounded >> 32)};
+}
 
 /* `periods` on, with the acceleration of the state and a jerk of 6 jerk_sixth. */
 void motion_run(struct motion_state *state, int64_t jerk_sixth, uint32_t periods);
