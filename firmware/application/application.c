@@ -3,6 +3,7 @@
 #include "firmware/application/settings_record.h"
 #include "firmware/design/refusal.h"
 #include "firmware/drive/drive_hash.h"
+#include "firmware/drive/interrupt_view.h"
 #include "firmware/linkage.h"
 
 static const struct hal_outputs bridge_off = {.bridge_on = false};
@@ -85,7 +86,7 @@ bool application_init_with(struct application *application, const struct hal *bo
 /* A board whose control interrupt no longer comes is to be reset. */
 static void feed_watchdog(struct application *application)
 {
-    const uint32_t period = *(const volatile uint32_t *)&application->drive.period;
+    const uint32_t period = interrupt_view_period(&application->drive);
 
     if (period != application->fed_in) {
         application->fed_in = period;

@@ -5,10 +5,11 @@
 #include "firmware/application/default_move.h"
 #include "firmware/application/report.h"
 #include "firmware/application/setting_lines.h"
+#include "firmware/drive/interrupt_view.h"
 
 static uint32_t period_now(const struct application *application)
 {
-    return *(const volatile uint32_t *)&application->drive.period;
+    return interrupt_view_period(&application->drive);
 }
 
 /* ---- answers ---- */
@@ -47,8 +48,8 @@ static bool announce_state(const struct application *application,
                            struct console_announced *announced, struct text *text)
 {
     const struct drive *drive = &application->drive;
-    const enum drive_state state = *(const volatile enum drive_state *)&drive->state;
-    const uint32_t since = *(const volatile uint32_t *)&drive->state_since;
+    const enum drive_state state = interrupt_view_state(drive);
+    const uint32_t since = interrupt_view_state_since(drive);
 
     if (state == announced->state && since == announced->state_since) {
         return false;
@@ -68,8 +69,7 @@ static bool announce_synchronism(const struct application *application,
                                  struct console_announced *announced, struct text *text)
 {
     const struct drive *drive = &application->drive;
-    const enum drive_synchronism now =
-        *(const volatile enum drive_synchronism *)&drive->synchronism;
+    const enum drive_synchronism now = interrupt_view_synchronism(drive);
 
     if (announced->state != DRIVE_OPERATION_ENABLED) {
         announced->synchronism = DRIVE_SYNCHRONISM_SURE;
@@ -87,7 +87,7 @@ static bool announce_synchronism(const struct application *application,
 static bool announce_dropped(const struct application *application,
                              struct console_announced *announced, struct text *text)
 {
-    const uint32_t dropped = *(const volatile uint32_t *)&application->drive.commands.dropped;
+    const uint32_t dropped = interrupt_view_commands_dropped(&application->drive);
 
     if (dropped == announced->dropped) {
         return false;

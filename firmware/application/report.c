@@ -6,6 +6,7 @@
 #include "firmware/application/command_line.h"
 #include "firmware/design/hold_check.h"
 #include "firmware/drive/fault_reason.h"
+#include "firmware/drive/interrupt_view.h"
 
 enum { DIGITS = 6 };
 
@@ -39,16 +40,15 @@ static void put_count(struct text *text, const char *name, uint32_t value)
 /* All of one period: read again if a control interrupt has come in between. */
 static void read_signals(const struct drive *drive, struct drive_signals *signals)
 {
-    const volatile uint32_t *period = &drive->period;
     uint32_t before;
     int tries = 3;
 
     do {
-        before = *period;
+        before = interrupt_view_period(drive);
         atomic_signal_fence(memory_order_seq_cst);
         drive_signals_read(drive, signals);
         atomic_signal_fence(memory_order_seq_cst);
-    } while (before != *period && --tries > 0);
+    } while (before != interrupt_view_period(drive) && --tries > 0);
 }
 
 void report_start(struct text *text, const struct application *application)

@@ -36,7 +36,7 @@ static bool join_waiting(const struct command_queue *queue, struct urgent_comman
     if (!urgent->posted || !has_come(urgent->at_period, at_period)) {
         return false;
     }
-    *(volatile uint32_t *)&urgent->flush_to = queue->written;
+    urgent->flush_to = queue->written;
     return urgent->posted;
 }
 
@@ -82,7 +82,7 @@ bool command_queue_enable_waits(const struct command_queue *queue)
 {
     const struct urgent_command *disable = &queue->disable;
     const bool disabled = disable->posted;
-    uint32_t entry = *(const volatile uint32_t *)&queue->read;
+    uint32_t entry = queue->read;
 
     if (disabled && (int32_t)(disable->flush_to - entry) > 0) {
         entry = disable->flush_to;

@@ -53,7 +53,7 @@ static inline bool queued_command_is_planned(const struct queued_command *comman
 struct urgent_command {
     volatile bool posted;
     uint32_t at_period;
-    uint32_t flush_to; /* queue entries posted before it */
+    volatile uint32_t flush_to; /* queue entries posted before it */
 };
 
 /* A plan that takes the reference over in its period. */

@@ -3,6 +3,7 @@
 #include "firmware/design/refusal.h"
 #include "firmware/design/text.h"
 #include "firmware/drive/fault_reason.h"
+#include "firmware/drive/interrupt_view.h"
 
 const uint8_t command_rules_states[DRIVE_COMMANDS] = {
     [DRIVE_COMMAND_ENABLE] = OBEYED_OUTSIDE_FAULT,
@@ -37,8 +38,8 @@ static const char *name_of(enum drive_command_kind kind)
 /* Ready only since the command was asked for: it is as if it had been posted before. */
 static bool ready_only_since(const struct drive *drive, uint32_t asked_in)
 {
-    const uint32_t since = *(const volatile uint32_t *)&drive->state_since;
-    const uint32_t now = *(const volatile uint32_t *)&drive->period;
+    const uint32_t since = interrupt_view_state_since(drive);
+    const uint32_t now = interrupt_view_period(drive);
 
     return now - since < now - asked_in;
 }

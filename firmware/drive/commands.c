@@ -2,6 +2,7 @@
 #include "firmware/design/refusal.h"
 #include "firmware/drive/board_limits.h"
 #include "firmware/drive/command_rules.h"
+#include "firmware/drive/interrupt_view.h"
 #include "firmware/drive/parameter_store.h"
 
 static enum profile_shape shape_of(enum drive_command_kind kind)
@@ -157,8 +158,8 @@ enum drive_state drive_state_by(const struct drive *drive, uint32_t at_period)
 {
     const struct urgent_command *disable = &drive->commands.disable;
     const bool posted = disable->posted; /* before the state, which changes when it is taken */
-    const enum drive_state state = *(const volatile enum drive_state *)&drive->state;
-    const uint32_t next = *(const volatile uint32_t *)&drive->period + 1u;
+    const enum drive_state state = interrupt_view_state(drive);
+    const uint32_t next = interrupt_view_period(drive) + 1u;
     const uint32_t acts_in = (int32_t)(at_period - next) > 0 ? at_period : next;
 
     return posted && (int32_t)(acts_in - disable->at_period) >= 0 ? DRIVE_SWITCH_ON_DISABLED
@@ -195,7 +196,7 @@ static bool enable(struct drive *drive, uint32_t at_period, char error[DRIVE_ERR
 bool drive_command(struct drive *drive, const struct drive_command *command,
                    char error[DRIVE_ERROR_TEXT])
 {
-    const uint32_t now = *(const volatile uint32_t *)&drive->period;
+    const uint32_t now = interrupt_view_period(drive);
 
     return drive_command_asked_in(drive, command, now, error);
 }

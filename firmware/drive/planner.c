@@ -1,9 +1,8 @@
 #include "firmware/drive/planner.h"
 
-#include <stdatomic.h>
 #include <stddef.h>
 
-#include "firmware/drive/drive.h"
+#include "firmware/drive/interrupt_view.h"
 
 #define LEAD_PERIODS_MIN 3u
 
@@ -22,25 +21,14 @@ uint32_t planner_lead_periods(const struct drive *drive)
     return lead_periods(drive, DRIVE_LEAD_s);
 }
 
-static uint32_t period_now(const struct drive *drive)
-{
-    return *(const volatile uint32_t *)&drive->period;
-}
-
 /*
  * A copy of the reference as it will be before the interrupt `at_period`, unless something
  * intervenes. false: a stop is being acted on, or the period has passed.
  */
 static bool foresee(const struct drive *drive, uint32_t at_period, struct reference *copy)
 {
-    uint32_t period;
+    const uint32_t period = interrupt_view_reference(drive, copy);
 
-    do { /* until no interrupt has come in between */
-        period = period_now(drive);
-        atomic_signal_fence(memory_order_seq_cst);
-        *copy = drive->reference;
-        atomic_signal_fence(memory_order_seq_cst);
-    } while (period != period_now(drive));
     if (copy->stop_requested || (int32_t)(at_period - period) <= 0) {
         return false;
     }
@@ -54,16 +42,14 @@ static struct motion_plan *free_plan(struct drive *drive)
     struct planner *p = &drive->planner;
 
     reference_continue(&drive->reference, NULL);
-    return *(const struct motion_plan *volatile *)&drive->reference.plan == &p->plan[0]
-               ? &p->plan[1]
-               : &p->plan[0];
+    return interrupt_view_plan(drive) == &p->plan[0] ? &p->plan[1] : &p->plan[0];
 }
 
 void planner_follow(struct drive *drive)
 {
     struct planner *p = &drive->planner;
     struct command_queue *queue = &drive->commands;
-    const uint32_t epoch = *(const volatile uint32_t *)&drive->reference.epoch;
+    const uint32_t epoch = interrupt_view_epoch(drive);
 
     if (p->epoch != epoch) { /* a reset, or the stop of a plan */
         command_queue_withdraw_take_over(queue);
@@ -93,7 +79,7 @@ static void settle_offer(struct drive *drive)
         return;
     }
     if (queue->take_over.posted) {
-        if ((int32_t)(period_now(drive) - queue->take_over.at_period) <= 0) {
+        if ((int32_t)(interrupt_view_period(drive) - queue->take_over.at_period) <= 0) {
             return;
         }
         command_queue_withdraw_take_over(queue); /* a stop or disable came first */
@@ -226,7 +212,7 @@ static bool begin_plan(struct drive *drive, struct motion_plan *plan, uint32_t a
 static uint32_t stop_period(const struct drive *drive)
 {
     const uint32_t lead = drive->planner.lead_periods;
-    const uint32_t now = period_now(drive);
+    const uint32_t now = interrupt_view_period(drive);
     const uint32_t acted = drive->commands.stop_acted_in;
 
     return (now - acted <= lead / 2u ? acted : now) + lead;
@@ -336,7 +322,7 @@ static void take_command(struct drive *drive)
     const struct command_queue *queue = &drive->commands;
     const uint32_t entry = queue->read;
     const struct queued_command *command = &queue->entry[entry % COMMAND_QUEUE_LENGTH];
-    const uint32_t earliest = period_now(drive) + p->lead_periods;
+    const uint32_t earliest = interrupt_view_period(drive) + p->lead_periods;
     const uint32_t addressed = addressed_to(p, command);
     const int32_t wait = (int32_t)(addressed - earliest);
     const uint32_t at_period = wait > 0 ? addressed : earliest;

@@ -502,7 +502,7 @@ MUTANTS = [
            "period != application->fed_in", "true"),
     Mutant(APPLICATION + "application.c", "application",
            "stored_settings_apply_with_their_encoder",
-           "stored.encoder_counts_per_turn != 0u", "false"),
+           "settings->encoder_counts_per_turn > 0", "false"),
     Mutant(APPLICATION + "console.c", "console", "a_slow_background_changes_nothing",
            "line_period + DRIVE_TYPED_DELAY_PERIODS",
            "period_now(application) + DRIVE_TYPED_DELAY_PERIODS"),

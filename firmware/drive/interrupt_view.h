@@ -1,0 +1,79 @@
+/*
+ * What the background reads of what the control interrupt writes, all of it in one place.
+ *
+ * The interrupt can come between any two instructions of the background, never the other way round,
+ * and there is one core. A value of one word is therefore either the old or the new one, as long as
+ * the compiler reads it exactly once and where it stands: hence volatile. What is longer is copied
+ * and copied again if an interrupt has come in between. The members themselves are not volatile,
+ * as that would cost the interrupt, which nothing pre-empts.
+ *
+ * Not here: the command queue, both sides of which stand in command_queue.c, and what is read of a
+ * reference at rest, which the interrupt leaves alone.
+ */
+#ifndef STEADYSTEP_INTERRUPT_VIEW_H
+#define STEADYSTEP_INTERRUPT_VIEW_H
+
+#include <stdatomic.h>
+
+#include "firmware/drive/drive.h"
+
+/* Read once, here. */
+#define INTERRUPT_VIEW(type, member) (*(type const volatile *)&(member))
+
+/* Index of the present or last control interrupt. */
+static inline uint32_t interrupt_view_period(const struct drive *drive)
+{
+    return INTERRUPT_VIEW(uint32_t, drive->period);
+}
+
+static inline enum drive_state interrupt_view_state(const struct drive *drive)
+{
+    return INTERRUPT_VIEW(enum drive_state, drive->state);
+}
+
+/* Period in which the state was entered. */
+static inline uint32_t interrupt_view_state_since(const struct drive *drive)
+{
+    return INTERRUPT_VIEW(uint32_t, drive->state_since);
+}
+
+static inline enum drive_synchronism interrupt_view_synchronism(const struct drive *drive)
+{
+    return INTERRUPT_VIEW(enum drive_synchronism, drive->synchronism);
+}
+
+/* Commands that found another state or place than they had been accepted for. */
+static inline uint32_t interrupt_view_commands_dropped(const struct drive *drive)
+{
+    return INTERRUPT_VIEW(uint32_t, drive->commands.dropped);
+}
+
+/* The plan that the reference has taken over last. */
+static inline const struct motion_plan *interrupt_view_plan(const struct drive *drive)
+{
+    return INTERRUPT_VIEW(const struct motion_plan *, drive->reference.plan);
+}
+
+/* Counts resets of the reference, and stops of its plans. */
+static inline uint32_t interrupt_view_epoch(const struct drive *drive)
+{
+    return INTERRUPT_VIEW(uint32_t, drive->reference.epoch);
+}
+
+#undef INTERRUPT_VIEW
+
+/* The reference as it is behind one interrupt, whose period is returned. */
+static inline uint32_t interrupt_view_reference(const struct drive *drive, struct reference *copy)
+{
+    uint32_t period;
+
+    do {
+        period = interrupt_view_period(drive);
+        atomic_signal_fence(memory_order_seq_cst);
+        *copy = drive->reference;
+        atomic_signal_fence(memory_order_seq_cst);
+    } while (period != interrupt_view_period(drive));
+    return period;
+}
+
+#endif
