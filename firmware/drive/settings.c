@@ -73,23 +73,6 @@ const char *drive_state_name(enum drive_state state)
     return names[state];
 }
 
-const char *drive_fault_name(enum drive_fault fault)
-{
-    static const char *const names[DRIVE_FAULTS] = {
-        [DRIVE_FAULT_NONE] = "none",
-        [DRIVE_FAULT_OVERCURRENT] = "overcurrent",
-        [DRIVE_FAULT_HARDWARE_OVERCURRENT] = "hardware-overcurrent",
-        [DRIVE_FAULT_DEADLINE_MISSED] = "deadline-missed",
-        [DRIVE_FAULT_BUS_VOLTAGE] = "bus-voltage",
-        [DRIVE_FAULT_ESTIMATE_RANGE] = "estimate-range",
-        [DRIVE_FAULT_OFFSET_RANGE] = "offset-range",
-        [DRIVE_FAULT_POSITION_NOT_FOUND] = "position-not-found",
-        [DRIVE_FAULT_LOST_SYNCHRONISM] = "lost-synchronism",
-        [DRIVE_FAULT_STALLED] = "stalled",
-    };
-    return names[fault];
-}
-
 const char *drive_synchronism_name(enum drive_synchronism synchronism)
 {
     static const char *const names[DRIVE_SYNCHRONISMS] = {
@@ -102,20 +85,10 @@ const char *drive_synchronism_name(enum drive_synchronism synchronism)
 }
 
 /* The texts are those of the setting. */
-static const char *text_of(size_t offset, size_t choice)
-{
-    size_t i = 0;
-
-    while (setting_number(i)->offset != offset) {
-        i++;
-    }
-    return setting_number(i)->choices[choice];
-}
-
 #define NAME_OF(name, type, member)                                                                \
     const char *drive_##name##_name(enum type member)                                              \
     {                                                                                              \
-        return text_of(offsetof(struct drive_settings, member), member);                           \
+        return setting_at(offsetof(struct drive_settings, member))->choices[member];               \
     }
 
 NAME_OF(law, position_law, law)

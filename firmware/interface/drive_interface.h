@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "firmware/control/position_laws.h"
+#include "firmware/interface/faults_table.h"
 #include "firmware/interface/settings_table.h"
 #include "firmware/motor/motor_params.h"
 
@@ -29,22 +30,10 @@ enum drive_state {
     DRIVE_STATES
 };
 
-/* Why the bridge was opened. */
-enum drive_fault {
-    DRIVE_FAULT_NONE,
-    DRIVE_FAULT_OVERCURRENT,          /* a sampled phase current beyond overcurrent_trip_A */
-    DRIVE_FAULT_HARDWARE_OVERCURRENT, /* the board's comparator tripped */
-    DRIVE_FAULT_DEADLINE_MISSED,      /* a control interrupt ended too late */
-    DRIVE_FAULT_BUS_VOLTAGE,          /* measured bus outside 0.5...1.3 x nominal */
-    DRIVE_FAULT_ESTIMATE_RANGE,       /* an estimate left its physical range or is not finite */
-    DRIVE_FAULT_OFFSET_RANGE,         /* a converter offset too large to be an offset, or the rotor
-                                         was being turned while they were looked for */
-    DRIVE_FAULT_POSITION_NOT_FOUND,   /* neither impulses nor alignment have shown the rotor, or
-                                         they contradict themselves */
-    DRIVE_FAULT_LOST_SYNCHRONISM,     /* the rotor is not where the estimate has it */
-    DRIVE_FAULT_STALLED, /* the rotor does not follow, although the estimate is sound */
-    DRIVE_FAULTS
-};
+/* Why the bridge was opened; faults_table.h has each with cause and remedy. */
+#define DRIVE_FAULT_CONSTANT(constant, code, name, cause, limit, remedy) DRIVE_FAULT_##constant,
+enum drive_fault { DRIVE_FAULT_NONE, DRIVE_FAULTS_TABLE(DRIVE_FAULT_CONSTANT) DRIVE_FAULTS };
+#undef DRIVE_FAULT_CONSTANT
 
 /* The settings that are one of several: settings_table.h says what each constant means. */
 #define DRIVE_CHOICE_CONSTANT(constant, text, sentence) constant,

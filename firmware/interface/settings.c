@@ -115,6 +115,16 @@ const struct setting *setting_of_index(uint16_t index)
     return NULL;
 }
 
+const struct setting *setting_at(size_t offset)
+{
+    for (size_t i = 0; i < ROWS; i++) {
+        if (rows[i].offset == offset) {
+            return &rows[i];
+        }
+    }
+    return NULL;
+}
+
 /* A whole number of one to four bytes is as wide as the compiler has made its member. */
 static int32_t get_whole(const uint8_t *at, size_t size)
 {

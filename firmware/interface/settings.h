@@ -50,6 +50,9 @@ const struct setting *setting_number(size_t number);
 /* The one with an element of this index; NULL: none. */
 const struct setting *setting_of_index(uint16_t index);
 
+/* The one that begins at this offset in struct drive_settings; NULL: none. */
+const struct setting *setting_at(size_t offset);
+
 /* An element as a number: a flag is 0 or 1, a choice its place in the enumeration. */
 double setting_get(const struct drive_settings *settings, const struct setting *setting,
                    size_t element);

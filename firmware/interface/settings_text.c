@@ -1,6 +1,8 @@
 /* What settings and their choices are, in sentences. */
 #include "firmware/interface/settings.h"
 
+#ifndef STEADYSTEP_WITHOUT_SENTENCES
+
 struct sentence {
     uint16_t index;
     const char *text;
@@ -58,3 +60,5 @@ const char *setting_choice_sentence(const struct setting *setting, size_t choice
     }
     return "";
 }
+
+#endif

@@ -28,7 +28,7 @@
 #include "sil/scenario/report.h"
 #include "sil/scenario/runner.h"
 #include "sil/scenario/settings_file.h"
-#include "sil/scenario/settings_page.h"
+#include "sil/scenario/pages.h"
 #include "sil/scenario/sweep.h"
 #include "sil/scenario/text.h"
 
@@ -506,16 +506,20 @@ int run_program(int argc, char **argv)
     check_motor->add_flag("--json", options.json, "one array of motors, nothing else");
     CLI::App *list = app.add_subcommand(
         "list", "scenarios, sweeps, motors, parameter sets and laws, in one line each");
-    CLI::App *settings = app.add_subcommand("settings", "settings of a drive: ranges and defaults");
+    for (const Page &page : pages()) {
+        app.add_subcommand(page.name, page.about);
+    }
 
     try {
         app.parse(argc, argv);
         if (*list) {
             return list_command(options);
         }
-        if (*settings) {
-            print(settings_page());
-            return held;
+        for (const Page &page : pages()) {
+            if (app.got_subcommand(page.name)) {
+                print(page.text());
+                return held;
+            }
         }
         if (*check_motor) {
             return check_motor_command(options);

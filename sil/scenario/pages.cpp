@@ -1,6 +1,6 @@
-#include "sil/scenario/settings_page.h"
+#include "sil/scenario/pages.h"
 
-#include "firmware/interface/settings.h"
+#include "firmware/interface/dictionary.h"
 #include "sil/scenario/text.h"
 
 namespace scenario
@@ -56,8 +56,6 @@ std::string choice_lines(const setting &row)
     return "- `" + std::string(row.name) + "` – " + text + "\n";
 }
 
-} // namespace
-
 std::string settings_page()
 {
     const std::string head = "| index | setting | unit | range | default | what it is |\n"
@@ -85,6 +83,43 @@ std::string settings_page()
            "motor, board and period, if it is\nnot given.\n\n" +
            head + drive + "\n" + choices +
            "\n## The motor\n\nA motor file gives them (`sil/motors/README.md`).\n\n" + head + motor;
+}
+
+/* "a phase current beyond `overcurrent_trip_A`" */
+std::string cause_of(drive_fault fault)
+{
+    const setting *limit = fault_limit(fault);
+    return std::string(fault_row(fault)->cause) +
+           (limit == nullptr ? "" : std::string(" `") + limit->name + "`");
+}
+
+std::string faults_page()
+{
+    std::string text =
+        "# Faults\n\n"
+        "Why a drive has opened its bridge. `disable` clears a fault; `enable` begins anew. "
+        "Written "
+        "by `steadystep-sil faults`\nfrom `faults_table.h`, which declares each once.\n\n"
+        "Codes are those of an emergency message: of CiA 301 and 402 where one means the same, "
+        "from 0xff00 on our own.\n\n"
+        "| code | fault | cause | what to do |\n| --- | --- | --- | --- |\n";
+    for (int i = DRIVE_FAULT_NONE + 1; i < DRIVE_FAULTS; ++i) {
+        const auto fault = static_cast<drive_fault>(i);
+        text += format("| 0x%04x | ", unsigned(fault_code(fault))) + "`" + drive_fault_name(fault) +
+                "` | " + cause_of(fault) + " | " + fault_remedy(fault) + " |\n";
+    }
+    return text;
+}
+
+} // namespace
+
+const std::vector<Page> &pages()
+{
+    static const std::vector<Page> all = {
+        {"settings", "settings of a drive: ranges and defaults", settings_page},
+        {"faults", "faults of a drive: causes and remedies", faults_page},
+    };
+    return all;
 }
 
 } // namespace scenario

@@ -1,0 +1,50 @@
+/*
+ * The faults of a drive, declared once: a row each. From the rows follow enum drive_fault, the
+ * names, what the console says of a fault and the page faults.md. To add a fault: a row, and what
+ * raises it.
+ *
+ *   FAULT(constant, code, name, cause, limit, remedy)
+ *
+ * - code: error code of an emergency message, of CiA 301 and 402 (IEC 61800-7-201) where one means
+ *   the same, else manufacturer specific (0xff00...); it never changes and is never used again.
+ * - cause: the console says it. LIMIT(member): the value of this setting stands behind it.
+ * - remedy: what to do before the drive is disabled, which clears the fault, and enabled again.
+ *
+ * A trace has a fault as its place in this list: a new one is the last.
+ */
+#ifndef STEADYSTEP_FAULTS_TABLE_H
+#define STEADYSTEP_FAULTS_TABLE_H
+
+#define DRIVE_FAULTS_TABLE(FAULT)                                                                  \
+    FAULT(OVERCURRENT, 0x2310, "overcurrent", "a phase current beyond", LIMIT(overcurrent_trip_A), \
+          "check the motor's wiring, its resistance and inductance in the settings, and the "      \
+          "current bandwidth")                                                                     \
+    FAULT(HARDWARE_OVERCURRENT, 0x2320, "hardware-overcurrent",                                    \
+          "the board's comparator has tripped", NO_LIMIT,                                          \
+          "look for a short circuit of motor, cable or bridge")                                    \
+    FAULT(DEADLINE_MISSED, 0x6100, "deadline-missed", "a control interrupt has ended too late",    \
+          NO_LIMIT,                                                                                \
+          "take a law or an estimator that needs less time; `cycles` shows the time used")         \
+    FAULT(BUS_VOLTAGE, 0x3200, "bus-voltage", "the supply is outside 0.5...1.3 of",                \
+          LIMIT(motor.supply_V),                                                                   \
+          "set supply_V to the supply's voltage; a supply that rises while braking needs a brake " \
+          "resistor or a slower ramp, one that sags more current")                                 \
+    FAULT(ESTIMATE_RANGE, 0xff01, "estimate-range", "the estimate has lost the rotor", NO_LIMIT,   \
+          "check the motor's settings, speed_limit_rad_s and the load; move more gently")          \
+    FAULT(OFFSET_RANGE, 0x5210, "offset-range",                                                    \
+          "a sensor's offset is too large to be one, or the rotor is being turned", NO_LIMIT,      \
+          "let the rotor come to rest before enabling; if it was, check the current sensing")      \
+    FAULT(POSITION_NOT_FOUND, 0x7122, "position-not-found",                                        \
+          "no current flows, or the rotor has not followed the alignment, or not come to rest",    \
+          NO_LIMIT,                                                                                \
+          "check that the motor is connected, free to turn by a step and not being turned, and "   \
+          "that the settings have its inertia with the load's")                                    \
+    FAULT(                                                                                         \
+        LOST_SYNCHRONISM, 0x8611, "lost-synchronism",                                              \
+        "the rotor is not where the estimate has it", NO_LIMIT,                                    \
+        "move more gently, or give more current; check initial angle and motor's settings, home "  \
+        "the axis again")                                                                          \
+    FAULT(STALLED, 0x7121, "stalled", "the rotor does not follow: overloaded, or held", NO_LIMIT,  \
+          "free the axis or reduce the load, or raise current_limit_A; home the axis again")
+
+#endif
