@@ -47,6 +47,12 @@ struct current_control_params current_control_design(const struct motor_params *
 
 void current_control_reset(struct current_control *control);
 
+/* Bumpless transfer: the integrators as they are in a steady state at this voltage. */
+static inline void current_control_preset(struct current_control *control, struct dq voltage)
+{
+    control->integral = voltage;
+}
+
 static inline num_t current_control_integrate(const struct current_control_params *params,
                                               num_t integral, num_t error, num_t taken_away)
 {

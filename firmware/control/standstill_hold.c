@@ -17,7 +17,8 @@ struct standstill_hold_params standstill_hold_design(const struct per_unit *base
     params.motion_current = num_from_double(task->motion_current_A / base->current_A);
     params.current_limit = num_from_double(task->current_limit_A / base->current_A);
     params.damping = coef_from_double(task->damping_As_rad * base->speed_rad_s / base->current_A);
-    params.delay_periods = (uint32_t)(task->delay_s / task->period_s + 0.5);
+    params.delay_periods =
+        task->enters_at_rest ? (uint32_t)(task->delay_s / task->period_s + 0.5) : UINT32_MAX;
     params.error_limit = num_from_double(error_limit_turns);
     params.speed_limit = num_from_double(ramp_travel_turns / ramp_periods / base->turns_per_period);
     return params;
@@ -37,6 +38,25 @@ void standstill_hold_enter(struct standstill_hold *hold, angle_t reference)
     hold->frame = sincos_of(reference);
     hold->speed = NUM(0.0);
     hold->leads = false;
+}
+
+void standstill_hold_align(struct standstill_hold *hold, angle_t angle, num_t speed, num_t current)
+{
+    standstill_hold_enter(hold, angle);
+    hold->speed = speed;
+    hold->current = current;
+}
+
+void standstill_hold_end_aligning(struct standstill_hold *hold,
+                                  const struct standstill_hold_params *params, bool goes_on)
+{
+    hold->current = params->current;
+    hold->active = goes_on;
+}
+
+void standstill_hold_preset(struct standstill_hold *hold, num_t i_d)
+{
+    hold->i_d = i_d;
 }
 
 void standstill_hold_follow(struct standstill_hold *hold, angle_t reference, num_t speed,

@@ -42,6 +42,7 @@ struct standstill_hold_task {
     double motion_current_A;
     double ramp_s;
     double delay_s;
+    bool enters_at_rest; /* false: it holds only while the drive is being enabled */
     double current_limit_A;
     double damping_As_rad; /* k_w, design/hold_check.h */
     double period_s;
@@ -55,6 +56,16 @@ void standstill_hold_reset(struct standstill_hold *hold,
 
 /* Holds from now on, the current frame at rest at this reference. */
 void standstill_hold_enter(struct standstill_hold *hold, angle_t reference);
+
+/* While enabling: holds at this angle of a frame that turns at `speed`, with this current. */
+void standstill_hold_align(struct standstill_hold *hold, angle_t angle, num_t speed, num_t current);
+
+/* Enabling ends: the current is the design's again, and the hold goes on or ends. */
+void standstill_hold_end_aligning(struct standstill_hold *hold,
+                                  const struct standstill_hold_params *params, bool goes_on);
+
+/* Bumpless transfer: the ramp of i_d* begins here. */
+void standstill_hold_preset(struct standstill_hold *hold, num_t i_d);
 
 /*
  * The frame of a reference that creeps, and its speed; `goes_on`: it will move again. It turns by a

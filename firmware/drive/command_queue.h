@@ -65,19 +65,19 @@ struct take_over {
     uint32_t command; /* queue entry that it obeys; leaves the queue with it */
 };
 
-enum command_queue_attention {
-    COMMAND_QUEUE_QUIET,
+enum command_queue_pending {
+    COMMAND_QUEUE_NOT_PENDING,
     COMMAND_QUEUE_OVERDUE, /* the oldest command waits for the reference to rest, or for its plan */
-    COMMAND_QUEUE_CALLS    /* something has been posted, or may be due next */
+    COMMAND_QUEUE_PENDING  /* something has been posted, or may be due next */
 };
 
 struct command_queue {
     struct queued_command entry[COMMAND_QUEUE_LENGTH];
     volatile uint32_t written;
     volatile uint32_t read;
-    volatile uint8_t attention; /* enum command_queue_attention */
-    uint32_t wake;              /* period in which something else may be due */
-    uint32_t looked;            /* period in which it was last looked at */
+    volatile uint8_t pending; /* enum command_queue_pending */
+    uint32_t next_due;        /* period in which something else may be due */
+    uint32_t looked;          /* period in which it was last looked at */
     struct urgent_command disable;
     struct urgent_command stop;
     uint32_t stop_acted_in; /* period of the last stop; the interrupt's */
@@ -118,6 +118,34 @@ struct queued_command *command_queue_due(struct command_queue *queue, uint32_t c
 
 void command_queue_drop(struct command_queue *queue);
 
+/* Interrupt: a command had been accepted, but what it was accepted for has not come. Counted, so
+   that somebody hears. */
+static inline void command_queue_count_dropped(struct command_queue *queue,
+                                               const struct queued_command *command)
+{
+    queue->dropped++;
+    queue->dropped_kind = command->kind;
+}
+
+/* Interrupt: all that waits is looked at in this period. */
+static inline void command_queue_look(struct command_queue *queue, uint32_t period)
+{
+    queue->pending = COMMAND_QUEUE_PENDING;
+    queue->looked = period;
+}
+
+/* Interrupt: all that waits is to be looked at in the next period. */
+static inline void command_queue_look_next(struct command_queue *queue)
+{
+    queue->pending = COMMAND_QUEUE_PENDING;
+}
+
+/* Interrupt: the reference has taken a stop. */
+static inline void command_queue_stop_acted(struct command_queue *queue, uint32_t period)
+{
+    queue->stop_acted_in = period;
+}
+
 /* Background: `plan` must live until it is taken over and done, or withdrawn. */
 void command_queue_put_take_over(struct command_queue *queue, const struct take_over *take_over);
 
@@ -141,23 +169,23 @@ static inline bool command_queue_holds_any(const struct command_queue *queue)
 }
 
 /* Interrupt: whether there may be something to do in this period. `idle`: the reference rests. */
-static inline bool command_queue_calls(const struct command_queue *queue, uint32_t period,
-                                       bool idle)
+static inline bool command_queue_is_pending(const struct command_queue *queue, uint32_t period,
+                                            bool idle)
 {
-    const uint8_t attention = queue->attention;
+    const uint8_t pending = queue->pending;
 
-    return period == queue->wake ||
-           (attention != COMMAND_QUEUE_QUIET && (idle || attention == COMMAND_QUEUE_CALLS));
+    return period == queue->next_due ||
+           (pending != COMMAND_QUEUE_NOT_PENDING && (idle || pending == COMMAND_QUEUE_PENDING));
 }
 
-/* Interrupt, when nothing has acted: lowers `attention` until something is posted, `wait` periods
+/* Interrupt, when nothing has acted: lowers `pending` until something is posted, `wait` periods
    have passed, or, if the oldest command is overdue, the reference rests. The background cannot run
    in between. */
 static inline void command_queue_rest(struct command_queue *queue, uint32_t period, uint32_t wait,
                                       bool overdue)
 {
-    queue->attention = overdue ? COMMAND_QUEUE_OVERDUE : COMMAND_QUEUE_QUIET;
-    queue->wake = period + wait;
+    queue->pending = overdue ? COMMAND_QUEUE_OVERDUE : COMMAND_QUEUE_NOT_PENDING;
+    queue->next_due = period + wait;
 }
 
 #endif

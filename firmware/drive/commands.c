@@ -4,6 +4,7 @@
 #include "firmware/drive/command_rules.h"
 #include "firmware/drive/interrupt_view.h"
 #include "firmware/drive/parameter_store.h"
+#include "firmware/drive/planned_end.h"
 
 static enum profile_shape shape_of(enum drive_command_kind kind)
 {
@@ -11,44 +12,6 @@ static enum profile_shape shape_of(enum drive_command_kind kind)
         return PROFILE_STEP;
     }
     return kind == DRIVE_COMMAND_MOVE_SMOOTH ? PROFILE_SMOOTH : PROFILE_TRAPEZOID;
-}
-
-/*
- * Where the reference will rest when the next command acts. With nothing waiting and the reference
- * at rest it is there already, whatever became of the commands before.
- */
-static void update_planned_end(struct drive *drive)
-{
-    const struct command_queue *queue = &drive->commands;
-
-    if (queue->read == queue->written && !reference_busy(&drive->reference)) {
-        drive->planned_end = drive->reference.next.position;
-        if (!queue->stop.posted && (drive->end_known != PLANNED_END_AFTER_ENABLING ||
-                                    drive->state == DRIVE_OPERATION_ENABLED)) {
-            drive->end_known = PLANNED_END_KNOWN;
-        }
-    }
-}
-
-/* Nothing that moves is taken between a stop and rest, nor before it is known where it starts. */
-static bool require_no_stop(struct drive *drive, char error[DRIVE_ERROR_TEXT])
-{
-    update_planned_end(drive);
-    if (drive->end_known == PLANNED_END_AFTER_ENABLING) {
-        return design_refuse(error, "move refused: the drive is not ready and where it starts is "
-                                    "known only then");
-    }
-    return drive->end_known != PLANNED_END_AFTER_STOP ||
-           design_refuse(error, "move refused: the reference has not come to rest after the stop");
-}
-
-/* An absolute move or the first set-point needs to know where it starts. */
-static bool require_known_end(struct drive *drive, char error[DRIVE_ERROR_TEXT])
-{
-    return require_no_stop(drive, error) &&
-           (drive->end_known == PLANNED_END_KNOWN ||
-            design_refuse(error, "move refused: the reference follows a sine, set-points or a "
-                                 "speed: stop it and wait for rest, or retarget"));
 }
 
 static bool plan(struct drive *drive, const struct drive_command *command, struct profile *profile,
@@ -73,8 +36,8 @@ static bool plan(struct drive *drive, const struct drive_command *command, struc
         .creep_rad_s = num_to_double(drive->params.reference.creep_speed) * drive->base.speed_rad_s,
     };
 
-    return require_known_end(drive, error) &&
-           profile_plan(profile, drive->planned_end, &move, &limits, error);
+    return planned_end_require_known(drive, error) &&
+           profile_plan(profile, drive->planned_end.position, &move, &limits, error);
 }
 
 /* One more set-point of a stream that is open. */
@@ -87,9 +50,7 @@ static bool put_set_point(struct drive *drive, const struct drive_command *comma
     if (!(command->position_rad >= -range && command->position_rad <= range)) {
         return design_refuse(error, "set-point refused: the position is out of range");
     }
-    if (set_points_waiting(&drive->planner.set_points) <= 1u) {
-        drive->planner.set_points_at = command->at_period;
-    }
+    planner_address_set_point(&drive->planner, command->at_period);
     return set_points_put(&drive->planner.set_points,
                           position_from_rad(command->position_rad, teeth), error);
 }
@@ -101,42 +62,30 @@ static bool begin_set_points(struct drive *drive, const struct drive_command *co
     struct planner *planner = &drive->planner;
     struct motion_limits limits = request->limits;
 
-    if (!require_known_end(drive, error)) {
+    if (!planned_end_require_known(drive, error)) {
         return false;
     }
     if (drive->commands.written - drive->commands.read == COMMAND_QUEUE_LENGTH - 1u) {
         return true; /* refused when it is put into the queue */
     }
-    set_points_begin(&planner->set_points, drive->planned_end, request->interval_periods, &limits);
+    set_points_begin(&planner->set_points, drive->planned_end.position, request->interval_periods,
+                     &limits);
     if (!put_set_point(drive, command, error)) {
         return false;
     }
-    planner->set_points_command = drive->commands.written;
-    planner->set_points_open = true;
+    planner_open_set_points(planner, drive->commands.written);
     return true;
 }
 
 static bool request(struct drive *drive, const struct drive_command *command,
                     struct motion_request *asked, char error[DRIVE_ERROR_TEXT])
 {
-    if (!require_no_stop(drive, error) || !planner_request(drive, command, asked, error)) {
+    if (!planned_end_require_no_stop(drive, error) ||
+        !planner_request(drive, command, asked, error)) {
         return false;
     }
     return command->kind != DRIVE_COMMAND_SET_POINT ||
            begin_set_points(drive, command, asked, error);
-}
-
-/* Where the reference will rest behind the command. */
-static void note_planned_end(struct drive *drive, const struct queued_command *queued)
-{
-    if (queued_command_is_move(queued)) {
-        drive->planned_end = queued->profile.target;
-    } else if (queued->kind == DRIVE_COMMAND_RETARGET) {
-        drive->planned_end = queued->request.target;
-        drive->end_known = PLANNED_END_KNOWN;
-    } else if (queued_command_is_planned(queued)) {
-        drive->end_known = PLANNED_END_AFTER_MOTION;
-    }
 }
 
 static bool save(const struct drive *drive, char error[DRIVE_ERROR_TEXT])
@@ -150,8 +99,8 @@ static bool save(const struct drive *drive, char error[DRIVE_ERROR_TEXT])
 
 double drive_planned_end_rad(struct drive *drive)
 {
-    update_planned_end(drive);
-    return position_to_rad(drive->planned_end, drive->settings.motor.rotor_teeth);
+    planned_end_update(drive);
+    return position_to_rad(drive->planned_end.position, drive->settings.motor.rotor_teeth);
 }
 
 enum drive_state drive_state_by(const struct drive *drive, uint32_t at_period)
@@ -185,10 +134,7 @@ static bool enable(struct drive *drive, uint32_t at_period, char error[DRIVE_ERR
         return design_refuse(error, "enable refused: the board's overcurrent trip is latched");
     }
     if (found != DRIVE_OPERATION_ENABLED) {
-        drive->planned_end = drive->params.initial_position;
-        drive->end_known = drive->params.encoder_zero_known || drive->params.finds_position
-                               ? PLANNED_END_AFTER_ENABLING
-                               : PLANNED_END_KNOWN;
+        planned_end_note_enable(drive);
     }
     return true;
 }
@@ -218,9 +164,7 @@ bool drive_command_asked_in(struct drive *drive, const struct drive_command *com
     }
     if (command->kind == DRIVE_COMMAND_STOP) {
         command_queue_put_urgent(&drive->commands, &drive->commands.stop, command->at_period);
-        if (drive->end_known != PLANNED_END_AFTER_ENABLING) {
-            drive->end_known = PLANNED_END_AFTER_STOP;
-        }
+        planned_end_note_stop(drive);
         return true;
     }
     if (command->kind == DRIVE_COMMAND_ENABLE && !enable(drive, command->at_period, error)) {
@@ -241,7 +185,7 @@ bool drive_command_asked_in(struct drive *drive, const struct drive_command *com
     if (!command_queue_put(&drive->commands, &queued)) {
         return design_refuse(error, "command refused: 15 commands are waiting already");
     }
-    note_planned_end(drive, &queued);
+    planned_end_note_command(drive, &queued);
     return true;
 }
 

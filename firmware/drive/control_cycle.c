@@ -227,8 +227,11 @@ IN_PLACE void hand_over(struct drive *drive, const struct estimate *estimate, bo
 {
     leave_or_lead(drive);
     if (drive->hold.active && !held) {
-        drive->current_control.integral.d = num_mul(estimate->winding.resistance, drive->current.d);
-        drive->current_control.integral.q = num_mul(estimate->winding.resistance, drive->current.q);
+        const num_t resistance = estimate->winding.resistance;
+        const struct dq drop = {num_mul(resistance, drive->current.d),
+                                num_mul(resistance, drive->current.q)};
+
+        current_control_preset(&drive->current_control, drop);
     } else if (held && !drive->hold.active &&
                position_law_gives_voltage(drive->params.position_law)) {
         position_law_reset(&drive->law);

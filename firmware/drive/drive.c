@@ -273,14 +273,12 @@ static bool design_hold(struct drive *drive, const struct drive_settings *settin
         .motion_current_A = settings->motion_current_A,
         .ramp_s = settings->hold_ramp_s,
         .delay_s = settings->hold_delay_s,
+        .enters_at_rest = settings->hold_at_rest,
         .current_limit_A = settings->current_limit_A,
         .damping_As_rad = damping_As_rad,
         .period_s = period_s,
     };
     drive->params.hold = standstill_hold_design(&drive->base, &task);
-    if (!settings->hold_at_rest) {
-        drive->params.hold.delay_periods = UINT32_MAX;
-    }
     return true;
 }
 
@@ -360,7 +358,7 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
         settings->hold_on_enable ? (uint32_t)(settings->hold_on_enable_s / period_s + 0.5) : 0u;
     modulator_reset(&drive->modulator);
     reference_reset(&drive->reference, params->initial_position);
-    drive->planned_end = params->initial_position;
+    planned_end_init(drive);
     planner_init(drive);
     if (!design_estimator(drive, &drive->settings, period_s, error)) {
         return false;

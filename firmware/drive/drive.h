@@ -14,6 +14,7 @@
 #include "firmware/interface/drive_interface.h"
 #include "firmware/drive/measurement.h"
 #include "firmware/drive/offset_calibration.h"
+#include "firmware/drive/planned_end.h"
 #include "firmware/drive/planner.h"
 #include "firmware/drive/protection.h"
 #include "firmware/estimator/encoder_alignment.h"
@@ -113,8 +114,7 @@ struct drive {
     const struct hal *board;
     struct drive_settings settings;
     struct per_unit base;
-    struct position planned_end; /* where the reference rests when all posted moves are done */
-    enum planned_end end_known;  /* whether it is */
+    struct planned_end planned_end;
     struct planner planner;
 
     /* enabling, with its constants: behind all that an interrupt in operation uses */

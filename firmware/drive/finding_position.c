@@ -31,8 +31,8 @@ static void go_on(struct drive *drive, const struct sample_set *now)
                                 ? initial_position_full_asymmetry(finding, &drive->finding_params)
                                 : NUM(0.0));
     if (!finding->by_impulses) {
-        drive->hold.i_d = finding->current_reference;
-        drive->current_control.integral.d = finding->voltage;
+        standstill_hold_preset(&drive->hold, finding->current_reference);
+        current_control_preset(&drive->current_control, (struct dq){finding->voltage, NUM(0.0)});
         estimator_take_current(&drive->estimator, &drive->params.estimator, now->winding.current);
     }
 }

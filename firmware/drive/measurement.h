@@ -27,6 +27,11 @@ struct measurement_params measurement_design(const struct hal_facts *facts,
 
 void measurement_reset(struct measurement *measurement);
 
+static inline void measurement_set_offset(struct measurement *measurement, struct channels offset)
+{
+    measurement->offset = offset;
+}
+
 static inline __attribute__((always_inline)) struct sample_set
 measurement_step(const struct measurement *measurement, const struct measurement_params *params,
                  const struct hal_samples *samples)

@@ -18,14 +18,6 @@
 #include "firmware/motion/set_points.h"
 #include "firmware/motion/sine.h"
 
-/* Whether it is known where the next move starts. */
-enum planned_end {
-    PLANNED_END_KNOWN,
-    PLANNED_END_AFTER_STOP,     /* where the reference comes to rest after a stop */
-    PLANNED_END_AFTER_MOTION,   /* likewise after sine, set-points or velocity */
-    PLANNED_END_AFTER_ENABLING, /* where the rotor is when the drive is ready */
-};
-
 /* What the plan in force belongs to. */
 enum planner_motion {
     PLANNER_IDLE, /* nothing, or a plan that needs no continuation */
@@ -54,6 +46,21 @@ struct planner {
     uint32_t set_points_at;      /* period to which the second one was addressed, or the first */
     uint32_t underruns;
 };
+
+/* A stream of set-points begins with this entry of the queue. */
+static inline void planner_open_set_points(struct planner *planner, uint32_t command)
+{
+    planner->set_points_command = command;
+    planner->set_points_open = true;
+}
+
+/* Before a set-point is put: while the stream has not begun, it begins with the second one. */
+static inline void planner_address_set_point(struct planner *planner, uint32_t at_period)
+{
+    if (set_points_waiting(&planner->set_points) <= 1u) {
+        planner->set_points_at = at_period;
+    }
+}
 
 struct drive;
 

@@ -42,7 +42,7 @@ void standstill_angle_hide_sample(struct drive *drive, struct channels *winding)
 void standstill_angle_begin(struct drive *drive)
 {
     if (standstill_pulses_hides_sample(&drive->pulses, &drive->pulses_params)) {
-        drive->actuation.loss = drive->loss_before_pulse;
+        actuation_preset_loss(&drive->actuation, drive->loss_before_pulse);
     } else {
         drive->loss_before_pulse = drive->actuation.loss;
     }
@@ -62,7 +62,7 @@ void standstill_angle_step(struct drive *drive, const struct estimate *estimate,
     }
     if (standstill_pulses_add(pulses, &drive->pulses_params, estimate->current,
                               drive->actuation.loss, voltage)) {
-        drive->current_control = *before;
+        current_control_preset(&drive->current_control, before->integral);
     }
     shown = standstill_pulses_result(pulses, &drive->pulses_params);
     if (shown.found) {

@@ -16,8 +16,7 @@ static void end_aligning(struct drive *drive)
     const struct drive_params *params = &drive->params;
 
     drive->aligns = false;
-    drive->hold.current = params->hold.current;
-    drive->hold.active = params->hold_at_rest;
+    standstill_hold_end_aligning(&drive->hold, &params->hold, params->hold_at_rest);
     synchronism_start(drive);
     enter(drive, DRIVE_OPERATION_ENABLED);
 }
@@ -101,13 +100,6 @@ static void disable(struct drive *drive)
     enter(drive, DRIVE_SWITCH_ON_DISABLED);
 }
 
-/* It was accepted, but what it was accepted for has not come: counted, so that somebody hears. */
-static void drop(struct command_queue *queue, const struct queued_command *command)
-{
-    queue->dropped++;
-    queue->dropped_kind = command->kind;
-}
-
 /* true: done with the command; false: it waits for its period or for the reference to rest. */
 static bool obey(struct drive *drive, struct queued_command *command)
 {
@@ -122,7 +114,7 @@ static bool obey(struct drive *drive, struct queued_command *command)
     }
     if (drive->state != DRIVE_OPERATION_ENABLED) {
         if (!command_rules_obeyed(command->kind, drive->state)) {
-            drop(&drive->commands, command);
+            command_queue_count_dropped(&drive->commands, command);
         }
         return true;
     }
@@ -131,7 +123,7 @@ static bool obey(struct drive *drive, struct queued_command *command)
     }
     if (queued_command_is_move(command)) {
         if (!reference_load(&drive->reference, &command->profile)) {
-            drop(&drive->commands, command);
+            command_queue_count_dropped(&drive->commands, command);
         }
         return true;
     }
@@ -139,7 +131,7 @@ static bool obey(struct drive *drive, struct queued_command *command)
         return false; /* it goes when its plan takes over */
     }
     if (command->kind == DRIVE_COMMAND_HOLD) {
-        drive->reference.slow_periods = UINT32_MAX;
+        reference_count_as_slow(&drive->reference);
     }
     return true;
 }
@@ -160,8 +152,7 @@ static void take_commands(struct drive *drive)
     const struct motion_plan *plan;
     struct queued_command *command;
 
-    queue->attention = COMMAND_QUEUE_CALLS;
-    queue->looked = period;
+    command_queue_look(queue, period);
     synchronism_wait(drive);
     if (command_queue_take_urgent(queue, &queue->disable, period, &wait)) {
         disable(drive);
@@ -169,7 +160,7 @@ static void take_commands(struct drive *drive)
     }
     if (command_queue_take_urgent(queue, &queue->stop, period, &wait)) {
         reference_stop(&drive->reference);
-        queue->stop_acted_in = period;
+        command_queue_stop_acted(queue, period);
         return;
     }
     /* A move is loaded a period ahead: it begins with the period it is addressed to. */
@@ -189,6 +180,8 @@ static void take_commands(struct drive *drive)
 
 static void calibrate_offsets(struct drive *drive, const struct hal_samples *samples)
 {
+    struct channels offset;
+
     if (drive->calibration.bridge_on) {
         state_machine_fault(drive, protection_check_samples(&drive->params.protection, samples));
         if (drive->state == DRIVE_FAULT) {
@@ -196,11 +189,11 @@ static void calibrate_offsets(struct drive *drive, const struct hal_samples *sam
         }
     }
     switch (offset_calibration_step(&drive->calibration, &drive->calibration_params,
-                                    &drive->params.measurement, samples,
-                                    &drive->measurement.offset)) {
+                                    &drive->params.measurement, samples, &offset)) {
     case OFFSETS_PENDING:
         break;
     case OFFSETS_FOUND:
+        measurement_set_offset(&drive->measurement, offset);
         find_position_or_power_up(drive);
         break;
     case OFFSETS_OUT_OF_RANGE:
@@ -209,12 +202,18 @@ static void calibrate_offsets(struct drive *drive, const struct hal_samples *sam
     }
 }
 
+/* Apart: rare. */
+__attribute__((noinline)) static void enter_fault(struct drive *drive, enum drive_fault fault)
+{
+    drive->fault = fault;
+    command_queue_look_next(&drive->commands); /* nothing waits for a rest any more */
+    enter(drive, DRIVE_FAULT);
+}
+
 void state_machine_fault(struct drive *drive, enum drive_fault fault)
 {
     if (fault != DRIVE_FAULT_NONE) {
-        drive->fault = fault;
-        drive->commands.attention = COMMAND_QUEUE_CALLS; /* nothing waits for a rest any more */
-        enter(drive, DRIVE_FAULT);
+        enter_fault(drive, fault);
     }
 }
 
@@ -245,7 +244,8 @@ bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
 {
     const bool was_powered = state_machine_powered(drive);
 
-    if (command_queue_calls(&drive->commands, drive->period, !reference_busy(&drive->reference))) {
+    if (command_queue_is_pending(&drive->commands, drive->period,
+                                 !reference_busy(&drive->reference))) {
         take_commands(drive);
     }
     if (drive->state != DRIVE_OPERATION_ENABLED && !step_outside_operation(drive, samples)) {

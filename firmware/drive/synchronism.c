@@ -53,7 +53,7 @@ void synchronism_start(struct drive *drive)
     if (drive->params.monitors_synchronism) {
         drive->synchronism_step = TAKE;
         drive->synchronism_due = drive->period + SYNCHRONISM_BLOCK_PERIODS;
-        drive->estimator.invariant.innovation_sum = NUM(0.0);
+        (void)invariant_ekf_take_innovation_sum(&drive->estimator.invariant);
     }
 }
 
@@ -96,14 +96,14 @@ static enum synchronism step(struct drive *drive, const struct rotor *rotor)
 {
     struct synchronism_monitor *monitor = &drive->synchronism_monitor;
     const struct synchronism_monitor_params *params = &drive->synchronism_monitor_params;
-    struct invariant_ekf *ekf = &drive->estimator.invariant;
 
     drive->synchronism_due = drive->period + 1u;
     switch (drive->synchronism_step++) {
     case TAKE:
         drive->synchronism_block = drive->period;
-        synchronism_monitor_take(monitor, params, ekf->innovation_sum, drive->hold.active);
-        ekf->innovation_sum = NUM(0.0);
+        synchronism_monitor_take(monitor, params,
+                                 invariant_ekf_take_innovation_sum(&drive->estimator.invariant),
+                                 drive->hold.active);
         return SYNCHRONISM_SURE;
     case JUDGE_VOLTAGE:
         return synchronism_monitor_judge_voltage(monitor, params, rotor->speed,

@@ -87,6 +87,15 @@ struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params 
 void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
                          struct position position, num_t resistance, uint32_t unloaded_periods);
 
+/* The sum of nu_d, which begins anew. */
+static inline num_t invariant_ekf_take_innovation_sum(struct invariant_ekf *ekf)
+{
+    const num_t sum = ekf->innovation_sum;
+
+    ekf->innovation_sum = NUM(0.0);
+    return sum;
+}
+
 /* From S(k-1) to S(k). `voltage`: mean over that period; `current`: sampled at S(k). */
 void invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
                         struct phases current, struct phases voltage, struct rotor_hold hold);

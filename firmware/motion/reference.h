@@ -150,6 +150,12 @@ __attribute__((cold)) void reference_skip(struct reference *r, uint32_t periods)
  */
 void reference_stop(struct reference *reference);
 
+/* At rest: it counts as having been so for as long as anybody asks for. */
+static inline void reference_count_as_slow(struct reference *reference)
+{
+    reference->slow_periods = UINT32_MAX;
+}
+
 /* One control period on; `held`: the rotor is, and stays so while the reference creeps. */
 void reference_step(struct reference *reference, const struct reference_params *params, bool held);
 

@@ -36,6 +36,12 @@ static inline void actuation_observe(struct actuation *actuation, struct phases 
     actuation->loss.b = num_limit(measured.b - actuation->past.b, ACTUATION_LOSS_MAX);
 }
 
+/* What was measured before counts, where a measurement shows something else. */
+static inline void actuation_preset_loss(struct actuation *actuation, struct phases loss)
+{
+    actuation->loss = loss;
+}
+
 /* The voltage in force over S(k)...S(k+1). */
 static inline struct phases actuation_in_force(const struct actuation *actuation)
 {

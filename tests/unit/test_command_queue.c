@@ -228,7 +228,7 @@ static void test_a_flush_never_brings_commands_back(void)
 static int calls_from(uint32_t from, uint32_t to, bool idle)
 {
     for (uint32_t period = from; period <= to; period++) {
-        if (command_queue_calls(&queue, period, idle)) {
+        if (command_queue_is_pending(&queue, period, idle)) {
             return (int)period;
         }
     }
@@ -249,7 +249,7 @@ static void look(uint32_t period)
 }
 
 /* What lets the interrupt pass the queue by. */
-static void test_the_queue_calls_when_something_was_posted_and_when_it_is_due(void)
+static void test_the_queue_is_pending_when_something_was_posted_and_when_it_is_due(void)
 {
     const struct take_over take_over = {.at_period = 130};
 
@@ -278,7 +278,7 @@ static void test_the_queue_calls_when_something_was_posted_and_when_it_is_due(vo
 }
 
 /* A move whose period has passed waits for the one before it; the queue calls when that is done. */
-static void test_the_queue_calls_at_rest_for_a_command_that_is_overdue(void)
+static void test_the_queue_is_pending_at_rest_for_a_command_that_is_overdue(void)
 {
     put(1, 50);
     look(60);
@@ -303,7 +303,7 @@ int main(void)
     RUN_TEST(test_of_two_disables_all_that_was_posted_before_is_flushed);
     RUN_TEST(test_stop_and_disable_do_not_stand_in_each_others_way);
     RUN_TEST(test_a_flush_never_brings_commands_back);
-    RUN_TEST(test_the_queue_calls_when_something_was_posted_and_when_it_is_due);
-    RUN_TEST(test_the_queue_calls_at_rest_for_a_command_that_is_overdue);
+    RUN_TEST(test_the_queue_is_pending_when_something_was_posted_and_when_it_is_due);
+    RUN_TEST(test_the_queue_is_pending_at_rest_for_a_command_that_is_overdue);
     return UNITY_END();
 }

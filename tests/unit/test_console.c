@@ -154,7 +154,7 @@ static void test_a_move_without_times_is_one_the_motor_can_follow(void)
     answers("move 10", "ok move at=26 duration_s=0.3124 ramp_s=0.0507 jerk_s=0.0126\n");
     answers("move 10", "ok move at=26 duration_s=0.02 ramp_s=0.01 jerk_s=0.0025\n");
     answers("move -0.5 duration_s=0.4", "ok move at=26 duration_s=0.4 ramp_s=0.1 jerk_s=0.025\n");
-    TEST_ASSERT_TRUE(drive->planned_end.turns == -4);
+    TEST_ASSERT_TRUE(drive->planned_end.position.turns == -4);
 }
 
 static void test_every_command_reaches_the_drive(void)

@@ -12,6 +12,7 @@ static const struct standstill_hold_task task = {
     .current_A = HOLD_A,
     .ramp_s = 0.010,
     .delay_s = 0.015,
+    .enters_at_rest = true,
     .current_limit_A = 3.0,
     .damping_As_rad = 0.78,
     .period_s = PERIOD_S,
