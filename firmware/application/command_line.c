@@ -2,67 +2,38 @@
 
 #include "firmware/application/number_text.h"
 
-#define BIT(parameter) (1u << LINE_##parameter)
-#define PROFILE_TIMES  (BIT(DURATION) | BIT(RAMP))
-#define LIMITS         (BIT(ACCELERATION) | BIT(JERK_LIMIT))
+#define WITH(member) (1u << DRIVE_PARAMETER_##member)
+
+#define COMMAND_FORM(number, constant, name, required, optional, states, planning, sentence)       \
+    {name,     LINE_COMMAND, DRIVE_COMMAND_##constant,                                             \
+     required, optional,     (DRIVE_##planning) != DRIVE_AT_ONCE,                                  \
+     sentence},
 
 static const struct line_form forms[] = {
     {"help", LINE_HELP, DRIVE_COMMANDS, 0, 0, false, "lists commands; help <command> explains one"},
     {"state", LINE_STATE, DRIVE_COMMANDS, 0, 0, false, "what the drive does and measures"},
     {"cycles", LINE_CYCLES, DRIVE_COMMANDS, 0, 0, false,
      "last/mean/most cycles of the control interrupt by stage; cycles reset begins anew"},
-    {"enable", LINE_COMMAND, DRIVE_COMMAND_ENABLE, 0, 0, true,
-     "offset calibration, then the hold that aligns the rotor, then ready"},
-    {"disable", LINE_COMMAND, DRIVE_COMMAND_DISABLE, 0, 0, true,
-     "opens the bridge; clears a fault"},
-    {"move", LINE_MOVE, DRIVE_COMMAND_MOVE_SMOOTH, BIT(POSITION), PROFILE_TIMES | BIT(JERK), true,
+    {"move", LINE_MOVE, DRIVE_COMMAND_MOVE_SMOOTH, WITH(position_rad),
+     WITH(duration_s) | WITH(ramp_s) | WITH(jerk_s), true,
      "jerk-limited move to a position, with times that suit the motor if none are given"},
-    {"stop", LINE_COMMAND, DRIVE_COMMAND_STOP, 0, 0, true, "brings the reference to rest"},
-    {"hold", LINE_COMMAND, DRIVE_COMMAND_HOLD, 0, 0, true, "ramps the hold current in"},
-    {"move-smooth", LINE_COMMAND, DRIVE_COMMAND_MOVE_SMOOTH,
-     BIT(POSITION) | PROFILE_TIMES | BIT(JERK), 0, true,
-     "jerk-limited: ramps of speed with jerk_s of constant jerk at each end"},
-    {"move-trapezoid", LINE_COMMAND, DRIVE_COMMAND_MOVE_TRAPEZOID, BIT(POSITION) | PROFILE_TIMES, 0,
-     true, "trapezoid of speed"},
-    {"step", LINE_COMMAND, DRIVE_COMMAND_STEP, BIT(POSITION), 0, true,
-     "the reference jumps to a position"},
-    {"sine", LINE_COMMAND, DRIVE_COMMAND_SINE, BIT(AMPLITUDE) | BIT(FREQUENCY),
-     BIT(CYCLES_OF_SINE) | BIT(RAMP), true,
-     "about where the reference rests; cycles=0: until a stop"},
-    {"set-point", LINE_COMMAND, DRIVE_COMMAND_SET_POINT, BIT(POSITION), BIT(INTERVAL) | LIMITS,
-     true, "the first begins a stream and needs all; the last position three times ends it"},
-    {"velocity", LINE_COMMAND, DRIVE_COMMAND_VELOCITY, BIT(SPEED) | LIMITS, 0, true,
-     "a speed for ever, from whatever motion"},
-    {"retarget", LINE_COMMAND, DRIVE_COMMAND_RETARGET, BIT(POSITION) | BIT(SPEED) | LIMITS, 0, true,
-     "to a position from whatever motion"},
-    {"get", LINE_GET, DRIVE_COMMANDS, 0, 0, false,
-     "a setting: value, unit, range, default; get hold* lists those that begin so"},
+    DRIVE_COMMANDS_TABLE(COMMAND_FORM){
+        "get", LINE_GET, DRIVE_COMMANDS, 0, 0, false,
+        "a setting: value, unit, range, default; get hold* lists those that begin so"},
     {"set", LINE_SET, DRIVE_COMMANDS, 0, 0, false,
      "set hold_current_A 1.2, or default; acts once it is stored and the board starts again"},
     {"store", LINE_STORE, DRIVE_COMMANDS, 0, 0, false, "keeps the settings across power cycles"},
     {"defaults", LINE_DEFAULTS, DRIVE_COMMANDS, 0, 0, false,
      "sets all settings but the motor's to their defaults"},
-    {"save", LINE_COMMAND, DRIVE_COMMAND_SAVE, 0, 0, false,
-     "keeps what has been learned across power cycles"},
 };
+
+#define PARAMETER(index, member, unit, least, most, sentence)                                      \
+    {#member, offsetof(struct drive_command, member)},
 
 static const struct {
     const char *name;
     size_t offset; /* in struct drive_command */
-} parameters[LINE_PARAMETERS] = {
-    [LINE_POSITION] = {"position_rad", offsetof(struct drive_command, position_rad)},
-    [LINE_DURATION] = {"duration_s", offsetof(struct drive_command, duration_s)},
-    [LINE_RAMP] = {"ramp_s", offsetof(struct drive_command, ramp_s)},
-    [LINE_JERK] = {"jerk_s", offsetof(struct drive_command, jerk_s)},
-    [LINE_AMPLITUDE] = {"amplitude_rad", offsetof(struct drive_command, amplitude_rad)},
-    [LINE_FREQUENCY] = {"frequency_Hz", offsetof(struct drive_command, frequency_Hz)},
-    [LINE_CYCLES_OF_SINE] = {"cycles", offsetof(struct drive_command, cycles)},
-    [LINE_INTERVAL] = {"interval_s", offsetof(struct drive_command, interval_s)},
-    [LINE_SPEED] = {"speed_rad_s", offsetof(struct drive_command, speed_rad_s)},
-    [LINE_ACCELERATION] = {"acceleration_rad_s2",
-                           offsetof(struct drive_command, acceleration_rad_s2)},
-    [LINE_JERK_LIMIT] = {"jerk_rad_s3", offsetof(struct drive_command, jerk_rad_s3)},
-};
+} parameters[DRIVE_PARAMETERS] = {DRIVE_PARAMETERS_TABLE(PARAMETER)};
 
 const struct line_form *line_form_number(size_t number)
 {
@@ -120,11 +91,23 @@ static const struct line_form *form_of(struct line_word word)
 
 static void put_names(struct text *text, uint32_t set)
 {
-    for (int i = 0; i < LINE_PARAMETERS; i++) {
+    for (int i = 0; i < DRIVE_PARAMETERS; i++) {
         if ((set >> i & 1u) != 0u) {
             text_put(text, " ");
             text_put(text, parameters[i].name);
             text_put(text, "=");
+        }
+    }
+}
+
+void line_put_values(struct text *text, const struct drive_command *command, uint32_t set)
+{
+    for (int i = 0; i < DRIVE_PARAMETERS; i++) {
+        if ((set >> i & 1u) != 0u) {
+            put_names(text, 1u << i);
+            text_number(
+                text, *(const double *)(const void *)((const char *)command + parameters[i].offset),
+                TEXT_DIGITS_MAX);
         }
     }
 }
@@ -194,11 +177,12 @@ static bool read_parameter(struct command_line *line, struct line_word word, str
     if (name.length == word.length) {
         int first = 0;
 
-        while (first < LINE_PARAMETERS && (line->form->required >> first & 1u) == 0u) {
+        while (first < DRIVE_PARAMETERS && (line->form->required >> first & 1u) == 0u) {
             first++;
         }
-        return first < LINE_PARAMETERS && line->given == 0u ? read_number(line, first, word, answer)
-                                                            : refuse_parameter(line, word, answer);
+        return first < DRIVE_PARAMETERS && line->given == 0u
+                   ? read_number(line, first, word, answer)
+                   : refuse_parameter(line, word, answer);
     }
     value.at += name.length + 1u;
     value.length -= name.length + 1u;
@@ -207,7 +191,7 @@ static bool read_parameter(struct command_line *line, struct line_word word, str
         return unsigned_from_text(value.at, value.length, &line->at_period) ||
                refuse_word(answer, value, "a control period, 0...4294967295");
     }
-    for (int i = 0; i < LINE_PARAMETERS; i++) {
+    for (int i = 0; i < DRIVE_PARAMETERS; i++) {
         if ((known >> i & 1u) != 0u && line_word_is(name, parameters[i].name)) {
             return read_number(line, i, value, answer);
         }

@@ -21,27 +21,11 @@ enum line_action {
     LINE_DEFAULTS
 };
 
-/* Numbers of a drive_command; bit n of a set of parameters is number n. */
-enum line_parameter {
-    LINE_POSITION,
-    LINE_DURATION,
-    LINE_RAMP,
-    LINE_JERK,
-    LINE_AMPLITUDE,
-    LINE_FREQUENCY,
-    LINE_CYCLES_OF_SINE,
-    LINE_INTERVAL,
-    LINE_SPEED,
-    LINE_ACCELERATION,
-    LINE_JERK_LIMIT,
-    LINE_PARAMETERS
-};
-
 struct line_form {
     const char *name;
     enum line_action action;
     enum drive_command_kind kind;
-    uint16_t required; /* parameters */
+    uint16_t required; /* parameters: bit n is number n of enum drive_parameter */
     uint16_t optional;
     bool may_wait;     /* takes at=<period> */
     const char *about; /* what it does, in a few words */
@@ -52,6 +36,9 @@ const struct line_form *line_form_number(size_t number);
 
 /* "move position_rad= [duration_s= ramp_s= jerk_s= at=]" */
 void line_form_usage(struct text *text, const struct line_form *form);
+
+/* Parameters of a command: " duration_s=0.1 ramp_s=..." */
+void line_put_values(struct text *text, const struct drive_command *command, uint32_t set);
 
 /* A part of the typed line. */
 struct line_word {

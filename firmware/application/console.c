@@ -123,17 +123,13 @@ static bool announce(struct application *application)
 
 /* ---- commands ---- */
 
-static bool is_planned(const struct drive_command *command)
-{
-    return command->kind >= DRIVE_COMMAND_SINE && command->kind <= DRIVE_COMMAND_RETARGET;
-}
-
 /* The period a line that came in `line_period` acts in. */
 static bool address(const struct application *application, struct command_line *line,
                     uint32_t line_period, struct text *answer)
 {
-    const uint32_t lead =
-        is_planned(&line->command) ? planner_lead_periods(&application->drive) : 0u;
+    const uint32_t lead = drive_command_is(line->command.kind, DRIVE_AHEAD)
+                              ? planner_lead_periods(&application->drive)
+                              : 0u;
     const uint32_t earliest = line_period + DRIVE_TYPED_DELAY_PERIODS + lead;
 
     line->command.at_period = line->at_given ? line->at_period : earliest;
@@ -156,9 +152,9 @@ static void choose_times(struct application *application, struct command_line *l
         .settings = &drive->settings,
         .period_s = application->facts.control_period_s,
         .distance_rad = line->command.position_rad - here,
-        .duration_given = (line->given >> LINE_DURATION & 1u) != 0u,
-        .ramp_given = (line->given >> LINE_RAMP & 1u) != 0u,
-        .jerk_given = (line->given >> LINE_JERK & 1u) != 0u,
+        .duration_given = (line->given >> DRIVE_PARAMETER_duration_s & 1u) != 0u,
+        .ramp_given = (line->given >> DRIVE_PARAMETER_ramp_s & 1u) != 0u,
+        .jerk_given = (line->given >> DRIVE_PARAMETER_jerk_s & 1u) != 0u,
     };
 
     default_move_times(&line->command, &task);
@@ -168,24 +164,15 @@ static void confirm(const struct application *application, const struct command_
                     struct text *answer)
 {
     const struct drive_command *command = &line->command;
-    static const struct {
-        const char *name;
-        size_t offset;
-    } times[] = {{" duration_s=", offsetof(struct drive_command, duration_s)},
-                 {" ramp_s=", offsetof(struct drive_command, ramp_s)},
-                 {" jerk_s=", offsetof(struct drive_command, jerk_s)}};
 
     text_put(answer, line->form->name);
-    if (command->kind == DRIVE_COMMAND_SAVE) {
+    if (drive_command_is(command->kind, DRIVE_AT_ONCE)) {
         return;
     }
     text_put(answer, " at=");
     text_unsigned(answer, command->at_period);
-    for (size_t i = 0; line->form->action == LINE_MOVE && i < sizeof times / sizeof times[0]; i++) {
-        text_put(answer, times[i].name);
-        text_number(answer,
-                    *(const double *)(const void *)((const char *)command + times[i].offset),
-                    TEXT_DIGITS_MAX);
+    if (line->form->action == LINE_MOVE) {
+        line_put_values(answer, command, line->form->optional);
     }
     if ((int32_t)(period_now(application) - command->at_period) >= 0) {
         text_put(answer, " late: that period had passed");

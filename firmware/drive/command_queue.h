@@ -38,14 +38,13 @@ struct queued_command {
 /* A profile comes with it. */
 static inline bool queued_command_is_move(const struct queued_command *command)
 {
-    return command->kind == DRIVE_COMMAND_MOVE_TRAPEZOID ||
-           command->kind == DRIVE_COMMAND_MOVE_SMOOTH || command->kind == DRIVE_COMMAND_STEP;
+    return drive_command_is(command->kind, DRIVE_PROFILE);
 }
 
 /* Planned by the background, which takes it out of the queue with the plan (planner.h). */
 static inline bool queued_command_is_planned(const struct queued_command *command)
 {
-    return command->kind >= DRIVE_COMMAND_SINE && command->kind <= DRIVE_COMMAND_RETARGET;
+    return drive_command_is(command->kind, DRIVE_AHEAD);
 }
 
 /* A command that waits for nothing but its period. One of a kind waits at a time: of two, the

@@ -5,35 +5,9 @@
 #include "firmware/drive/fault_reason.h"
 #include "firmware/drive/interrupt_view.h"
 
-const uint8_t command_rules_states[DRIVE_COMMANDS] = {
-    [DRIVE_COMMAND_ENABLE] = OBEYED_OUTSIDE_FAULT,
-    [DRIVE_COMMAND_DISABLE] = OBEYED_IN_ANY_STATE,
-    [DRIVE_COMMAND_HOLD] = OBEYED_IN_OPERATION,
-    [DRIVE_COMMAND_MOVE_TRAPEZOID] = OBEYED_IN_OPERATION,
-    [DRIVE_COMMAND_MOVE_SMOOTH] = OBEYED_IN_OPERATION,
-    [DRIVE_COMMAND_STEP] = OBEYED_IN_OPERATION,
-    [DRIVE_COMMAND_STOP] = OBEYED_IN_OPERATION,
-    [DRIVE_COMMAND_SINE] = OBEYED_IN_OPERATION,
-    [DRIVE_COMMAND_SET_POINT] = OBEYED_IN_OPERATION,
-    [DRIVE_COMMAND_VELOCITY] = OBEYED_IN_OPERATION,
-    [DRIVE_COMMAND_RETARGET] = OBEYED_IN_OPERATION,
-    [DRIVE_COMMAND_SAVE] = OBEYED_IN_ANY_STATE, /* but not while a sine or set-points go on */
-};
+#define OBEYED_IN(number, constant, name, required, optional, states, planning, sentence) states,
 
-/* As a refusal calls it. */
-static const char *name_of(enum drive_command_kind kind)
-{
-    static const char *const names[DRIVE_COMMANDS] = {
-        [DRIVE_COMMAND_ENABLE] = "enable",       [DRIVE_COMMAND_DISABLE] = "disable",
-        [DRIVE_COMMAND_HOLD] = "hold",           [DRIVE_COMMAND_MOVE_TRAPEZOID] = "move",
-        [DRIVE_COMMAND_MOVE_SMOOTH] = "move",    [DRIVE_COMMAND_STEP] = "step",
-        [DRIVE_COMMAND_STOP] = "stop",           [DRIVE_COMMAND_SINE] = "sine",
-        [DRIVE_COMMAND_SET_POINT] = "set-point", [DRIVE_COMMAND_VELOCITY] = "velocity",
-        [DRIVE_COMMAND_RETARGET] = "retarget",   [DRIVE_COMMAND_SAVE] = "save",
-    };
-
-    return names[kind];
-}
+const uint8_t command_rules_states[DRIVE_COMMANDS] = {DRIVE_COMMANDS_TABLE(OBEYED_IN)};
 
 /* Ready only since the command was asked for: it is as if it had been posted before. */
 static bool ready_only_since(const struct drive *drive, uint32_t asked_in)
@@ -99,7 +73,9 @@ bool command_rules_check(const struct drive *drive, const struct drive_command *
         return true;
     }
     text = text_in(error, DRIVE_ERROR_TEXT);
-    text_put(&text, name_of(command->kind));
+    text_put(&text, drive_command_is(command->kind, DRIVE_PROFILE)
+                        ? "move"
+                        : drive_command_name(command->kind));
     text_put(&text, " refused: ");
     explain(&text, drive, command->kind, found);
     return false;

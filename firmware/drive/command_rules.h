@@ -9,10 +9,11 @@
 
 #include "firmware/drive/drive.h"
 
+/* As commands_table.h names them. */
 enum {
-    OBEYED_IN_ANY_STATE = (1 << DRIVE_STATES) - 1,
-    OBEYED_OUTSIDE_FAULT = OBEYED_IN_ANY_STATE & ~(1 << DRIVE_FAULT),
-    OBEYED_IN_OPERATION = 1 << DRIVE_OPERATION_ENABLED
+    ANY_STATE = (1 << DRIVE_STATES) - 1,
+    OUTSIDE_FAULT = ANY_STATE & ~(1 << DRIVE_FAULT),
+    IN_OPERATION = 1 << DRIVE_OPERATION_ENABLED
 };
 
 /* The states in which a command of each kind is obeyed, a bit for each state. An enable of a drive

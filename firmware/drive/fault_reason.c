@@ -6,7 +6,7 @@ enum { DIGITS = 6 };
 
 void fault_reason_put(struct text *text, const struct drive *drive)
 {
-    const struct fault_row *row = fault_row(drive->fault);
+    const struct fault_row *row = fault_at(drive->fault);
     const struct setting *limit = fault_limit(drive->fault);
 
     text_put(text, row->name);

@@ -1,5 +1,6 @@
 /*
- * The rows of faults_table.h as data: what every reader and writer of faults goes by.
+ * The rows of commands_table.h and faults_table.h as data: what every reader and writer of them
+ * goes by. What no image needs is in dictionary_text.c.
  */
 #ifndef STEADYSTEP_DICTIONARY_H
 #define STEADYSTEP_DICTIONARY_H
@@ -18,14 +19,44 @@ struct fault_row {
 
 enum { FAULT_WITHOUT_LIMIT = UINT16_MAX };
 
-const struct fault_row *fault_row(enum drive_fault fault);
+const struct fault_row *fault_at(enum drive_fault fault);
 
 /* The setting that limits, NULL: none. */
 const struct setting *fault_limit(enum drive_fault fault);
 
-/* dictionary_text.c: what no image needs to know. */
 uint16_t fault_code(enum drive_fault fault); /* of an emergency message */
 const char *fault_remedy(enum drive_fault fault);
+
+struct command_row {
+    const char *name; /* as scenarios and the console spell it */
+    const char *states;
+    const char *planning;
+    const char *sentence;
+    uint16_t required; /* parameters, bit n is number n */
+    uint16_t optional;
+    uint8_t number; /* that gives it */
+};
+
+const struct command_row *command_at(enum drive_command_kind kind);
+
+struct parameter_row {
+    double least, most;
+    const char *name;
+    const char *unit;
+    const char *sentence;
+    uint16_t index;
+    uint16_t offset; /* in struct drive_command */
+};
+
+const struct parameter_row *parameter_at(enum drive_parameter parameter);
+
+/* Parameter number n of a command, NULL: it has less; those required and optional, in the order of
+   the table. */
+const struct parameter_row *parameter_of(enum drive_command_kind kind, size_t number);
+
+double parameter_get(const struct drive_command *command, const struct parameter_row *parameter);
+void parameter_put(struct drive_command *command, const struct parameter_row *parameter,
+                   double value);
 
 #ifdef __cplusplus
 }

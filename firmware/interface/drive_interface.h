@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "firmware/control/position_laws.h"
+#include "firmware/interface/commands_table.h"
 #include "firmware/interface/faults_table.h"
 #include "firmware/interface/settings_table.h"
 #include "firmware/motor/motor_params.h"
@@ -88,26 +89,35 @@ struct drive_settings {
 #undef DRIVE_REALS_MEMBER
 #undef DRIVE_COUNT_MEMBER
 
-enum drive_command_kind {
-    DRIVE_COMMAND_ENABLE,
-    DRIVE_COMMAND_DISABLE,        /* opens the bridge; clears a fault */
-    DRIVE_COMMAND_HOLD,           /* ramps the hold current in at the present reference */
-    DRIVE_COMMAND_MOVE_TRAPEZOID, /* trapezoid of speed: position, duration_s, ramp_s */
-    DRIVE_COMMAND_MOVE_SMOOTH,    /* jerk-limited: ramp_s of which jerk_s each at its two ends */
-    DRIVE_COMMAND_STEP,           /* position at once */
-    DRIVE_COMMAND_STOP,           /* decelerates the reference to rest with the ramp in force */
-    DRIVE_COMMAND_SINE,           /* amplitude_rad, frequency_Hz, cycles, ramp_s, about where the
-                                     reference rests */
-    DRIVE_COMMAND_SET_POINT,      /* position_rad; the first one begins a stream, with interval_s,
-                                     acceleration_rad_s2 and jerk_rad_s3 */
-    DRIVE_COMMAND_VELOCITY,       /* speed_rad_s until the next command, acceleration_rad_s2 and
-                                     jerk_rad_s3 to get there from whatever motion */
-    DRIVE_COMMAND_RETARGET,       /* to position_rad from whatever motion, with speed_rad_s,
-                                     acceleration_rad_s2 and jerk_rad_s3 at most */
-    DRIVE_COMMAND_SAVE,           /* at once, in the background: keeps what has been learned across
-                                     power cycles */
-    DRIVE_COMMANDS
+/* Where and when a command is planned. */
+enum drive_planning {
+    DRIVE_AT_ONCE, /* acts in the background, in no period */
+    DRIVE_URGENT,  /* the interrupt obeys it before all that waits, and flushes that */
+    DRIVE_IN_TURN, /* nothing is: the interrupt obeys it in its turn */
+    DRIVE_PROFILE, /* when it is posted; a profile waits with it for the reference to rest */
+    DRIVE_AHEAD    /* in the background, DRIVE_LEAD_s ahead of its begin */
 };
+
+#define DRIVE_COMMAND_CONSTANT(number, constant, name, required, optional, states, planning,       \
+                               sentence)                                                           \
+    DRIVE_COMMAND_##constant,
+enum drive_command_kind { DRIVE_COMMANDS_TABLE(DRIVE_COMMAND_CONSTANT) DRIVE_COMMANDS };
+#undef DRIVE_COMMAND_CONSTANT
+
+#define DRIVE_COMMAND_PLANNED(number, constant, name, required, optional, states, planned,         \
+                              sentence)                                                            \
+    || (kind == DRIVE_COMMAND_##constant && planning == DRIVE_##planned)
+/* Background and interrupt; `planning` is a constant, which leaves a comparison or two. */
+__attribute__((always_inline)) static inline bool drive_command_is(enum drive_command_kind kind,
+                                                                   enum drive_planning planning)
+{
+    return false DRIVE_COMMANDS_TABLE(DRIVE_COMMAND_PLANNED);
+}
+#undef DRIVE_COMMAND_PLANNED
+
+#define DRIVE_PARAMETER_PLACE(index, member, unit, least, most, sentence) DRIVE_PARAMETER_##member,
+enum drive_parameter { DRIVE_PARAMETERS_TABLE(DRIVE_PARAMETER_PLACE) DRIVE_PARAMETERS };
+#undef DRIVE_PARAMETER_PLACE
 
 /*
  * A command, addressed to a period, is judged by the state that it will find there
@@ -134,22 +144,13 @@ enum drive_command_kind {
  * ends when the last position comes three times; if it runs dry before, the reference comes to rest
  * with the limits given, and drive_signals counts an underrun.
  */
+#define DRIVE_PARAMETER_MEMBER(index, member, unit, least, most, sentence) double member;
 struct drive_command {
     enum drive_command_kind kind;
     uint32_t at_period;
-    double position_rad; /* target, mechanical */
-    double duration_s;   /* whole move, > 2 ramp_s or equal */
-    double ramp_s;       /* one ramp of speed */
-    double jerk_s; /* of MOVE_SMOOTH: constant-jerk part at each end of a ramp, <= ramp_s / 2 */
-    double amplitude_rad; /* of SINE, mechanical */
-    double frequency_Hz;  /* at most a twentieth of the control frequency */
-    double cycles;        /* whole or half ones; 0: until a stop. SINE fades in and out over ramp_s
-                             each; 0: it begins and ends at full speed */
-    double interval_s;    /* between set-points, at least 3 periods; rounded to whole ones */
-    double speed_rad_s;   /* signed; of RETARGET the largest */
-    double acceleration_rad_s2; /* largest, above 0 */
-    double jerk_rad_s3;         /* largest, above 0 */
+    DRIVE_PARAMETERS_TABLE(DRIVE_PARAMETER_MEMBER)
 };
+#undef DRIVE_PARAMETER_MEMBER
 
 /* A command that is typed acts this many control periods after the one in which the last byte of
    its line has arrived; one that is planned DRIVE_LEAD_s after that. */
@@ -234,9 +235,10 @@ struct drive_hold_bearing {
 bool drive_hold_bearing_of(const struct drive_settings *settings, double period_s,
                            struct drive_hold_bearing *bearing, char error[DRIVE_ERROR_TEXT]);
 
-/* Name of a state, fault, law or estimator as scenarios and the serial line spell it. */
+/* Name of a state, fault, command, law or estimator as scenarios and the serial line spell it. */
 const char *drive_state_name(enum drive_state state);
 const char *drive_fault_name(enum drive_fault fault);
+const char *drive_command_name(enum drive_command_kind kind);
 const char *drive_law_name(enum position_law law);
 const char *drive_estimator_name(enum drive_estimator estimator);
 const char *drive_feedback_name(enum drive_feedback feedback);

@@ -89,8 +89,48 @@ std::string settings_page()
 std::string cause_of(drive_fault fault)
 {
     const setting *limit = fault_limit(fault);
-    return std::string(fault_row(fault)->cause) +
+    return std::string(fault_at(fault)->cause) +
            (limit == nullptr ? "" : std::string(" `") + limit->name + "`");
+}
+
+std::string listed(drive_command_kind kind)
+{
+    std::string text;
+    const parameter_row *parameter = nullptr;
+    for (std::size_t i = 0; (parameter = parameter_of(kind, i)) != nullptr; ++i) {
+        const auto bit = parameter - parameter_at(drive_parameter{});
+        const bool optional = (command_at(kind)->optional >> bit & 1) != 0;
+        text += std::string(text.empty() ? "" : ", ") + (optional ? "(" : "") + "`" +
+                parameter->name + "`" + (optional ? ")" : "");
+    }
+    return text;
+}
+
+std::string commands_page()
+{
+    std::string text =
+        "# Commands\n\n"
+        "What a drive does when it is told: lines of the console, and `command` of a scenario's "
+        "events, which give all\nparameters; there `set-point` is `set-points`. Written by "
+        "`steadystep-sil commands` from `commands_table.h`, which\ndeclares each once.\n\n"
+        "Parameters in brackets may be left out. The number, written to object 0x2200, gives the "
+        "command on a fieldbus.\n\n"
+        "| number | command | parameters | legal | acts | what it does |\n"
+        "| --- | --- | --- | --- | --- | --- |\n";
+    for (int i = 0; i < DRIVE_COMMANDS; ++i) {
+        const auto kind = static_cast<drive_command_kind>(i);
+        const command_row &row = *command_at(kind);
+        text += "| " + std::to_string(row.number) + " | `" + row.name + "` | " + listed(kind) +
+                " | " + row.states + " | " + row.planning + " | " + row.sentence + " |\n";
+    }
+    text += "\n## Parameters\n\n"
+            "| index | parameter | unit | range | what it is |\n| --- | --- | --- | --- | --- |\n";
+    for (int i = 0; i < DRIVE_PARAMETERS; ++i) {
+        const parameter_row &row = *parameter_at(static_cast<drive_parameter>(i));
+        text += format("| 0x%04x | `", unsigned(row.index)) + row.name + "` | " + row.unit + " | " +
+                shortest(row.least) + "…" + shortest(row.most) + " | " + row.sentence + " |\n";
+    }
+    return text;
 }
 
 std::string faults_page()
@@ -117,6 +157,7 @@ const std::vector<Page> &pages()
 {
     static const std::vector<Page> all = {
         {"settings", "settings of a drive: ranges and defaults", settings_page},
+        {"commands", "commands of a drive: parameters, states", commands_page},
         {"faults", "faults of a drive: causes and remedies", faults_page},
     };
     return all;

@@ -45,9 +45,10 @@ Tape::Tape(const std::vector<Event> &events, double period_s)
             const std::int64_t interval =
                 std::max<std::int64_t>(1, periods(command.interval_s, period_s));
             const std::int64_t acts_in = begin + static_cast<std::int64_t>(i) * interval;
-            /* a save acts when it is read: with what has been learned before period n */
-            const std::int64_t delay =
-                command.kind == DRIVE_COMMAND_SAVE ? 1 : sil::typed_delay(command.kind, period_s);
+            /* a save, say, acts when it is read: with what has been learned before period n */
+            const std::int64_t delay = drive_command_is(command.kind, DRIVE_AT_ONCE)
+                                           ? 1
+                                           : sil::typed_delay(command.kind, period_s);
             entries_.push_back({command, acts_in, std::max(acts_in - delay, restart), delay,
                                 event.location.text(),
                                 time_of(static_cast<double>(acts_in), period_s)});
@@ -57,7 +58,7 @@ Tape::Tape(const std::vector<Event> &events, double period_s)
                      [](const Entry &a, const Entry &b) { return a.acts_in < b.acts_in; });
     for (std::size_t i = entries_.size(); i-- > 1;) {
         Entry &before = entries_[i - 1];
-        if (before.command.kind != DRIVE_COMMAND_SAVE) {
+        if (!drive_command_is(before.command.kind, DRIVE_AT_ONCE)) {
             before.typed_in = std::min(before.typed_in, entries_[i].typed_in);
         }
     }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "firmware/interface/dictionary.h"
 #include "sil/scenario/text.h"
 
 namespace scenario
@@ -14,7 +15,7 @@ namespace scenario
 namespace
 {
 
-constexpr double longest_ramp_s = 600;
+constexpr double longest_ramp_s = 600; /* of a drift */
 constexpr std::int64_t most_incidents = 1000000;
 constexpr double largest_bound = 1e12; /* of an expectation; any finite number in practice */
 constexpr double largest_position_rad = 1e7;
@@ -22,63 +23,7 @@ constexpr double largest_short_circuit_A = 100;
 constexpr double shortest_stall_us = 10; /* what the interrupt takes anyway */
 constexpr double longest_stall_us = 120; /* the next control interrupt still gets its samples */
 
-/* A number of a command: what it is called, where it goes, its range. */
-struct CommandField {
-    const char *key;
-    double drive_command::*target;
-    double min, max;
-};
-
-/* Ranges keep out what is absurd; the drive knows its own limits and refuses with its own text. */
-const std::vector<CommandField> &planned_fields()
-{
-    static const std::vector<CommandField> fields = {
-        {"amplitude_rad", &drive_command::amplitude_rad, -largest_position_rad,
-         largest_position_rad},
-        {"frequency_Hz", &drive_command::frequency_Hz, 1e-3, 1e6},
-        {"cycles", &drive_command::cycles, 0, 1e9},
-        {"interval_s", &drive_command::interval_s, 1e-6, 1},
-        {"position_rad", &drive_command::position_rad, -largest_position_rad, largest_position_rad},
-        {"ramp_s", &drive_command::ramp_s, 0, longest_ramp_s},
-        {"speed_rad_s", &drive_command::speed_rad_s, -1e5, 1e5},
-        {"acceleration_rad_s2", &drive_command::acceleration_rad_s2, 1e-6, 1e12},
-        {"jerk_rad_s3", &drive_command::jerk_rad_s3, 1e-6, 1e15},
-    };
-    return fields;
-}
-
 constexpr const char *power_cycle = "power-cycle"; /* of the board, not to the drive */
-
-struct CommandKind {
-    const char *name;
-    drive_command_kind kind;
-    std::vector<const char *> fields; /* all required */
-};
-
-const std::vector<CommandKind> &command_kinds()
-{
-    static const std::vector<CommandKind> kinds = {
-        {"move-trapezoid", DRIVE_COMMAND_MOVE_TRAPEZOID, {"position_rad", "duration_s", "ramp_s"}},
-        {"move-smooth",
-         DRIVE_COMMAND_MOVE_SMOOTH,
-         {"position_rad", "duration_s", "ramp_s", "jerk_s"}},
-        {"step", DRIVE_COMMAND_STEP, {"position_rad"}},
-        {"stop", DRIVE_COMMAND_STOP, {}},
-        {"hold", DRIVE_COMMAND_HOLD, {}},
-        {"enable", DRIVE_COMMAND_ENABLE, {}},
-        {"disable", DRIVE_COMMAND_DISABLE, {}},
-        {"save", DRIVE_COMMAND_SAVE, {}},
-        {"sine", DRIVE_COMMAND_SINE, {"amplitude_rad", "frequency_Hz", "cycles", "ramp_s"}},
-        {"set-points",
-         DRIVE_COMMAND_SET_POINT,
-         {"interval_s", "acceleration_rad_s2", "jerk_rad_s3"}},
-        {"velocity", DRIVE_COMMAND_VELOCITY, {"speed_rad_s", "acceleration_rad_s2", "jerk_rad_s3"}},
-        {"retarget",
-         DRIVE_COMMAND_RETARGET,
-         {"position_rad", "speed_rad_s", "acceleration_rad_s2", "jerk_rad_s3"}},
-    };
-    return kinds;
-}
 
 /* One position per line; empty lines and what follows a # count for nothing. */
 std::vector<double> read_positions(const std::filesystem::path &file, const std::string &asked_by)
@@ -136,46 +81,50 @@ std::vector<double> read_set_points(TableReader &reader, const Location &event)
     return positions;
 }
 
-void read_planned(TableReader &reader, const CommandKind &kind, drive_command &command)
+/* What is absurd is kept out, of a move what its time and its other times do not leave either; the
+   drive knows its own limits and refuses with its own text. */
+std::pair<double, double> range_of(const parameter_row &parameter, const drive_command &command,
+                                   double time_left_s)
 {
-    for (const std::string name : kind.fields) {
-        reader.require(name);
-        for (const CommandField &field : planned_fields()) {
-            if (name == field.key) {
-                reader.number(name, command.*field.target, field.min, field.max);
-            }
+    if (drive_command_is(command.kind, DRIVE_PROFILE)) {
+        switch (&parameter - parameter_at(drive_parameter{})) {
+        case DRIVE_PARAMETER_duration_s:
+            return {parameter.least, std::max(parameter.least, time_left_s)};
+        case DRIVE_PARAMETER_ramp_s:
+            return {1e-4, command.duration_s / 2};
+        case DRIVE_PARAMETER_jerk_s:
+            return {parameter.least, command.ramp_s / 2};
+        default:
+            break;
         }
     }
+    return {parameter.least, parameter.most};
 }
 
+/* An event gives all parameters, those that are optional on the console, too. */
 drive_command read_command(TableReader &reader, double time_left_s)
 {
     std::vector<std::string> names;
-    for (const CommandKind &kind : command_kinds()) {
-        names.push_back(kind.name);
+    for (int kind = 0; kind < DRIVE_COMMANDS; ++kind) {
+        names.push_back(command_name(static_cast<drive_command_kind>(kind)));
     }
     names.push_back(power_cycle);
     std::size_t index = 0;
     reader.choice("command", index, names);
-    const CommandKind &kind = command_kinds()[index];
 
     drive_command command{};
-    command.kind = kind.kind;
-    if (command.kind >= DRIVE_COMMAND_SINE && command.kind <= DRIVE_COMMAND_RETARGET) {
-        read_planned(reader, kind, command);
-        return command;
-    }
-    for (const std::string field : kind.fields) {
-        reader.require(field);
-        if (field == "position_rad") {
-            reader.number(field, command.position_rad, -largest_position_rad, largest_position_rad);
-        } else if (field == "duration_s") {
-            reader.number(field, command.duration_s, 1e-3, std::max(1e-3, time_left_s));
-        } else if (field == "ramp_s") {
-            reader.number(field, command.ramp_s, 1e-4, command.duration_s / 2);
-        } else {
-            reader.number(field, command.jerk_s, 0, command.ramp_s / 2);
+    command.kind = static_cast<drive_command_kind>(index);
+    const struct parameter_row *parameter = nullptr;
+    for (std::size_t i = 0; (parameter = parameter_of(command.kind, i)) != nullptr; ++i) {
+        if (command.kind == DRIVE_COMMAND_SET_POINT &&
+            parameter->offset == offsetof(drive_command, position_rad)) {
+            continue; /* positions_rad or a file has them */
         }
+        const auto [least, most] = range_of(*parameter, command, time_left_s);
+        double value = 0;
+        reader.require(parameter->name);
+        reader.number(parameter->name, value, least, most);
+        parameter_put(&command, parameter, value);
     }
     return command;
 }
@@ -393,14 +342,9 @@ std::string element(const std::string &array, std::size_t index)
 
 } // namespace
 
-const char *command_name(drive_command_kind kind)
+std::string command_name(drive_command_kind kind)
 {
-    for (const CommandKind &known : command_kinds()) {
-        if (known.kind == kind) {
-            return known.name;
-        }
-    }
-    return "unknown";
+    return std::string(drive_command_name(kind)) + (kind == DRIVE_COMMAND_SET_POINT ? "s" : "");
 }
 
 std::string Expectation::bound() const

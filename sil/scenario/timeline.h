@@ -56,7 +56,7 @@ struct Expectation {
 };
 
 /* As an event spells it. */
-const char *command_name(drive_command_kind kind);
+std::string command_name(drive_command_kind kind);
 
 /* The arrays `event`, sorted by time, `expect` and `report` of a scenario; throw InputError. */
 std::vector<Event> read_events(TableReader &scenario, double duration_s);

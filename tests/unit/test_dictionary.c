@@ -25,8 +25,58 @@ static void test_every_fault_has_a_name_and_a_code_of_its_own(void)
     TEST_ASSERT_EQUAL_HEX16(0x2310, fault_code(DRIVE_FAULT_OVERCURRENT));
 }
 
+static void test_every_command_has_a_name_and_a_number_of_its_own(void)
+{
+    for (int i = 0; i < DRIVE_COMMANDS; i++) {
+        const struct command_row *row = command_at((enum drive_command_kind)i);
+
+        TEST_ASSERT_EQUAL_STRING(row->name, drive_command_name((enum drive_command_kind)i));
+        for (int j = 0; j < i; j++) {
+            const struct command_row *other = command_at((enum drive_command_kind)j);
+
+            TEST_ASSERT_NOT_EQUAL(row->number, other->number);
+            TEST_ASSERT_NOT_EQUAL(0, strcmp(row->name, other->name));
+        }
+    }
+}
+
+static void test_a_command_has_its_parameters_in_the_order_of_the_table(void)
+{
+    static const char *const names[] = {"ramp_s", "amplitude_rad", "frequency_Hz", "cycles"};
+
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        TEST_ASSERT_NOT_NULL(parameter_of(DRIVE_COMMAND_SINE, i));
+        TEST_ASSERT_EQUAL_STRING(names[i], parameter_of(DRIVE_COMMAND_SINE, i)->name);
+    }
+    TEST_ASSERT_NULL(parameter_of(DRIVE_COMMAND_SINE, 4));
+    TEST_ASSERT_NULL(parameter_of(DRIVE_COMMAND_STOP, 0));
+}
+
+static void test_a_parameter_is_put_where_the_drive_reads_it(void)
+{
+    struct drive_command command = {.kind = DRIVE_COMMAND_VELOCITY};
+
+    parameter_put(&command, parameter_at(DRIVE_PARAMETER_speed_rad_s), 3.0);
+    TEST_ASSERT_TRUE(command.speed_rad_s == 3.0);
+    TEST_ASSERT_TRUE(parameter_get(&command, parameter_at(DRIVE_PARAMETER_speed_rad_s)) == 3.0);
+}
+
+/* What the interrupt asks of a command. */
+static void test_a_command_is_planned_in_one_way(void)
+{
+    for (int i = 0; i < DRIVE_COMMANDS; i++) {
+        const enum drive_command_kind kind = (enum drive_command_kind)i;
+
+        TEST_ASSERT_EQUAL(
+            1, drive_command_is(kind, DRIVE_AT_ONCE) + drive_command_is(kind, DRIVE_URGENT) +
+                   drive_command_is(kind, DRIVE_IN_TURN) + drive_command_is(kind, DRIVE_PROFILE) +
+                   drive_command_is(kind, DRIVE_AHEAD));
+    }
+}
+
 static void test_a_fault_names_the_setting_that_limits(void)
 {
+    TEST_ASSERT_NOT_NULL(fault_limit(DRIVE_FAULT_BUS_VOLTAGE));
     TEST_ASSERT_EQUAL_STRING("supply_V", fault_limit(DRIVE_FAULT_BUS_VOLTAGE)->name);
     TEST_ASSERT_NULL(fault_limit(DRIVE_FAULT_STALLED));
 }
@@ -35,6 +85,10 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_every_fault_has_a_name_and_a_code_of_its_own);
+    RUN_TEST(test_every_command_has_a_name_and_a_number_of_its_own);
+    RUN_TEST(test_a_command_has_its_parameters_in_the_order_of_the_table);
+    RUN_TEST(test_a_parameter_is_put_where_the_drive_reads_it);
+    RUN_TEST(test_a_command_is_planned_in_one_way);
     RUN_TEST(test_a_fault_names_the_setting_that_limits);
     return UNITY_END();
 }
