@@ -95,7 +95,7 @@ void report_fault(struct text *text, const struct application *application)
     text_put(text, "fault: ");
     fault_reason_put(text, &application->drive);
     text_put(text, "; the bridge is open since period ");
-    text_unsigned(text, application->drive.state_since);
+    text_unsigned(text, application->drive.supervision.state_since);
     text_put(text, ", disable clears the fault");
 }
 
@@ -133,13 +133,14 @@ void report_ready(struct text *text, const struct application *application)
 
     read_signals(&application->drive, &signals);
     text_put(text, "ready:");
-    put_count(text, "period", application->drive.state_since);
+    put_count(text, "period", application->drive.supervision.state_since);
     put_number(text, "reference_rad", signals.theta_ref_rad);
     put_number(text, "resistance_ohm", signals.resistance_est_ohm);
-    if (application->drive.params.finds_position) {
+    if (application->drive.params.enabling.detects_position) {
         put_word(text, "found_by",
-                 application->drive.finding.by_impulses ? "impulses" : "alignment");
-        put_number(text, "confidence", initial_position_confidence(&application->drive.finding));
+                 application->drive.enabling.detection.by_impulses ? "impulses" : "alignment");
+        put_number(text, "confidence",
+                   initial_position_confidence(&application->drive.enabling.detection));
     }
 }
 

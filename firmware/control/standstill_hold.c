@@ -17,6 +17,7 @@ struct standstill_hold_params standstill_hold_design(const struct per_unit *base
     params.motion_current = num_from_double(task->motion_current_A / base->current_A);
     params.current_limit = num_from_double(task->current_limit_A / base->current_A);
     params.damping = coef_from_double(task->damping_As_rad * base->speed_rad_s / base->current_A);
+    params.enters_at_rest = task->enters_at_rest;
     params.delay_periods =
         task->enters_at_rest ? (uint32_t)(task->delay_s / task->period_s + 0.5) : UINT32_MAX;
     params.error_limit = num_from_double(error_limit_turns);
@@ -48,10 +49,10 @@ void standstill_hold_align(struct standstill_hold *hold, angle_t angle, num_t sp
 }
 
 void standstill_hold_end_aligning(struct standstill_hold *hold,
-                                  const struct standstill_hold_params *params, bool goes_on)
+                                  const struct standstill_hold_params *params)
 {
     hold->current = params->current;
-    hold->active = goes_on;
+    hold->active = params->enters_at_rest;
 }
 
 void standstill_hold_preset(struct standstill_hold *hold, num_t i_d)

@@ -26,6 +26,7 @@ struct standstill_hold_params {
     uint32_t delay_periods;
     num_t error_limit; /* electrical turns within which the hold may be entered */
     num_t speed_limit;
+    bool enters_at_rest; /* false: it holds only while the drive is being enabled */
 };
 
 struct standstill_hold {
@@ -42,7 +43,7 @@ struct standstill_hold_task {
     double motion_current_A;
     double ramp_s;
     double delay_s;
-    bool enters_at_rest; /* false: it holds only while the drive is being enabled */
+    bool enters_at_rest;
     double current_limit_A;
     double damping_As_rad; /* k_w, design/hold_check.h */
     double period_s;
@@ -60,9 +61,9 @@ void standstill_hold_enter(struct standstill_hold *hold, angle_t reference);
 /* While enabling: holds at this angle of a frame that turns at `speed`, with this current. */
 void standstill_hold_align(struct standstill_hold *hold, angle_t angle, num_t speed, num_t current);
 
-/* Enabling ends: the current is the design's again, and the hold goes on or ends. */
+/* Enabling ends: the current is the design's again, and the hold goes on if it may at rest. */
 void standstill_hold_end_aligning(struct standstill_hold *hold,
-                                  const struct standstill_hold_params *params, bool goes_on);
+                                  const struct standstill_hold_params *params);
 
 /* Bumpless transfer: the ramp of i_d* begins here. */
 void standstill_hold_preset(struct standstill_hold *hold, num_t i_d);

@@ -7,20 +7,21 @@ static struct position initial_position(const struct drive *drive, struct positi
 {
     const struct drive_params *params = &drive->params;
 
-    return params->encoder_zero_known ? encoder_position(&params->estimator.encoder.encoder,
-                                                         encoder_zero, drive->encoder_count)
-                                      : drive->start;
+    return params->enabling.encoder_zero_known
+               ? encoder_position(&params->estimator.encoder.encoder, encoder_zero,
+                                  drive->encoder_count)
+               : drive->enabling.start;
 }
 
 void drive_reset_blocks(struct drive *drive)
 {
     const struct drive_params *params = &drive->params;
     const struct estimator_start start = {
-        .position = initial_position(drive, params->encoder_zero_told),
-        .encoder_position = initial_position(drive, params->encoder_zero),
-        .load_torque = params->initial_load_torque,
+        .position = initial_position(drive, params->enabling.encoder_zero_assumed),
+        .encoder_position = initial_position(drive, params->enabling.encoder_zero),
+        .load_torque = params->enabling.initial_load_torque,
         .resistance = drive->estimator.estimate.winding.resistance,
-        .unloaded_periods = params->hold_on_enable_periods,
+        .unloaded_periods = params->enabling.hold_on_enable_periods,
         .encoder_count = drive->encoder_count,
     };
 
@@ -31,7 +32,5 @@ void drive_reset_blocks(struct drive *drive)
     detent_compensation_reset(&drive->detent);
     current_control_reset(&drive->current_control);
     synchronism_reset(drive);
-    drive->predicted_current = (struct phases){NUM(0.0), NUM(0.0)};
-    drive->demanded_voltage = drive->predicted_current;
-    drive->predicted_frame = (struct sincos){UNIT(1.0), UNIT(0.0)};
+    expectation_reset(&drive->expectation);
 }

@@ -124,7 +124,7 @@ static bool enable(struct drive *drive, uint32_t at_period, char error[DRIVE_ERR
 {
     const struct hal *board = drive->board;
     const enum drive_state found = drive_state_by(drive, at_period);
-    const enum drive_state state = drive->state;
+    const enum drive_state state = drive->supervision.state;
 
     if (found == DRIVE_SWITCH_ON_DISABLED &&
         (state == DRIVE_SWITCH_ON_DISABLED || state == DRIVE_FAULT)) {
@@ -196,10 +196,10 @@ void drive_signals_read(const struct drive *drive, struct drive_signals *signals
     const struct estimate *x = &drive->estimator.estimate;
     const struct reference_sample *reference = &drive->reference.now;
 
-    signals->state = drive->state;
-    signals->fault = drive->fault;
-    signals->synchronism = drive->synchronism;
-    signals->period = drive->period;
+    signals->state = drive->supervision.state;
+    signals->fault = drive->supervision.fault;
+    signals->synchronism = drive->synchronism.shown;
+    signals->period = drive->supervision.period;
     signals->holding = drive->hold.active;
     signals->reference_moving = reference->moving;
     signals->theta_ref_rad = position_to_rad(reference->position, teeth);

@@ -10,7 +10,7 @@
 #include "firmware/drive/modulate.h"
 #include "firmware/drive/drive.h"
 #include "firmware/drive/finding_position.h"
-#include "firmware/drive/inferred_voltage.h"
+#include "firmware/drive/prepared_input.h"
 #include "firmware/drive/standstill_angle.h"
 #include "firmware/drive/state_machine.h"
 #include "firmware/drive/synchronism.h"
@@ -56,7 +56,7 @@ IN_PLACE struct position_law_input law_input(const struct drive *drive,
                                              const struct prediction *next)
 {
     const struct reference_sample *reference = next->reference;
-    const bool feed_forward = drive->params.feed_forward;
+    const bool feed_forward = drive->params.path.feed_forward;
 
     return (struct position_law_input){
         .position_error = position_difference(reference->position, next->rotor.position),
@@ -81,9 +81,9 @@ IN_PLACE struct dq wanted_current(struct drive *drive, const struct prediction *
 
     current.d = standstill_hold_step(&drive->hold, &params->hold);
     if (drive->hold.active) {
-        current.q =
-            standstill_hold_torque_current(&params->hold, next->rotor.speed - drive->hold.speed,
-                                           drive->aligns ? NUM(0.0) : next->rotor.load_torque);
+        current.q = standstill_hold_torque_current(
+            &params->hold, next->rotor.speed - drive->hold.speed,
+            drive->supervision.aligns ? NUM(0.0) : next->rotor.load_torque);
     } else {
         const struct position_law_input input = law_input(drive, next);
 
@@ -125,16 +125,15 @@ static struct phases regulate_voltage(struct drive *drive, const struct estimate
                                       const struct prediction *next)
 {
     const struct drive_params *params = &drive->params;
-    const struct phases innovation = {estimate->current.a - drive->predicted_current.a,
-                                      estimate->current.b - drive->predicted_current.b};
     const struct voltage_law_input input = {
         .motion = law_input(drive, next),
         .current = park(next->current, next->frame),
         .undisturbed_current = park(next->undisturbed_current, next->frame),
-        .innovation = park(innovation, drive->predicted_frame),
+        .innovation = expectation_innovation(&drive->expectation, estimate->current),
         .current_d_reference = standstill_hold_step(&drive->hold, &params->hold),
-        .reference_jerk =
-            params->feed_forward ? reference_jerk(&drive->reference, &params->reference) : NUM(0.0),
+        .reference_jerk = params->path.feed_forward
+                              ? reference_jerk(&drive->reference, &params->reference)
+                              : NUM(0.0),
         .load_torque_change = next->load_torque_change,
         .resistance = estimate->winding.resistance,
         .voltage_limit = modulator_voltage_limit(&drive->modulator),
@@ -159,10 +158,10 @@ static void expect_current(struct drive *drive, const struct estimate *estimate,
                            struct prediction *next)
 {
     next->load_torque_change = NUM(0.0);
-    next->undisturbed_current =
-        drive->params.immediate
-            ? estimate->current
-            : forced_current(&estimate->winding, estimate->free_current, drive->demanded_voltage);
+    next->undisturbed_current = drive->params.path.zero_delay
+                                    ? estimate->current
+                                    : forced_current(&estimate->winding, estimate->free_current,
+                                                     drive->expectation.demanded_voltage);
 }
 
 /* Afterwards, with this period's voltage. */
@@ -171,12 +170,10 @@ static void remember_demand(struct drive *drive, const struct estimate *estimate
 {
     struct phases expected = next->undisturbed_current;
 
-    if (drive->params.immediate) {
+    if (drive->params.path.zero_delay) {
         expected = forced_current(&estimate->winding, estimate->free_current, voltage);
     }
-    drive->predicted_current = expected;
-    drive->predicted_frame = estimate->mid_period;
-    drive->demanded_voltage = voltage;
+    expectation_set(&drive->expectation, voltage, expected, estimate->mid_period);
 }
 
 /* The detent torque at the instant of action, learned from what the observer has left of it. A
@@ -186,7 +183,8 @@ compensate_detent(struct drive *drive, const struct estimate *estimate, struct p
 {
     const num_t before = drive->detent.torque;
 
-    if (!drive->params.immediate) { /* the prediction knew the estimated part of the load alone */
+    if (!drive->params.path
+             .zero_delay) { /* the prediction knew the estimated part of the load alone */
         next->rotor.speed -= num_mul_coef(before, drive->params.model.speed_per_torque);
     }
     detent_compensation_step(&drive->detent, &drive->params.detent, next->rotor.position.fraction,
@@ -216,8 +214,9 @@ IN_PLACE void leave_or_lead(struct drive *drive)
     }
     standstill_hold_leave(&drive->hold, drive->reference.slow_periods,
                           drive->reference.next.moving);
-    if (drive->hold.active && drive->hold.leads && standstill_hold_leads_in(drive->period) &&
-        drive->commands.looked != drive->period) {
+    if (drive->hold.active && drive->hold.leads &&
+        standstill_hold_leads_in(drive->supervision.period) &&
+        drive->commands.looked != drive->supervision.period) {
         lead_rotor(drive);
     }
 }
@@ -243,7 +242,7 @@ IN_PLACE void hand_over(struct drive *drive, const struct estimate *estimate, bo
  * delay, no loss compensation. Kept out of the interrupt's body, so that the registers and the
  * stack of the heaviest law cost the default path nothing.
  */
-__attribute__((noinline)) static struct hal_outputs control_in_full(struct drive *drive,
+__attribute__((noinline)) static struct hal_outputs control_general(struct drive *drive,
                                                                     const struct estimate *estimate)
 {
     const struct drive_params *params = &drive->params;
@@ -253,29 +252,29 @@ __attribute__((noinline)) static struct hal_outputs control_in_full(struct drive
     struct phases voltage;
     struct hal_outputs duties;
 
-    if (params->standstill_pulses) {
+    if (params->path.standstill_pulses) {
         standstill_angle_begin(drive);
     }
-    if (params->immediate) {
+    if (params->path.zero_delay) {
         present(&next, drive, estimate);
     } else {
         predict(&next, drive, estimate);
     }
     expect_current(drive, estimate, &next);
-    if (ESTIMATORS_READ_ENCODER && params->detent_learning && !drive->aligns) {
+    if (ESTIMATORS_READ_ENCODER && params->path.detent_learning && !drive->supervision.aligns) {
         compensate_detent(drive, estimate, &next);
     }
     voltage = !drive->hold.active && position_law_gives_voltage(params->position_law)
                   ? regulate_voltage(drive, estimate, &next)
                   : regulate_current(drive, estimate, &next);
-    if (params->standstill_pulses) {
+    if (params->path.standstill_pulses) {
         standstill_angle_step(drive, estimate, &before, &voltage);
     }
     remember_demand(drive, estimate, &next, voltage);
-    duties = modulate(drive, params->bridge_loss_compensation
+    duties = modulate(drive, params->path.bridge_loss_compensation
                                  ? actuation_compensate(&drive->actuation, voltage)
                                  : voltage);
-    if (params->immediate) {
+    if (params->path.zero_delay) {
         actuation_commit_past(&drive->actuation); /* measured at the next S(k) already */
     }
     hand_over(drive, estimate, held);
@@ -299,26 +298,8 @@ IN_PLACE struct hal_outputs control_current(struct drive *drive, const struct es
 IN_PLACE struct hal_outputs control(struct drive *drive, const struct estimate *estimate)
 {
     reference_step(&drive->reference, &drive->params.reference, drive->hold.active);
-    return drive->params.in_full ? control_in_full(drive, estimate)
-                                 : control_current(drive, estimate);
-}
-
-/*
- * What the estimator gets in place of a measurement, into drive->prepared. A current that a pulse
- * has made is not for the estimator, which goes by its model meanwhile. Apart, and by value, so
- * that the default path keeps its samples in registers.
- */
-__attribute__((noinline)) static void prepare_input(struct drive *drive, struct phases current,
-                                                    struct phases voltage)
-{
-    if (drive->params.infers_voltage) {
-        voltage = inferred_voltage(drive, current);
-    }
-    drive->prepared.voltage = voltage;
-    drive->prepared.current = current;
-    if (standstill_pulses_hides_sample(&drive->pulses, &drive->pulses_params)) {
-        standstill_angle_hide_sample(drive, &drive->prepared);
-    }
+    return drive->params.path.general ? control_general(drive, estimate)
+                                      : control_current(drive, estimate);
 }
 
 IN_PLACE const struct estimate *observe(struct drive *drive, const struct sample_set *now)
@@ -326,9 +307,9 @@ IN_PLACE const struct estimate *observe(struct drive *drive, const struct sample
     struct channels winding = now->winding;
 
     modulator_track_bus(&drive->modulator, now->bus);
-    if (drive->params.in_full && drive->params.prepares_input) {
-        prepare_input(drive, winding.current, winding.voltage);
-        winding = drive->prepared;
+    if (drive->params.path.general && drive->params.path.prepares_input) {
+        prepared_input_make(drive, winding.current, winding.voltage);
+        winding = drive->input.winding;
     }
     actuation_observe(&drive->actuation, winding.voltage);
     return estimator_step(&drive->estimator, &drive->params.estimator, &winding,
@@ -364,13 +345,14 @@ IN_PLACE struct sample_set measure(struct drive *drive, const struct hal_samples
 struct hal_outputs drive_control_cycle(struct drive *drive, const struct hal_samples *samples)
 {
     drive->encoder_count = samples->encoder_count;
-    drive->period++;
+    state_machine_begin_period(drive);
     if (state_machine_step(drive, samples)) {
         const struct sample_set now = measure(drive, samples);
 
         return powered_cycle(drive, &now);
     }
     (void)measure(drive, samples); /* the bus is shown in every state */
-    return drive->state == DRIVE_FINDING_POSITION ? finding_position_cycle(drive, samples)
-                                                  : state_machine_resting_bridge(drive);
+    return drive->supervision.state == DRIVE_FINDING_POSITION
+               ? finding_position_cycle(drive, samples)
+               : state_machine_resting_bridge(drive);
 }

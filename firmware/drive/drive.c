@@ -125,8 +125,9 @@ __attribute__((noinline)) static bool design_invariant_ekf(struct drive *drive,
 static bool design_estimator(struct drive *drive, const struct drive_settings *settings,
                              double period_s, char error[DRIVE_ERROR_TEXT])
 {
-    const struct estimator_start start = {.position = drive->params.initial_position,
-                                          .encoder_position = drive->params.initial_position,
+    const struct estimator_start start = {.position = drive->params.enabling.initial_position,
+                                          .encoder_position =
+                                              drive->params.enabling.initial_position,
                                           .resistance = drive->params.model.nominal_resistance};
     if (settings->feedback == DRIVE_FEEDBACK_ENCODER && !ESTIMATORS_READ_ENCODER) {
         return design_refuse(error, "feedback = encoder: this image is for a board without one");
@@ -185,7 +186,7 @@ static void design_detent_compensation(struct drive *drive, const struct drive_s
     };
     struct learned_parameters learned;
 
-    drive->params.detent_learning = settings->detent_learning;
+    drive->params.path.detent_learning = settings->detent_learning;
     drive->params.detent = detent_compensation_design(&detent);
     detent_compensation_set(&drive->detent, &drive->params.detent, &drive->base,
                             parameter_store_read(drive->board, &learned)
@@ -246,16 +247,17 @@ static bool design_finding(struct drive *drive, const struct drive_settings *set
         .hold_ramp_s = settings->hold_ramp_s,
     };
 
-    drive->params.standstill_pulses = settings->standstill_pulses;
-    drive->params.prepares_input = drive->params.infers_voltage || settings->standstill_pulses;
-    standstill_pulses_design(&drive->pulses_params, &drive->params.model, &settings->motor,
+    drive->params.path.standstill_pulses = settings->standstill_pulses;
+    drive->params.path.prepares_input =
+        drive->params.path.infers_voltage || settings->standstill_pulses;
+    standstill_pulses_design(&drive->standstill.params, &drive->params.model, &settings->motor,
                              &drive->base, &pulses);
-    standstill_pulses_reset(&drive->pulses, &drive->pulses_params, NUM(0.0));
-    drive->start = drive->params.initial_position;
-    drive->params.finds_position = settings->initial_position != DRIVE_INITIAL_POSITION_TOLD;
-    return !drive->params.finds_position ||
-           initial_position_design(&drive->finding_params, &drive->params.model, &settings->motor,
-                                   &drive->base, &task, error);
+    standstill_pulses_reset(&drive->standstill.pulses, &drive->standstill.params, NUM(0.0));
+    drive->params.enabling.detects_position =
+        settings->initial_position != DRIVE_INITIAL_POSITION_TOLD;
+    return !drive->params.enabling.detects_position ||
+           initial_position_design(&drive->enabling.detection_params, &drive->params.model,
+                                   &settings->motor, &drive->base, &task, error);
 }
 
 static bool design_hold(struct drive *drive, const struct drive_settings *settings, double period_s,
@@ -301,8 +303,8 @@ static double speed_limit(const struct drive_settings *settings, const struct pe
 bool drive_init(struct drive *drive, const struct hal *board, const struct drive_settings *settings,
                 char error[DRIVE_ERROR_TEXT])
 {
-    static const struct drive powered_down = {.state = DRIVE_SWITCH_ON_DISABLED,
-                                              .period = UINT32_MAX};
+    static const struct drive powered_down = {
+        .supervision = {.state = DRIVE_SWITCH_ON_DISABLED, .period = UINT32_MAX}};
     const struct hal_facts *facts = board->facts;
     const double period_s = facts->control_period_s;
     struct drive_params *params = &drive->params;
@@ -323,7 +325,7 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
     params->measurement = measurement_design(facts, &drive->base);
     params->model =
         motor_model_design(&settings->motor, &drive->base, period_s, facts->bridge_resistance_ohm);
-    params->initial_position =
+    params->enabling.initial_position =
         position_from_rad(settings->initial_angle_rad + settings->initial_angle_error_rad,
                           settings->motor.rotor_teeth);
     params->reference = reference_design(&drive->base, period_s, creep_limits(settings));
@@ -331,33 +333,33 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
                                                      settings->current_bandwidth_rad_s);
     params->modulator = modulator_design(facts->pwm_half_period_counts);
     params->protection = protection_design(&drive->base, facts, &drive->settings);
-    params->calibrate_offsets = settings->calibrate_offsets;
-    drive->calibration_params = offset_calibration_design(facts, &settings->motor, &drive->base);
-    params->feed_forward = settings->feed_forward;
-    params->immediate = facts->acts_at_once;
-    params->hold_at_rest = settings->hold_at_rest;
-    params->bridge_loss_compensation = settings->bridge_loss_compensation;
-    params->infers_voltage =
+    params->enabling.calibrates_offsets = settings->calibrate_offsets;
+    drive->enabling.calibration_params =
+        offset_calibration_design(facts, &settings->motor, &drive->base);
+    params->path.feed_forward = settings->feed_forward;
+    params->path.zero_delay = facts->acts_at_once;
+    params->path.bridge_loss_compensation = settings->bridge_loss_compensation;
+    params->path.infers_voltage =
         settings->voltage_source == DRIVE_VOLTAGE_COMMANDED || !facts->has_phase_voltages;
     params->bridge_loss =
         bridge_loss_design(&settings->motor, &drive->base, period_s,
                            settings->bridge_loss_compensation ? facts->dead_time_s : 0.0);
-    params->in_full = position_law_gives_voltage(settings->law) || settings->detent_learning ||
-                      settings->standstill_pulses || params->infers_voltage || params->immediate ||
-                      !settings->bridge_loss_compensation;
-    params->encoder_zero_known =
+    params->path.general = position_law_gives_voltage(settings->law) || settings->detent_learning ||
+                           settings->standstill_pulses || params->path.infers_voltage ||
+                           params->path.zero_delay || !settings->bridge_loss_compensation;
+    params->enabling.encoder_zero_known =
         settings->feedback == DRIVE_FEEDBACK_ENCODER && settings->encoder_zero_known;
-    params->encoder_zero =
+    params->enabling.encoder_zero =
         position_from_rad(settings->encoder_zero_rad, settings->motor.rotor_teeth);
-    params->encoder_zero_told =
+    params->enabling.encoder_zero_assumed =
         position_from_rad(settings->encoder_zero_rad + settings->initial_angle_error_rad,
                           settings->motor.rotor_teeth);
-    params->initial_load_torque =
+    params->enabling.initial_load_torque =
         num_from_double(settings->initial_load_torque_Nm / drive->base.torque_Nm);
-    params->hold_on_enable_periods =
+    params->enabling.hold_on_enable_periods =
         settings->hold_on_enable ? (uint32_t)(settings->hold_on_enable_s / period_s + 0.5) : 0u;
     modulator_reset(&drive->modulator);
-    reference_reset(&drive->reference, params->initial_position);
+    reference_reset(&drive->reference, params->enabling.initial_position);
     planned_end_init(drive);
     planner_init(drive);
     if (!design_estimator(drive, &drive->settings, period_s, error)) {

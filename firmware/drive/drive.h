@@ -11,6 +11,7 @@
 #include "firmware/control/position_law_dispatch.h"
 #include "firmware/control/standstill_hold.h"
 #include "firmware/drive/command_queue.h"
+#include "firmware/drive/expectation.h"
 #include "firmware/interface/drive_interface.h"
 #include "firmware/drive/measurement.h"
 #include "firmware/drive/offset_calibration.h"
@@ -27,6 +28,30 @@
 #include "firmware/motor/bridge_loss.h"
 #include "hal/hal.h"
 
+/* Which way the control interrupt goes. */
+struct path_params {
+    bool feed_forward;
+    bool zero_delay; /* the answer acts from S(k) on, without a period of delay */
+    bool general;    /* more is in use than a current law with delay and loss compensation */
+    bool bridge_loss_compensation;
+    bool infers_voltage; /* the phase voltages are not measured */
+    bool detent_learning;
+    bool standstill_pulses;
+    bool prepares_input; /* the estimator's, beyond what is measured */
+};
+
+/* The steps of enabling, and what is assumed of the motor before them. */
+struct enabling_params {
+    struct position initial_position;     /* rotor; with initial_angle_error_rad */
+    struct position encoder_zero;         /* rotor where count 0 begins */
+    struct position encoder_zero_assumed; /* with initial_angle_error_rad */
+    num_t initial_load_torque;
+    uint32_t hold_on_enable_periods;
+    bool calibrates_offsets;
+    bool detects_position;
+    bool encoder_zero_known;
+};
+
 /* Constants: written at start-up, read by the interrupt. */
 struct drive_params {
     struct measurement_params measurement;
@@ -38,30 +63,64 @@ struct drive_params {
     struct modulator_params modulator;
     struct protection_params protection;
     enum position_law position_law;
-    struct position initial_position; /* as the drive is told it */
-    uint32_t hold_on_enable_periods;
-    bool calibrate_offsets;
-    bool feed_forward;
-    bool immediate; /* no period of delay: the answer acts from S(k) on */
-    bool in_full;   /* more is in use than a current law with delay and loss compensation */
-    bool hold_at_rest;
-    bool bridge_loss_compensation;
-    bool infers_voltage; /* the phase voltages are not measured */
-    bool detent_learning;
-    bool encoder_zero_known;
-    bool finds_position; /* a step of enabling */
-    bool standstill_pulses;
-    bool prepares_input;               /* the estimator's, beyond what is measured */
-    struct position encoder_zero;      /* rotor where count 0 begins */
-    struct position encoder_zero_told; /* with initial_angle_error_rad */
-    num_t initial_load_torque;
+    struct path_params path;
+    struct enabling_params enabling;
     union position_law_params law; /* large, so behind what every law uses */
     struct detent_compensation_params detent;
     struct bridge_loss_params bridge_loss;
-    enum drive_synchronism_policy synchronism_policy;
-    bool monitors_synchronism;
 };
 
+/* States, faults and the count of periods: state_machine.h. */
+struct supervision {
+    enum drive_state state;
+    enum drive_fault fault;
+    uint32_t period;      /* index of the present or last control interrupt; 0 is the first */
+    uint32_t state_since; /* period in which the state was entered */
+    bool aligns; /* draws the rotor to where it is assumed to be: what the encoder then knows of the
+                    frame, and with it load and detent, is worth nothing */
+};
+
+/* The synchronism monitor and what comes of its verdicts: synchronism.h. */
+struct synchronism_supervision {
+    uint32_t due; /* first period for the monitor's next step */
+    enum drive_synchronism shown;
+    uint32_t step;        /* the monitor's next */
+    uint32_t block_began; /* period */
+    struct synchronism_monitor monitor;
+    struct synchronism_monitor_params params;
+    enum drive_synchronism_policy policy;
+    bool monitored;
+};
+
+/* What the estimator gets instead of samples: prepared_input.h. */
+struct prepared_input {
+    struct channels winding;    /* of this S(k) */
+    struct phases past_current; /* of S(k-1), where the phase voltages are inferred from it */
+};
+
+/* Pulses on the hold: standstill_angle.h. */
+struct standstill {
+    struct standstill_pulses pulses;
+    struct standstill_pulses_params params;
+    struct phases loss_before_pulse;
+    struct phases bias_of_motion; /* offset of the measured voltage before the hold */
+};
+
+/* The steps between switched off and operation. */
+struct enabling {
+    struct position start; /* rotor, as assumed or as found */
+    struct offset_calibration calibration;
+    struct offset_calibration_params calibration_params;
+    struct initial_position detection;
+    struct initial_position_params detection_params;
+    struct encoder_alignment alignment;
+    struct encoder_alignment_params alignment_params;
+};
+
+/*
+ * In the order of nearness, for the core's sake: first what every interrupt uses. The members of
+ * each are written by its own functions alone.
+ */
 struct drive {
     struct drive_params params;
 
@@ -74,7 +133,7 @@ struct drive {
     struct modulator modulator;
     struct actuation actuation;
 
-    /* this period's inner signals, shown by drive_signals_read; near, for the core's sake */
+    /* this period's inner signals, shown by drive_signals_read */
     struct dq current;
     struct dq current_reference;
     struct dq voltage_command;
@@ -84,31 +143,12 @@ struct drive {
     union position_law_state law;
     struct detent_compensation detent;
 
-    /* supervision */
-    enum drive_state state;
-    enum drive_fault fault;
-    uint32_t synchronism_due; /* first period for the monitor's next step */
-    uint32_t period;          /* index of the present or last control interrupt; 0 is the first */
-    uint32_t state_since;     /* period in which the state was entered */
-    int32_t encoder_count;    /* of this S(k) */
-    bool aligns; /* draws the rotor to where it is told to be: what the encoder then knows
-                    of the frame, and with it load and detent, is worth nothing */
-
-    struct phases demanded_voltage;  /* of the last S(k) */
-    struct phases predicted_current; /* for this S(k), had what was demanded acted */
-    struct sincos predicted_frame;   /* of the middle of the period before this S(k) */
-
-    /* of the synchronism monitor, and what only a few settings use */
-    enum drive_synchronism synchronism;
-    struct synchronism_monitor synchronism_monitor;
-    struct synchronism_monitor_params synchronism_monitor_params;
-    uint32_t synchronism_step;    /* the monitor's next */
-    uint32_t synchronism_block;   /* period in which its block began */
-    struct phases past_current;   /* of S(k-1), where the phase voltages are inferred from it */
-    struct channels prepared;     /* of this S(k), what the estimator gets instead of samples */
-    struct phases bias_of_motion; /* offset of the measured voltage before the hold */
-
-    struct command_queue commands; /* supervision too; large, so behind what is used more */
+    struct supervision supervision;
+    int32_t encoder_count; /* of this S(k) */
+    struct expectation expectation;
+    struct synchronism_supervision synchronism;
+    struct prepared_input input;
+    struct command_queue commands;
 
     /* background */
     const struct hal *board;
@@ -117,17 +157,9 @@ struct drive {
     struct planned_end planned_end;
     struct planner planner;
 
-    /* enabling, with its constants: behind all that an interrupt in operation uses */
-    struct position start; /* rotor, as told or as found */
-    struct offset_calibration calibration;
-    struct offset_calibration_params calibration_params;
-    struct initial_position finding;
-    struct initial_position_params finding_params;
-    struct encoder_alignment alignment;
-    struct encoder_alignment_params alignment_params;
-    struct standstill_pulses pulses;
-    struct standstill_pulses_params pulses_params;
-    struct phases loss_before_pulse;
+    /* behind all that an interrupt in operation uses */
+    struct standstill standstill;
+    struct enabling enabling;
 };
 
 /*

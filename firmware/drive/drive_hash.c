@@ -73,7 +73,7 @@ struct drive_hash_row drive_hash_row(const struct drive *drive, const struct hal
     return (struct drive_hash_row){{
         ((uint32_t)high[0] << 16) | high[1],
         ((uint32_t)high[2] << 16) | high[3],
-        ((uint32_t)drive->state << 1) | (outputs->bridge_on ? 1u : 0u),
+        ((uint32_t)drive->supervision.state << 1) | (outputs->bridge_on ? 1u : 0u),
         (uint32_t)rotor->position.turns,
         rotor->position.fraction,
         num_bits(rotor->speed),

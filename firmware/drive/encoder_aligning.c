@@ -37,21 +37,21 @@ void encoder_aligning_design(struct drive *drive, const struct drive_settings *s
         .settling_s = 0.5 * settings->hold_on_enable_s,
     };
 
-    drive->alignment_params = encoder_alignment_design(&task);
+    drive->enabling.alignment_params = encoder_alignment_design(&task);
 }
 
 void encoder_aligning_start(struct drive *drive)
 {
-    encoder_alignment_start(&drive->alignment, drive->encoder_count);
+    encoder_alignment_start(&drive->enabling.alignment, drive->encoder_count);
 }
 
 /* Not in the memory of the interrupt, as operation does not need it. */
 __attribute__((noinline)) enum encoder_aligning encoder_aligning_step(struct drive *drive)
 {
-    struct encoder_alignment *alignment = &drive->alignment;
+    struct encoder_alignment *alignment = &drive->enabling.alignment;
     const struct position home = drive->reference.next.position;
     const enum encoder_alignment_event event = encoder_alignment_step(
-        alignment, &drive->alignment_params, drive->encoder_count, drive->current.d);
+        alignment, &drive->enabling.alignment_params, drive->encoder_count, drive->current.d);
 
     if (event == ALIGNMENT_FAILS) {
         return ENCODER_NOT_ALIGNED;
@@ -61,7 +61,7 @@ __attribute__((noinline)) enum encoder_aligning encoder_aligning_step(struct dri
                         position_add(home, alignment->rotor), drive->encoder_count);
     }
     standstill_hold_align(&drive->hold, home.fraction + (angle_t)alignment->offset,
-                          encoder_alignment_speed(alignment, &drive->alignment_params),
-                          encoder_alignment_current(alignment, &drive->alignment_params));
+                          encoder_alignment_speed(alignment, &drive->enabling.alignment_params),
+                          encoder_alignment_current(alignment, &drive->enabling.alignment_params));
     return alignment->stage == ALIGNMENT_FOUND ? ENCODER_ALIGNED : ENCODER_ALIGNING;
 }

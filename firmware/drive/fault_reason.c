@@ -6,8 +6,8 @@ enum { DIGITS = 6 };
 
 void fault_reason_put(struct text *text, const struct drive *drive)
 {
-    const struct fault_row *row = fault_at(drive->fault);
-    const struct setting *limit = fault_limit(drive->fault);
+    const struct fault_row *row = fault_at(drive->supervision.fault);
+    const struct setting *limit = fault_limit(drive->supervision.fault);
 
     text_put(text, row->name);
     text_put(text, ": ");

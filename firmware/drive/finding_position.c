@@ -1,7 +1,7 @@
 #include "firmware/drive/finding_position.h"
 
 #include "firmware/drive/modulate.h"
-#include "firmware/drive/inferred_voltage.h"
+#include "firmware/drive/prepared_input.h"
 #include "firmware/drive/state_machine.h"
 
 static struct hal_outputs act(struct drive *drive, struct initial_position_output output)
@@ -11,10 +11,10 @@ static struct hal_outputs act(struct drive *drive, struct initial_position_outpu
         return (struct hal_outputs){.bridge_on = false};
     }
     const struct hal_outputs duties =
-        modulate(drive, output.in_full ? actuation_compensate(&drive->actuation, output.voltage)
-                                       : output.voltage);
+        modulate(drive, output.compensated ? actuation_compensate(&drive->actuation, output.voltage)
+                                           : output.voltage);
 
-    if (drive->params.immediate) {
+    if (drive->params.path.zero_delay) {
         actuation_commit_past(&drive->actuation);
     }
     return duties;
@@ -23,13 +23,13 @@ static struct hal_outputs act(struct drive *drive, struct initial_position_outpu
 /* After an alignment its current flows on, now in the d axis of the hold. */
 static void go_on(struct drive *drive, const struct sample_set *now)
 {
-    const struct initial_position *finding = &drive->finding;
+    const struct initial_position *finding = &drive->enabling.detection;
 
     state_machine_position_found(drive, finding->angle);
-    standstill_pulses_reset(&drive->pulses, &drive->pulses_params,
-                            finding->by_impulses
-                                ? initial_position_full_asymmetry(finding, &drive->finding_params)
-                                : NUM(0.0));
+    standstill_pulses_reset(&drive->standstill.pulses, &drive->standstill.params,
+                            finding->by_impulses ? initial_position_full_asymmetry(
+                                                       finding, &drive->enabling.detection_params)
+                                                 : NUM(0.0));
     if (!finding->by_impulses) {
         standstill_hold_preset(&drive->hold, finding->current_reference);
         current_control_preset(&drive->current_control, (struct dq){finding->voltage, NUM(0.0)});
@@ -46,19 +46,20 @@ struct hal_outputs finding_position_cycle(struct drive *drive, const struct hal_
 
     modulator_track_bus(&drive->modulator, now->bus);
 
-    const struct phases voltage = drive->params.infers_voltage
-                                      ? inferred_voltage(drive, now->winding.current)
+    const struct phases voltage = drive->params.path.infers_voltage
+                                      ? prepared_input_voltage(drive, now->winding.current)
                                       : now->winding.voltage;
 
     actuation_observe(&drive->actuation, voltage);
 
-    const struct initial_position_output output = initial_position_step(
-        &drive->finding, &drive->finding_params, now->winding.current, voltage);
+    const struct initial_position_output output =
+        initial_position_step(&drive->enabling.detection, &drive->enabling.detection_params,
+                              now->winding.current, voltage);
     const struct hal_outputs duties = act(drive, output);
 
-    if (drive->finding.stage == INITIAL_POSITION_FOUND) {
+    if (drive->enabling.detection.stage == INITIAL_POSITION_FOUND) {
         go_on(drive, now);
-    } else if (drive->finding.stage == INITIAL_POSITION_NOT_FOUND) {
+    } else if (drive->enabling.detection.stage == INITIAL_POSITION_NOT_FOUND) {
         state_machine_fault(drive, DRIVE_FAULT_POSITION_NOT_FOUND);
         return (struct hal_outputs){.bridge_on = false};
     }

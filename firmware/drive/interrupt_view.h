@@ -23,23 +23,23 @@
 /* Index of the present or last control interrupt. */
 static inline uint32_t interrupt_view_period(const struct drive *drive)
 {
-    return INTERRUPT_VIEW(uint32_t, drive->period);
+    return INTERRUPT_VIEW(uint32_t, drive->supervision.period);
 }
 
 static inline enum drive_state interrupt_view_state(const struct drive *drive)
 {
-    return INTERRUPT_VIEW(enum drive_state, drive->state);
+    return INTERRUPT_VIEW(enum drive_state, drive->supervision.state);
 }
 
 /* Period in which the state was entered. */
 static inline uint32_t interrupt_view_state_since(const struct drive *drive)
 {
-    return INTERRUPT_VIEW(uint32_t, drive->state_since);
+    return INTERRUPT_VIEW(uint32_t, drive->supervision.state_since);
 }
 
 static inline enum drive_synchronism interrupt_view_synchronism(const struct drive *drive)
 {
-    return INTERRUPT_VIEW(enum drive_synchronism, drive->synchronism);
+    return INTERRUPT_VIEW(enum drive_synchronism, drive->synchronism.shown);
 }
 
 /* Commands that found another state or place than they had been accepted for. */

@@ -5,7 +5,7 @@
 
 void planned_end_init(struct drive *drive)
 {
-    drive->planned_end.position = drive->params.initial_position;
+    drive->planned_end.position = drive->params.enabling.initial_position;
     drive->planned_end.known = PLANNED_END_KNOWN;
 }
 
@@ -16,7 +16,7 @@ void planned_end_update(struct drive *drive)
     if (queue->read == queue->written && !reference_busy(&drive->reference)) {
         drive->planned_end.position = drive->reference.next.position;
         if (!queue->stop.posted && (drive->planned_end.known != PLANNED_END_AFTER_ENABLING ||
-                                    drive->state == DRIVE_OPERATION_ENABLED)) {
+                                    drive->supervision.state == DRIVE_OPERATION_ENABLED)) {
             drive->planned_end.known = PLANNED_END_KNOWN;
         }
     }
@@ -44,7 +44,7 @@ bool planned_end_require_known(struct drive *drive, char error[DRIVE_ERROR_TEXT]
 void planned_end_note_enable(struct drive *drive)
 {
     planned_end_init(drive);
-    if (drive->params.encoder_zero_known || drive->params.finds_position) {
+    if (drive->params.enabling.encoder_zero_known || drive->params.enabling.detects_position) {
         drive->planned_end.known = PLANNED_END_AFTER_ENABLING;
     }
 }

@@ -329,7 +329,7 @@ static void take_command(struct drive *drive)
     struct motion_plan *plan;
 
     if (entry == queue->written || !queued_command_is_planned(command) ||
-        drive->state != DRIVE_OPERATION_ENABLED || wait > (int32_t)p->lead_periods ||
+        drive->supervision.state != DRIVE_OPERATION_ENABLED || wait > (int32_t)p->lead_periods ||
         !may_begin(drive, command)) {
         return;
     }

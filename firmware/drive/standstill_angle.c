@@ -17,8 +17,8 @@ static void tell_estimator(struct drive *drive, const struct standstill_angle *s
     rotor.speed = NUM(0.0);
     rotor.load_torque = park(shown->current, sincos_of(rotor.position.fraction)).q;
     estimator_tell_rotor(&drive->estimator, &drive->params.estimator, &rotor);
-    estimator_tell_bias_along(&drive->estimator, &drive->params.estimator, drive->bias_of_motion,
-                              drive->hold.frame);
+    estimator_tell_bias_along(&drive->estimator, &drive->params.estimator,
+                              drive->standstill.bias_of_motion, drive->hold.frame);
 }
 
 /* Apart: compiled once. */
@@ -28,12 +28,13 @@ __attribute__((noinline)) static struct phases expected_current(const struct dri
     return estimator_expected_current(&drive->estimator, &drive->params.estimator, voltage);
 }
 
-void standstill_angle_hide_sample(struct drive *drive, struct channels *winding)
+void standstill_angle_blank_sample(struct drive *drive, struct channels *winding)
 {
     const num_t resistance = drive->estimator.estimate.winding.resistance;
     const struct phases expected = expected_current(drive, winding->voltage);
 
-    standstill_pulses_sample(&drive->pulses, &drive->pulses_params, winding->current, expected);
+    standstill_pulses_sample(&drive->standstill.pulses, &drive->standstill.params, winding->current,
+                             expected);
     winding->voltage.a -= num_mul(resistance, winding->current.a - expected.a);
     winding->voltage.b -= num_mul(resistance, winding->current.b - expected.b);
     winding->current = expected_current(drive, winding->voltage);
@@ -41,30 +42,31 @@ void standstill_angle_hide_sample(struct drive *drive, struct channels *winding)
 
 void standstill_angle_begin(struct drive *drive)
 {
-    if (standstill_pulses_hides_sample(&drive->pulses, &drive->pulses_params)) {
-        actuation_preset_loss(&drive->actuation, drive->loss_before_pulse);
+    if (standstill_pulses_blanks_sample(&drive->standstill.pulses, &drive->standstill.params)) {
+        actuation_preset_loss(&drive->actuation, drive->standstill.loss_before_pulse);
     } else {
-        drive->loss_before_pulse = drive->actuation.loss;
+        drive->standstill.loss_before_pulse = drive->actuation.loss;
     }
 }
 
 void standstill_angle_step(struct drive *drive, const struct estimate *estimate,
                            const struct current_control *before, struct phases *voltage)
 {
-    struct standstill_pulses *pulses = &drive->pulses;
+    struct standstill_pulses *pulses = &drive->standstill.pulses;
     struct standstill_angle shown;
 
-    if (!drive->hold.active || drive->state != DRIVE_OPERATION_ENABLED ||
+    if (!drive->hold.active || drive->supervision.state != DRIVE_OPERATION_ENABLED ||
         pulses->signal == NUM(0.0)) {
         standstill_pulses_stop(pulses);
-        drive->bias_of_motion = estimator_bias(&drive->estimator, &drive->params.estimator);
+        drive->standstill.bias_of_motion =
+            estimator_bias(&drive->estimator, &drive->params.estimator);
         return;
     }
-    if (standstill_pulses_add(pulses, &drive->pulses_params, estimate->current,
+    if (standstill_pulses_add(pulses, &drive->standstill.params, estimate->current,
                               drive->actuation.loss, voltage)) {
         current_control_preset(&drive->current_control, before->integral);
     }
-    shown = standstill_pulses_result(pulses, &drive->pulses_params);
+    shown = standstill_pulses_result(pulses, &drive->standstill.params);
     if (shown.found) {
         tell_estimator(drive, &shown);
     }

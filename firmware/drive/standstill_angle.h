@@ -10,7 +10,7 @@
  * resistance is left out of the driving one. Else each pulse, of either sign, would leave a current
  * along the flux that the estimator takes for a resistance.
  */
-void standstill_angle_hide_sample(struct drive *drive, struct channels *winding);
+void standstill_angle_blank_sample(struct drive *drive, struct channels *winding);
 
 /* Before the control: what the bridge was found to take of the voltage before a pulse holds. */
 void standstill_angle_begin(struct drive *drive);

@@ -3,20 +3,21 @@
 #include "firmware/drive/block_reset.h"
 #include "firmware/drive/command_rules.h"
 #include "firmware/drive/encoder_aligning.h"
+#include "firmware/drive/prepared_input.h"
 #include "firmware/drive/synchronism.h"
 
 static void enter(struct drive *drive, enum drive_state state)
 {
-    drive->state = state;
-    drive->state_since = drive->period;
+    drive->supervision.state = state;
+    drive->supervision.state_since = drive->supervision.period;
 }
 
 static void end_aligning(struct drive *drive)
 {
     const struct drive_params *params = &drive->params;
 
-    drive->aligns = false;
-    standstill_hold_end_aligning(&drive->hold, &params->hold, params->hold_at_rest);
+    drive->supervision.aligns = false;
+    standstill_hold_end_aligning(&drive->hold, &params->hold);
     synchronism_start(drive);
     enter(drive, DRIVE_OPERATION_ENABLED);
 }
@@ -35,9 +36,10 @@ static void align_encoder(struct drive *drive)
 /* The first hold: without an encoder, and with one whose zero is known, it calibrates. */
 static void align(struct drive *drive)
 {
-    if (drive->aligns) {
+    if (drive->supervision.aligns) {
         align_encoder(drive);
-    } else if (drive->period - drive->state_since > drive->params.hold_on_enable_periods) {
+    } else if (drive->supervision.period - drive->supervision.state_since >
+               drive->params.enabling.hold_on_enable_periods) {
         end_aligning(drive);
     }
 }
@@ -45,9 +47,9 @@ static void align(struct drive *drive)
 static void power_up(struct drive *drive)
 {
     drive_reset_blocks(drive);
-    if (drive->params.hold_on_enable_periods > 0u) {
-        drive->aligns =
-            estimator_has_encoder(&drive->params.estimator) && !drive->params.encoder_zero_known;
+    if (drive->params.enabling.hold_on_enable_periods > 0u) {
+        drive->supervision.aligns = estimator_has_encoder(&drive->params.estimator) &&
+                                    !drive->params.enabling.encoder_zero_known;
         encoder_aligning_start(drive);
         standstill_hold_enter(&drive->hold, drive->reference.next.position.fraction);
         enter(drive, DRIVE_ALIGNING);
@@ -60,21 +62,22 @@ static void power_up(struct drive *drive)
 /* The turn is the one that the drive is told; nearest, if it is told wrong by less than half. */
 void state_machine_position_found(struct drive *drive, angle_t angle)
 {
-    const struct position told = drive->params.initial_position;
+    const struct position told = drive->params.enabling.initial_position;
 
-    drive->start = position_add(told, (int32_t)(angle - told.fraction));
+    drive->enabling.start = position_add(told, (int32_t)(angle - told.fraction));
     power_up(drive);
 }
 
 static void find_position_or_power_up(struct drive *drive)
 {
-    drive->start = drive->params.initial_position;
+    drive->enabling.start = drive->params.enabling.initial_position;
     /* the bridge is off; a position that is found by alignment leaves it on, with current */
     actuation_reset(&drive->actuation);
-    drive->past_current = (struct phases){NUM(0.0), NUM(0.0)};
-    if (drive->params.finds_position) {
+    prepared_input_reset(drive);
+    if (drive->params.enabling.detects_position) {
         drive_reset_blocks(drive);
-        initial_position_start(&drive->finding, &drive->finding_params, drive->start.fraction);
+        initial_position_start(&drive->enabling.detection, &drive->enabling.detection_params,
+                               drive->enabling.start.fraction);
         enter(drive, DRIVE_FINDING_POSITION);
     } else {
         power_up(drive);
@@ -85,8 +88,8 @@ static void find_position_or_power_up(struct drive *drive)
 __attribute__((noinline)) static void start_enabling(struct drive *drive)
 {
     measurement_reset(&drive->measurement);
-    offset_calibration_reset(&drive->calibration);
-    if (drive->params.calibrate_offsets) {
+    offset_calibration_reset(&drive->enabling.calibration);
+    if (drive->params.enabling.calibrates_offsets) {
         enter(drive, DRIVE_CALIBRATING_OFFSETS);
     } else {
         find_position_or_power_up(drive);
@@ -95,25 +98,26 @@ __attribute__((noinline)) static void start_enabling(struct drive *drive)
 
 static void disable(struct drive *drive)
 {
-    drive->aligns = false;
-    drive->fault = DRIVE_FAULT_NONE;
+    drive->supervision.aligns = false;
+    drive->supervision.fault = DRIVE_FAULT_NONE;
     enter(drive, DRIVE_SWITCH_ON_DISABLED);
 }
 
 /* true: done with the command; false: it waits for its period or for the reference to rest. */
 static bool obey(struct drive *drive, struct queued_command *command)
 {
-    const bool ahead = command->at_period == drive->period + 1u;
+    const bool ahead = command->at_period == drive->supervision.period + 1u;
 
     if (ahead && !queued_command_is_move(command)) {
         return false;
     }
-    if (drive->state == DRIVE_SWITCH_ON_DISABLED && command->kind == DRIVE_COMMAND_ENABLE) {
+    if (drive->supervision.state == DRIVE_SWITCH_ON_DISABLED &&
+        command->kind == DRIVE_COMMAND_ENABLE) {
         start_enabling(drive);
         return true;
     }
-    if (drive->state != DRIVE_OPERATION_ENABLED) {
-        if (!command_rules_obeyed(command->kind, drive->state)) {
+    if (drive->supervision.state != DRIVE_OPERATION_ENABLED) {
+        if (!command_rules_obeyed(command->kind, drive->supervision.state)) {
             command_queue_count_dropped(&drive->commands, command);
         }
         return true;
@@ -138,7 +142,8 @@ static bool obey(struct drive *drive, struct queued_command *command)
 
 static void take_over(struct drive *drive, const struct motion_plan *plan)
 {
-    if (drive->state == DRIVE_OPERATION_ENABLED && reference_take_over(&drive->reference, plan)) {
+    if (drive->supervision.state == DRIVE_OPERATION_ENABLED &&
+        reference_take_over(&drive->reference, plan)) {
         command_queue_accept_take_over(&drive->commands);
     }
 }
@@ -147,7 +152,7 @@ static void take_over(struct drive *drive, const struct motion_plan *plan)
 static void take_commands(struct drive *drive)
 {
     struct command_queue *queue = &drive->commands;
-    const uint32_t period = drive->period;
+    const uint32_t period = drive->supervision.period;
     uint32_t wait = COMMAND_QUEUE_NEVER;
     const struct motion_plan *plan;
     struct queued_command *command;
@@ -182,14 +187,15 @@ static void calibrate_offsets(struct drive *drive, const struct hal_samples *sam
 {
     struct channels offset;
 
-    if (drive->calibration.bridge_on) {
+    if (drive->enabling.calibration.bridge_on) {
         state_machine_fault(drive, protection_check_samples(&drive->params.protection, samples));
-        if (drive->state == DRIVE_FAULT) {
+        if (drive->supervision.state == DRIVE_FAULT) {
             return;
         }
     }
-    switch (offset_calibration_step(&drive->calibration, &drive->calibration_params,
-                                    &drive->params.measurement, samples, &offset)) {
+    switch (offset_calibration_step(&drive->enabling.calibration,
+                                    &drive->enabling.calibration_params, &drive->params.measurement,
+                                    samples, &offset)) {
     case OFFSETS_PENDING:
         break;
     case OFFSETS_FOUND:
@@ -205,7 +211,7 @@ static void calibrate_offsets(struct drive *drive, const struct hal_samples *sam
 /* Apart: rare. */
 __attribute__((noinline)) static void enter_fault(struct drive *drive, enum drive_fault fault)
 {
-    drive->fault = fault;
+    drive->supervision.fault = fault;
     command_queue_look_next(&drive->commands); /* nothing waits for a rest any more */
     enter(drive, DRIVE_FAULT);
 }
@@ -219,7 +225,8 @@ void state_machine_fault(struct drive *drive, enum drive_fault fault)
 
 struct hal_outputs state_machine_resting_bridge(const struct drive *drive)
 {
-    const bool on = drive->state == DRIVE_CALIBRATING_OFFSETS && drive->calibration.bridge_on;
+    const bool on = drive->supervision.state == DRIVE_CALIBRATING_OFFSETS &&
+                    drive->enabling.calibration.bridge_on;
     const uint16_t half = on ? (uint16_t)drive->params.modulator.middle_counts : 0u;
 
     return (struct hal_outputs){.high_counts = {half, half, half, half}, .bridge_on = on};
@@ -229,12 +236,12 @@ struct hal_outputs state_machine_resting_bridge(const struct drive *drive)
 __attribute__((noinline)) static bool step_outside_operation(struct drive *drive,
                                                              const struct hal_samples *samples)
 {
-    if (drive->state == DRIVE_CALIBRATING_OFFSETS) {
+    if (drive->supervision.state == DRIVE_CALIBRATING_OFFSETS) {
         calibrate_offsets(drive, samples);
-    } else if (drive->state == DRIVE_ALIGNING) {
+    } else if (drive->supervision.state == DRIVE_ALIGNING) {
         align(drive);
     }
-    if (drive->state == DRIVE_FINDING_POSITION) {
+    if (drive->supervision.state == DRIVE_FINDING_POSITION) {
         state_machine_fault(drive, protection_check_samples(&drive->params.protection, samples));
     }
     return state_machine_powered(drive);
@@ -244,11 +251,12 @@ bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
 {
     const bool was_powered = state_machine_powered(drive);
 
-    if (command_queue_is_pending(&drive->commands, drive->period,
+    if (command_queue_is_pending(&drive->commands, drive->supervision.period,
                                  !reference_busy(&drive->reference))) {
         take_commands(drive);
     }
-    if (drive->state != DRIVE_OPERATION_ENABLED && !step_outside_operation(drive, samples)) {
+    if (drive->supervision.state != DRIVE_OPERATION_ENABLED &&
+        !step_outside_operation(drive, samples)) {
         return false;
     }
     const enum drive_fault fault = protection_check_samples(&drive->params.protection, samples);

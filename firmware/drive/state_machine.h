@@ -17,7 +17,14 @@
 /* The bridge is on and the control runs; finding-position has the bridge for itself. */
 static inline bool state_machine_powered(const struct drive *drive)
 {
-    return drive->state == DRIVE_ALIGNING || drive->state == DRIVE_OPERATION_ENABLED;
+    return drive->supervision.state == DRIVE_ALIGNING ||
+           drive->supervision.state == DRIVE_OPERATION_ENABLED;
+}
+
+/* First of all in a control interrupt. */
+static inline void state_machine_begin_period(struct drive *drive)
+{
+    drive->supervision.period++;
 }
 
 /*

@@ -2,11 +2,12 @@
 
 void synchronism_design(struct drive *drive, const struct drive_settings *settings, double period_s)
 {
-    struct drive_params *params = &drive->params;
+    const struct drive_params *params = &drive->params;
+    struct synchronism_supervision *synchronism = &drive->synchronism;
 
-    params->monitors_synchronism = params->estimator.kind == ESTIMATOR_INVARIANT_EKF &&
-                                   settings->synchronism_policy != DRIVE_SYNCHRONISM_OFF;
-    if (!params->monitors_synchronism) {
+    synchronism->monitored = params->estimator.kind == ESTIMATOR_INVARIANT_EKF &&
+                             settings->synchronism_policy != DRIVE_SYNCHRONISM_OFF;
+    if (!synchronism->monitored) {
         return;
     }
     const struct synchronism_monitor_task task = {
@@ -21,8 +22,8 @@ void synchronism_design(struct drive *drive, const struct drive_settings *settin
         .resistance_calibrated = settings->resistance_adaptation && settings->hold_on_enable,
     };
 
-    params->synchronism_policy = settings->synchronism_policy;
-    drive->synchronism_monitor_params = synchronism_monitor_design(&task);
+    synchronism->policy = settings->synchronism_policy;
+    synchronism->params = synchronism_monitor_design(&task);
 }
 
 #define NOT_YET (1u << 30) /* periods; longer than any enabling */
@@ -42,17 +43,17 @@ enum step {
 
 void synchronism_reset(struct drive *drive)
 {
-    synchronism_monitor_reset(&drive->synchronism_monitor, &drive->synchronism_monitor_params);
-    drive->synchronism = DRIVE_SYNCHRONISM_SURE;
-    drive->synchronism_step = UNMONITORED;
-    drive->synchronism_due = drive->period + NOT_YET;
+    synchronism_monitor_reset(&drive->synchronism.monitor, &drive->synchronism.params);
+    drive->synchronism.shown = DRIVE_SYNCHRONISM_SURE;
+    drive->synchronism.step = UNMONITORED;
+    drive->synchronism.due = drive->supervision.period + NOT_YET;
 }
 
 void synchronism_start(struct drive *drive)
 {
-    if (drive->params.monitors_synchronism) {
-        drive->synchronism_step = TAKE;
-        drive->synchronism_due = drive->period + SYNCHRONISM_BLOCK_PERIODS;
+    if (drive->synchronism.monitored) {
+        drive->synchronism.step = TAKE;
+        drive->synchronism.due = drive->supervision.period + SYNCHRONISM_BLOCK_PERIODS;
         (void)invariant_ekf_take_innovation_sum(&drive->estimator.invariant);
     }
 }
@@ -60,14 +61,14 @@ void synchronism_start(struct drive *drive)
 static enum synchronism doubt(struct drive *drive)
 {
     const enum synchronism verdict =
-        synchronism_monitor_doubt(&drive->synchronism_monitor, &drive->synchronism_monitor_params);
+        synchronism_monitor_doubt(&drive->synchronism.monitor, &drive->synchronism.params);
 
-    drive->synchronism_step = TAKE;
-    if (drive->period - drive->synchronism_block < SYNCHRONISM_BLOCK_PERIODS) {
-        drive->synchronism_due = drive->synchronism_block + SYNCHRONISM_BLOCK_PERIODS;
+    drive->synchronism.step = TAKE;
+    if (drive->supervision.period - drive->synchronism.block_began < SYNCHRONISM_BLOCK_PERIODS) {
+        drive->synchronism.due = drive->synchronism.block_began + SYNCHRONISM_BLOCK_PERIODS;
     }
-    if (verdict == SYNCHRONISM_SURE && drive->synchronism != DRIVE_SYNCHRONISM_LOST) {
-        drive->synchronism = DRIVE_SYNCHRONISM_SURE;
+    if (verdict == SYNCHRONISM_SURE && drive->synchronism.shown != DRIVE_SYNCHRONISM_LOST) {
+        drive->synchronism.shown = DRIVE_SYNCHRONISM_SURE;
     }
     return verdict;
 }
@@ -82,7 +83,7 @@ static num_t error_of(const struct drive *drive, const struct rotor *rotor)
 static enum synchronism judge_grip(struct drive *drive, const struct rotor *rotor)
 {
     const enum synchronism verdict = synchronism_monitor_judge_grip(
-        &drive->synchronism_monitor, &drive->synchronism_monitor_params, error_of(drive, rotor));
+        &drive->synchronism.monitor, &drive->synchronism.params, error_of(drive, rotor));
 
     if (verdict != SYNCHRONISM_SURE) {
         standstill_hold_leave(&drive->hold, 0u, false);
@@ -94,13 +95,13 @@ static enum synchronism judge_grip(struct drive *drive, const struct rotor *roto
 /* One of the steps of a block. */
 static enum synchronism step(struct drive *drive, const struct rotor *rotor)
 {
-    struct synchronism_monitor *monitor = &drive->synchronism_monitor;
-    const struct synchronism_monitor_params *params = &drive->synchronism_monitor_params;
+    struct synchronism_monitor *monitor = &drive->synchronism.monitor;
+    const struct synchronism_monitor_params *params = &drive->synchronism.params;
 
-    drive->synchronism_due = drive->period + 1u;
-    switch (drive->synchronism_step++) {
+    drive->synchronism.due = drive->supervision.period + 1u;
+    switch (drive->synchronism.step++) {
     case TAKE:
-        drive->synchronism_block = drive->period;
+        drive->synchronism.block_began = drive->supervision.period;
         synchronism_monitor_take(monitor, params,
                                  invariant_ekf_take_innovation_sum(&drive->estimator.invariant),
                                  drive->hold.active);
@@ -126,8 +127,8 @@ static enum synchronism step(struct drive *drive, const struct rotor *rotor)
     case DOUBT:
         return doubt(drive);
     default:
-        drive->synchronism_step = UNMONITORED;
-        drive->synchronism_due = drive->period + NOT_YET;
+        drive->synchronism.step = UNMONITORED;
+        drive->synchronism.due = drive->supervision.period + NOT_YET;
         return SYNCHRONISM_SURE;
     }
 }
@@ -143,11 +144,10 @@ static enum drive_fault act(struct drive *drive, enum synchronism verdict)
         [SYNCHRONISM_LOST] = DRIVE_SYNCHRONISM_LOST,
     };
 
-    if (shown[verdict] > drive->synchronism) {
-        drive->synchronism = shown[verdict];
+    if (shown[verdict] > drive->synchronism.shown) {
+        drive->synchronism.shown = shown[verdict];
     }
-    if (verdict == SYNCHRONISM_DOUBTFUL ||
-        drive->params.synchronism_policy != DRIVE_SYNCHRONISM_FAULT) {
+    if (verdict == SYNCHRONISM_DOUBTFUL || drive->synchronism.policy != DRIVE_SYNCHRONISM_FAULT) {
         return DRIVE_FAULT_NONE;
     }
     return verdict == SYNCHRONISM_LOST ? DRIVE_FAULT_LOST_SYNCHRONISM : DRIVE_FAULT_STALLED;

@@ -20,16 +20,17 @@ void synchronism_start(struct drive *drive);
  */
 static inline bool synchronism_is_due(const struct drive *drive)
 {
-    return (int32_t)(drive->period - drive->synchronism_due) >= 0 &&
+    return (int32_t)(drive->supervision.period - drive->synchronism.due) >= 0 &&
            reference_goes_on(&drive->reference) &&
-           (!drive->hold.active || !drive->hold.leads || !standstill_hold_leads_in(drive->period));
+           (!drive->hold.active || !drive->hold.leads ||
+            !standstill_hold_leads_in(drive->supervision.period));
 }
 
 /* In a period in which commands are looked at. */
 static inline void synchronism_wait(struct drive *drive)
 {
-    if ((int32_t)(drive->period - drive->synchronism_due) >= 0) {
-        drive->synchronism_due = drive->period + 1u;
+    if ((int32_t)(drive->supervision.period - drive->synchronism.due) >= 0) {
+        drive->synchronism.due = drive->supervision.period + 1u;
     }
 }
 

@@ -449,7 +449,7 @@ static struct initial_position_output align(struct initial_position *finding,
     }
     return (struct initial_position_output){
         .bridge_on = true,
-        .in_full = true,
+        .compensated = true,
         .voltage = inverse_park((struct dq){finding->voltage, NUM(0.0)}, direction)};
 }
 

@@ -138,7 +138,7 @@ void initial_position_start(struct initial_position *finding,
 /* What the bridge is to do. */
 struct initial_position_output {
     bool bridge_on;
-    bool in_full; /* the voltage is to reach the motor, whatever the bridge takes of it */
+    bool compensated; /* the voltage is to reach the motor, whatever the bridge takes of it */
     struct phases voltage;
 };
 

@@ -96,8 +96,8 @@ void standstill_pulses_reset(struct standstill_pulses *pulses,
     standstill_pulses_stop(pulses);
 }
 
-bool standstill_pulses_hides_sample(const struct standstill_pulses *pulses,
-                                    const struct standstill_pulses_params *params)
+bool standstill_pulses_blanks_sample(const struct standstill_pulses *pulses,
+                                     const struct standstill_pulses_params *params)
 {
     return !pulses->at_rest && pulses->period >= 2u && pulses->period <= last_hidden(params);
 }

@@ -77,8 +77,8 @@ void standstill_pulses_stop(struct standstill_pulses *pulses);
  * What is sampled now shows pulse and iron: an estimator must not take it for the rotor's motion,
  * nor a compensation the difference of the voltages for what the bridge takes.
  */
-bool standstill_pulses_hides_sample(const struct standstill_pulses *pulses,
-                                    const struct standstill_pulses_params *params);
+bool standstill_pulses_blanks_sample(const struct standstill_pulses *pulses,
+                                     const struct standstill_pulses_params *params);
 
 /* At such an S(k), before the estimator: `expected` by its model since the pulse began. */
 void standstill_pulses_sample(struct standstill_pulses *pulses,

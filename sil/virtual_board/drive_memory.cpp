@@ -71,10 +71,10 @@ DriveMemory::DriveMemory(Machine &machine, const ImageMap &map)
         high_counts_[leg] = whole("outputs.high_counts[" + std::to_string(leg) + "]");
     }
     bridge_on_ = whole("outputs.bridge_on");
-    state_ = whole("drive.state");
-    fault_ = whole("drive.fault");
-    synchronism_ = whole("drive.synchronism");
-    period_ = whole("drive.period");
+    state_ = whole("drive.supervision.state");
+    fault_ = whole("drive.supervision.fault");
+    synchronism_ = whole("drive.synchronism.shown");
+    period_ = whole("drive.supervision.period");
     bus_ = num("drive.bus");
     holding_ = whole("drive.hold.active");
     estimator_ = whole("drive.params.estimator.kind");

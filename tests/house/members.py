@@ -22,8 +22,13 @@ VIEW = "firmware/drive/interrupt_view.h"
 
 # Sources that write the members of a block. Those of the others are written by what knows no drive.
 WRITERS = {
-    "params": ["drive", "synchronism"],  # at start-up
-    "settings": ["drive"],               # at start-up
+    "params": ["drive"],    # at start-up
+    "settings": ["drive"],  # at start-up
+    "supervision": ["state_machine"],
+    "synchronism": ["synchronism"],
+    "input": ["prepared_input"],
+    "standstill": ["standstill_angle"],
+    "enabling": ["drive", "encoder_aligning", "state_machine"],
     "planner": ["planner"],
     "planned_end": ["planned_end"],
 }
@@ -91,7 +96,7 @@ def violations(root):
 PLANTED = [
     ("firmware/drive/planted.c", "drive->hold.active = false;"),
     ("firmware/drive/planted.c", "drive->current_control.integral.d = NUM(0.0);"),
-    ("firmware/drive/planted.c", "drive->commands.dropped++;"),
+    ("firmware/drive/planted.c", "drive->supervision.period++;"),
     ("firmware/drive/planted.c", "drive->planner.lead_periods *= 2u;"),
     ("firmware/drive/planted.c", "struct command_queue *q = &drive->commands; q->looked = 0u;"),
     ("firmware/drive/planted.c", "struct planner *p = &drive->planner; p->plan[0].epoch = 1u;"),

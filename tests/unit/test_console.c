@@ -38,7 +38,7 @@ static void enable(void)
     bench_periods(2);
     answers("enable", "ok enable at=1");
     bench_periods(15);
-    TEST_ASSERT_EQUAL_INT(DRIVE_OPERATION_ENABLED, drive->state);
+    TEST_ASSERT_EQUAL_INT(DRIVE_OPERATION_ENABLED, drive->supervision.state);
     (void)bench_heard();
 }
 
@@ -81,10 +81,10 @@ static void test_a_command_acts_ten_periods_after_its_line(void)
     bench_periods(3);
     bench_type("enable\n"); /* in period 2 */
     bench_periods(9);
-    TEST_ASSERT_EQUAL_INT(DRIVE_SWITCH_ON_DISABLED, drive->state);
+    TEST_ASSERT_EQUAL_INT(DRIVE_SWITCH_ON_DISABLED, drive->supervision.state);
     bench_period(); /* 12 */
-    TEST_ASSERT_EQUAL_INT(DRIVE_OPERATION_ENABLED, drive->state);
-    TEST_ASSERT_EQUAL_UINT32(12, drive->state_since);
+    TEST_ASSERT_EQUAL_INT(DRIVE_OPERATION_ENABLED, drive->supervision.state);
+    TEST_ASSERT_EQUAL_UINT32(12, drive->supervision.state_since);
 }
 
 static void test_a_slow_background_changes_nothing(void)
@@ -93,7 +93,7 @@ static void test_a_slow_background_changes_nothing(void)
     bench_type("enable\n");
     bench_interrupts(8);
     bench_periods(3);
-    TEST_ASSERT_EQUAL_UINT32(12, drive->state_since);
+    TEST_ASSERT_EQUAL_UINT32(12, drive->supervision.state_since);
 }
 
 /* Where the reference rests after a stop of a plan, `slow` periods of which went by unseen. */
@@ -107,7 +107,7 @@ static struct position rest_after_stop(int slow)
     bench_periods(9);
     bench_interrupts(slow);
     bench_periods(300 - slow);
-    TEST_ASSERT_EQUAL_INT(DRIVE_OPERATION_ENABLED, drive->state);
+    TEST_ASSERT_EQUAL_INT(DRIVE_OPERATION_ENABLED, drive->supervision.state);
     TEST_ASSERT_FALSE(reference_busy(&drive->reference));
     return drive->reference.next.position;
 }
@@ -224,7 +224,7 @@ static void test_what_the_drive_would_drop_is_refused(void)
     enable();
     bench.samples.current_a = 4000;
     bench_period();
-    TEST_ASSERT_EQUAL_INT(DRIVE_FAULT, drive->state);
+    TEST_ASSERT_EQUAL_INT(DRIVE_FAULT, drive->supervision.state);
     (void)bench_heard();
     answers("move 1", "error: move refused: the drive is in fault, disable clears it\n");
     answers("enable", "error: enable refused: fault overcurrent: a phase current beyond 5.4 A; ");
@@ -238,13 +238,13 @@ static void test_commands_that_a_fault_keeps_from_acting_are_told(void)
     char line[60];
 
     enable();
-    (void)snprintf(line, sizeof line, "move 1 at=%u", (unsigned)drive->period + 40u);
+    (void)snprintf(line, sizeof line, "move 1 at=%u", (unsigned)drive->supervision.period + 40u);
     answers(line, "ok move at=");
-    (void)snprintf(line, sizeof line, "hold at=%u", (unsigned)drive->period + 42u);
+    (void)snprintf(line, sizeof line, "hold at=%u", (unsigned)drive->supervision.period + 42u);
     answers(line, "ok hold at=");
     bench.samples.current_a = 4000;
     bench_period();
-    TEST_ASSERT_EQUAL_INT(DRIVE_FAULT, drive->state);
+    TEST_ASSERT_EQUAL_INT(DRIVE_FAULT, drive->supervision.state);
     bench_periods(20);
     (void)bench_heard();
     bench_periods(40);
@@ -261,8 +261,8 @@ static void test_a_disable_for_later_leaves_the_one_that_waits(void)
     answers("disable", "ok disable at=26\n");
     answers("disable at=5000", "ok disable at=26\n");
     bench_periods(10);
-    TEST_ASSERT_EQUAL_INT(DRIVE_SWITCH_ON_DISABLED, drive->state);
-    TEST_ASSERT_EQUAL_UINT32(26, drive->state_since);
+    TEST_ASSERT_EQUAL_INT(DRIVE_SWITCH_ON_DISABLED, drive->supervision.state);
+    TEST_ASSERT_EQUAL_UINT32(26, drive->supervision.state_since);
 }
 
 static void test_a_stop_for_later_leaves_the_one_that_waits(void)
@@ -296,7 +296,7 @@ static void trip(void)
     bench.samples.flags = HAL_FLAG_OVERCURRENT_TRIP;
     bench_period();
     bench.samples.flags = 0;
-    TEST_ASSERT_EQUAL_INT(DRIVE_FAULT, drive->state);
+    TEST_ASSERT_EQUAL_INT(DRIVE_FAULT, drive->supervision.state);
     (void)bench_heard();
 }
 
@@ -316,8 +316,8 @@ static void test_after_a_trip_of_the_board_disable_and_enable_may_come_in_one_go
                                  "is ready\n",
                                  bench_heard());
         bench_interrupts(11 - slow);
-        TEST_ASSERT_EQUAL_INT(DRIVE_OPERATION_ENABLED, drive->state);
-        TEST_ASSERT_EQUAL_UINT32(28, drive->state_since);
+        TEST_ASSERT_EQUAL_INT(DRIVE_OPERATION_ENABLED, drive->supervision.state);
+        TEST_ASSERT_EQUAL_UINT32(28, drive->supervision.state_since);
         TEST_ASSERT_TRUE(bench.bridge_enabled);
     }
 }

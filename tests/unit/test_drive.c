@@ -96,7 +96,7 @@ static void run(int periods)
     for (int k = 0; k < periods; k++) {
         period();
     }
-    TEST_ASSERT_EQUAL_STRING("none", drive_fault_name(drive.fault));
+    TEST_ASSERT_EQUAL_STRING("none", drive_fault_name(drive.supervision.fault));
 }
 
 static void post(struct drive_command command)
@@ -109,7 +109,7 @@ static void enable(void)
     power_up();
     post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE});
     run(OFFSET_PERIODS + 301);
-    TEST_ASSERT_EQUAL_STRING("operation-enabled", drive_state_name(drive.state));
+    TEST_ASSERT_EQUAL_STRING("operation-enabled", drive_state_name(drive.supervision.state));
 }
 
 static struct drive_signals signals(void)
@@ -193,7 +193,7 @@ static void test_the_first_hold_aligns_the_rotor_and_finds_the_resistance(void)
     power_up();
     post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE});
     run(OFFSET_PERIODS + 1501);
-    TEST_ASSERT_EQUAL_STRING("operation-enabled", drive_state_name(drive.state));
+    TEST_ASSERT_EQUAL_STRING("operation-enabled", drive_state_name(drive.supervision.state));
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 1.5, signals().i_d_A);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.45, signals().resistance_est_ohm);
     TEST_ASSERT_DOUBLE_WITHIN(2e-4, 0.0, motor.angle_rad);
@@ -225,10 +225,10 @@ static void enable_with_encoder(const struct motor_params *with, double angle_ra
     power_up();
     post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE});
     run(2);
-    while (drive.state == DRIVE_ALIGNING) {
+    while (drive.supervision.state == DRIVE_ALIGNING) {
         run(1);
     }
-    TEST_ASSERT_EQUAL_STRING("operation-enabled", drive_state_name(drive.state));
+    TEST_ASSERT_EQUAL_STRING("operation-enabled", drive_state_name(drive.supervision.state));
 }
 
 /* Far from home; by how much the rotor stands off its count's middle the drive cannot see. */
@@ -238,7 +238,7 @@ static void test_an_encoder_is_aligned_with_a_rotor_at_rest(void)
         const struct motor_params *with = m == 0 ? &bench_params : &light;
 
         enable_with_encoder(with, 0.03);
-        TEST_ASSERT_FALSE(drive.aligns);
+        TEST_ASSERT_FALSE(drive.supervision.aligns);
         TEST_ASSERT_DOUBLE_WITHIN(0.6 * TWO_PI / 4000.0, motor.angle_rad, signals().theta_est_rad);
         TEST_ASSERT_DOUBLE_WITHIN(0.6, 0.0, motor.speed_rad_s); /* swings by a count at most */
         TEST_ASSERT_DOUBLE_WITHIN(0.02 * with->resistance_ohm, with->resistance_ohm,
@@ -250,7 +250,7 @@ static void test_an_encoder_is_aligned_with_a_rotor_at_rest(void)
 /* Else the voltage of a current that turned with the frame stays for L / R: the rotor leads. */
 static void test_on_both_ways_of_the_alignment_the_rotor_stands_where_it_is_held(void)
 {
-    const num_t *mean = drive.alignment.deviation_on_way;
+    const num_t *mean = drive.enabling.alignment.deviation_on_way;
 
     enable_with_encoder(&light, 0.0);
     TEST_ASSERT_NUM_WITHIN(0.5 / 360.0, 0.0,

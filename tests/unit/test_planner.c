@@ -29,7 +29,7 @@ static void run(uint32_t periods)
         const double jerk = (motion_to_turns(drive.reference.at.acceleration) - before) * rad_s3;
 
         largest_jerk = jerk > largest_jerk ? jerk : -jerk > largest_jerk ? -jerk : largest_jerk;
-        if (drive.period % background_every == 0u) {
+        if (drive.supervision.period % background_every == 0u) {
             drive_background(&drive);
         }
     }
@@ -163,7 +163,7 @@ static void test_a_speed_begins_in_the_period_it_is_addressed_to(void)
 {
     struct drive_command command = velocity(2.0);
 
-    command.at_period = drive.period + 40u;
+    command.at_period = drive.supervision.period + 40u;
     must_post(command);
     run(40);
     TEST_ASSERT_FALSE(signals().reference_moving);
@@ -207,7 +207,7 @@ static void test_a_stop_flushes_a_speed_that_has_not_begun(void)
 {
     struct drive_command command = velocity(2.0);
 
-    command.at_period = drive.period + 15u;
+    command.at_period = drive.supervision.period + 15u;
     must_post(command);
     run(8); /* planned already */
     stop_now();
@@ -255,7 +255,7 @@ static void be_late(void)
 {
     drive_background(&drive);
     TEST_ASSERT_NOT_NULL(drive.planner.offered);
-    drive.commands.take_over.at_period = drive.period - 1u;
+    drive.commands.take_over.at_period = drive.supervision.period - 1u;
     run(2);
 }
 
@@ -521,7 +521,7 @@ static void test_with_a_known_encoder_zero_motion_is_refused_until_the_drive_is_
     while (signals().state != DRIVE_OPERATION_ENABLED) {
         must_refuse(retarget(0.1), refusal);
         run(1);
-        TEST_ASSERT_TRUE(drive.period < 10000u);
+        TEST_ASSERT_TRUE(drive.supervision.period < 10000u);
     }
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, rotor_rad, signals().theta_ref_rad);
     must_post(move_to(rotor_rad + 0.1));

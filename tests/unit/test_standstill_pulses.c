@@ -98,7 +98,7 @@ static struct standstill_angle look(double rotor_rad, uint32_t *periods)
         struct phases wanted = {num_from_double(hold_V / base.voltage_V), NUM(0.0)};
         struct standstill_angle found;
 
-        if (standstill_pulses_hides_sample(&pulses, &params)) {
+        if (standstill_pulses_blanks_sample(&pulses, &params)) {
             static const struct sincos no_turn = {UNIT(1.0), UNIT(0.0)};
 
             estimated = forced_current(
@@ -149,21 +149,21 @@ static void test_the_first_pulse_waits_for_the_hold_to_settle(void)
     TEST_ASSERT_TRUE(periods < 300u + 16u * 14u);
 }
 
-static void test_only_a_pulse_hides_samples(void)
+static void test_only_a_pulse_blanks_samples(void)
 {
     uint32_t hidden = 0;
 
     for (uint32_t k = 0; k < 300u; k++) {
         struct phases voltage = {NUM(0.0), NUM(0.0)};
 
-        TEST_ASSERT_FALSE(standstill_pulses_hides_sample(&pulses, &params));
+        TEST_ASSERT_FALSE(standstill_pulses_blanks_sample(&pulses, &params));
         (void)standstill_pulses_add(&pulses, &params, voltage, no_loss, &voltage);
         TEST_ASSERT_NUM_WITHIN(0.0, 0.0, voltage.a);
     }
     for (uint32_t k = 0; k < 12u; k++) {
         struct phases voltage = {NUM(0.0), NUM(0.0)};
 
-        hidden += standstill_pulses_hides_sample(&pulses, &params) ? 1u : 0u;
+        hidden += standstill_pulses_blanks_sample(&pulses, &params) ? 1u : 0u;
         (void)standstill_pulses_add(&pulses, &params, voltage, no_loss, &voltage);
     }
     TEST_ASSERT_EQUAL_UINT32(6u, hidden);
@@ -298,7 +298,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_angle_of_a_displaced_rotor_is_found);
     RUN_TEST(test_the_first_pulse_waits_for_the_hold_to_settle);
-    RUN_TEST(test_only_a_pulse_hides_samples);
+    RUN_TEST(test_only_a_pulse_blanks_samples);
     RUN_TEST(test_a_disturbance_of_another_size_shows_no_angle);
     RUN_TEST(test_pulses_adapt_to_another_inductance);
     RUN_TEST(test_every_hold_begins_with_small_pulses);

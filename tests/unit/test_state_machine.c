@@ -178,7 +178,7 @@ static void test_an_encoder_whose_counts_do_not_follow_the_alignment_ends_it_in_
     has_fault(DRIVE_FAULT_POSITION_NOT_FOUND);
     post_kind(DRIVE_COMMAND_DISABLE);
     run(1);
-    TEST_ASSERT_FALSE(drive.aligns);
+    TEST_ASSERT_FALSE(drive.supervision.aligns);
 }
 
 static void test_without_hold_on_enable_operation_follows_the_calibration(void)
@@ -595,7 +595,7 @@ static bool trips_at(double speed_rad_s)
     drive.estimator.invariant.estimate.rotor.speed =
         num_from_double(speed_rad_s / drive.base.speed_rad_s);
     run(1);
-    return drive.state == DRIVE_FAULT;
+    return drive.supervision.state == DRIVE_FAULT;
 }
 
 /* 0.24 electrical turn a period is 301.6 rad/s. */
@@ -856,7 +856,7 @@ static void test_a_command_asked_for_before_the_drive_was_ready_is_refused_behin
     const struct drive_command move = move_to(0.1);
 
     enable();
-    TEST_ASSERT_EQUAL_UINT32(0, drive.state_since);
+    TEST_ASSERT_EQUAL_UINT32(0, drive.supervision.state_since);
     run(20);
     TEST_ASSERT_FALSE(drive_command_asked_in(&drive, &move, UINT32_MAX, error));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error, "being enabled"), error);
@@ -889,7 +889,7 @@ static void test_what_a_fault_keeps_from_acting_is_dropped_in_its_period_and_cou
     run(10);
     must_post(move_to(0.1));
     must_post(move_to(0.2));
-    later.at_period = drive.period + 100u;
+    later.at_period = drive.supervision.period + 100u;
     must_post(later);
     samples.flags = HAL_FLAG_DEADLINE_MISSED;
     run(1); /* loads the first */

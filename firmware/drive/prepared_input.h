@@ -1,0 +1,30 @@
+/* What the estimator gets instead of what is measured: voltages that the board does not measure,
+   and samples that a pulse blanks. */
+#ifndef STEADYSTEP_PREPARED_INPUT_H
+#define STEADYSTEP_PREPARED_INPUT_H
+
+#include "firmware/drive/drive.h"
+
+/* When enabling begins: the bridge is off. */
+static inline void prepared_input_reset(struct drive *drive)
+{
+    drive->input.past_current = (struct phases){NUM(0.0), NUM(0.0)};
+}
+
+/*
+ * Once at S(k), with the current sampled there: mean over S(k-1)...S(k) of what was commanded, less
+ * what the bridge took of it (motor/bridge_loss.h). Once in the image: the default path does not
+ * come here.
+ */
+__attribute__((noinline)) struct phases prepared_input_voltage(struct drive *drive,
+                                                               struct phases current);
+
+/*
+ * One period, into drive->input.winding. A current that a pulse has made is not for the estimator,
+ * which goes by its model meanwhile. Apart, and by value, so that the default path keeps its
+ * samples in registers.
+ */
+__attribute__((noinline)) void prepared_input_make(struct drive *drive, struct phases current,
+                                                   struct phases voltage);
+
+#endif
