@@ -14,6 +14,7 @@ enum line_action {
     LINE_MOVE,    /* the same, of kind DRIVE_COMMAND_MOVE_SMOOTH; times not given are chosen */
     LINE_HELP,
     LINE_STATE,
+    LINE_SIGNALS,
     LINE_CYCLES,
     LINE_GET,   /* a setting, or those that begin alike */
     LINE_SET,   /* a setting, to a value */

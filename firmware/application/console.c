@@ -215,6 +215,10 @@ static void report(struct application *application, const struct command_line *l
     case LINE_STATE:
         report_state(answer, application);
         break;
+    case LINE_SIGNALS:
+        text_put(answer, "signals");
+        report_signals(answer, application);
+        break;
     case LINE_CYCLES:
         text_put(answer, "cycles");
         report_cycles(answer, application);

@@ -6,6 +6,7 @@
 #include "firmware/application/command_line.h"
 #include "firmware/design/hold_check.h"
 #include "firmware/drive/fault_reason.h"
+#include "firmware/interface/dictionary.h"
 #include "firmware/drive/interrupt_view.h"
 
 enum { DIGITS = 6 };
@@ -144,6 +145,21 @@ void report_ready(struct text *text, const struct application *application)
     }
 }
 
+static void put_signal(struct text *text, const char *name, const struct drive_signals *signals,
+                       const struct signal_row *signal)
+{
+    const double value = signal_get(signals, signal);
+    const char *word = signal_word(signal, value);
+
+    if (word != NULL) {
+        put_word(text, name, word);
+    } else if (signal->type == SIGNAL_COUNT) {
+        put_count(text, name, (uint32_t)value);
+    } else {
+        put_number(text, name, value);
+    }
+}
+
 void report_state(struct text *text, const struct application *application)
 {
     const struct drive *drive = &application->drive;
@@ -151,26 +167,29 @@ void report_state(struct text *text, const struct application *application)
 
     read_signals(drive, &signals);
     text_put(text, drive_state_name(signals.state));
-    put_word(text, "fault", drive_fault_name(signals.fault));
-    put_count(text, "period", signals.period);
-    put_number(text, "position_rad", signals.theta_est_rad);
-    put_number(text, "speed_rad_s", signals.omega_est_rad_s);
-    put_number(text, "load_torque_Nm", signals.load_torque_est_Nm);
-    put_number(text, "reference_rad", signals.theta_ref_rad);
-    put_number(text, "reference_rad_s", signals.omega_ref_rad_s);
-    put_word(text, "moving", signals.reference_moving ? "yes" : "no");
-    put_word(text, "holding", signals.holding ? "yes" : "no");
-    put_word(text, "synchronism", drive_synchronism_name(signals.synchronism));
-    put_number(text, "i_d_A", signals.i_d_A);
-    put_number(text, "i_q_A", signals.i_q_A);
-    put_number(text, "resistance_ohm", signals.resistance_est_ohm);
-    put_number(text, "bus_V", signals.bus_V);
-    put_count(text, "underruns", signals.reference_underruns);
-    put_count(text, "dropped", signals.commands_dropped);
+    for (int i = 0; i < SIGNALS; i++) {
+        const struct signal_row *signal = signal_at((enum drive_signal)i);
+
+        if (signal->brief[0] != '\0') {
+            put_signal(text, signal->brief, &signals, signal);
+        }
+    }
     put_word(text, "law", drive_law_name(drive->settings.law));
     put_word(text, "feedback", drive_feedback_name(drive->settings.feedback));
     text_put(text, "; ");
     text_put(text, application->board.version);
+}
+
+void report_signals(struct text *text, const struct application *application)
+{
+    struct drive_signals signals;
+
+    read_signals(&application->drive, &signals);
+    for (int i = 0; i < SIGNALS; i++) {
+        const struct signal_row *signal = signal_at((enum drive_signal)i);
+
+        put_signal(text, signal->name, &signals, signal);
+    }
 }
 
 static struct control_cycles read_cycles(const struct application *application)

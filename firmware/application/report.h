@@ -27,8 +27,9 @@ void report_synchronism(struct text *text, enum drive_synchronism synchronism);
 /* "ready: ..." */
 void report_ready(struct text *text, const struct application *application);
 
-/* The answers to state, cycles, help and help <topic>. */
+/* The answers to state, signals, cycles, help and help <topic>. */
 void report_state(struct text *text, const struct application *application);
+void report_signals(struct text *text, const struct application *application);
 void report_cycles(struct text *text, const struct application *application);
 void report_help(struct text *text, const struct line_form *topic);
 

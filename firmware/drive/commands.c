@@ -189,33 +189,13 @@ bool drive_command_asked_in(struct drive *drive, const struct drive_command *com
     return true;
 }
 
+#define READ(index, member, path, ...) signals->member = drive->path;
+#define READ_ANGLE(index, member, path, ...)                                                       \
+    signals->member = position_to_rad(drive->path, drive->settings.motor.rotor_teeth);
+#define READ_REAL(index, member, path, brief, traced, in, ...)                                     \
+    signals->member = num_to_double(drive->path) * drive->base.in;
+
 void drive_signals_read(const struct drive *drive, struct drive_signals *signals)
 {
-    const struct per_unit *base = &drive->base;
-    const int32_t teeth = drive->settings.motor.rotor_teeth;
-    const struct estimate *x = &drive->estimator.estimate;
-    const struct reference_sample *reference = &drive->reference.now;
-
-    signals->state = drive->supervision.state;
-    signals->fault = drive->supervision.fault;
-    signals->synchronism = drive->synchronism.shown;
-    signals->period = drive->supervision.period;
-    signals->holding = drive->hold.active;
-    signals->reference_moving = reference->moving;
-    signals->theta_ref_rad = position_to_rad(reference->position, teeth);
-    signals->omega_ref_rad_s = num_to_double(reference->speed) * base->speed_rad_s;
-    signals->theta_est_rad = position_to_rad(x->rotor.position, teeth);
-    signals->omega_est_rad_s = num_to_double(x->rotor.speed) * base->speed_rad_s;
-    signals->load_torque_est_Nm = num_to_double(x->rotor.load_torque) * base->torque_Nm;
-    signals->i_d_A = num_to_double(drive->current.d) * base->current_A;
-    signals->i_q_A = num_to_double(drive->current.q) * base->current_A;
-    signals->i_d_ref_A = num_to_double(drive->current_reference.d) * base->current_A;
-    signals->i_q_ref_A = num_to_double(drive->current_reference.q) * base->current_A;
-    signals->u_d_V = num_to_double(drive->voltage_command.d) * base->voltage_V;
-    signals->u_q_V = num_to_double(drive->voltage_command.q) * base->voltage_V;
-    signals->resistance_est_ohm = num_to_double(x->winding.resistance) * base->resistance_ohm;
-    signals->reference_underruns = drive->planner.underruns;
-    signals->commands_dropped = drive->commands.dropped;
-    signals->dropped_kind = drive->commands.dropped_kind;
-    signals->bus_V = num_to_double(drive->bus) * base->voltage_V;
+    DRIVE_SIGNALS_TABLE(READ, READ, READ_ANGLE, READ, READ_REAL)
 }

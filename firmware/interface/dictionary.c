@@ -1,5 +1,7 @@
 #include "firmware/interface/dictionary.h"
 
+#include <string.h>
+
 /* ---- commands ---- */
 
 #define COMMAND_NAME(number, constant, name, required, optional, states, planning, sentence) name,
@@ -9,6 +11,63 @@ const char *drive_command_name(enum drive_command_kind kind)
     static const char *const names[DRIVE_COMMANDS] = {DRIVE_COMMANDS_TABLE(COMMAND_NAME)};
 
     return names[kind];
+}
+
+/* ---- signals ---- */
+
+#define SIGNAL_ROW(member, brief, type)                                                            \
+    {#member, brief, offsetof(struct drive_signals, member), type,                                 \
+     sizeof(((struct drive_signals *)0)->member)},
+#define FLAG_SIGNAL(index, member, path, brief, ...)  SIGNAL_ROW(member, brief, SIGNAL_FLAG)
+#define COUNT_SIGNAL(index, member, path, brief, ...) SIGNAL_ROW(member, brief, SIGNAL_COUNT)
+#define REAL_SIGNAL(index, member, path, brief, ...)  SIGNAL_ROW(member, brief, SIGNAL_REAL)
+#define NAMED_SIGNAL(index, member, path, brief, traced, type, sentence)                           \
+    SIGNAL_ROW(member, brief, SIGNAL_IS_##type)
+
+const struct signal_row *signal_at(enum drive_signal signal)
+{
+    static const struct signal_row rows[SIGNALS] = {
+        DRIVE_SIGNALS_TABLE(FLAG_SIGNAL, COUNT_SIGNAL, REAL_SIGNAL, NAMED_SIGNAL, REAL_SIGNAL)};
+
+    return &rows[signal];
+}
+
+double signal_get(const struct drive_signals *signals, const struct signal_row *signal)
+{
+    const uint8_t *at = (const uint8_t *)signals + signal->offset;
+    uint32_t whole;
+    double real;
+
+    if (signal->type == SIGNAL_REAL) {
+        memcpy(&real, at, sizeof real);
+        return real;
+    }
+    if (signal->size == 1u) {
+        return *at;
+    }
+    memcpy(&whole, at, sizeof whole);
+    return whole;
+}
+
+const char *signal_word(const struct signal_row *signal, double value)
+{
+    const int place =
+        signal->type == SIGNAL_FLAG || signal->type >= SIGNAL_IS_drive_state ? (int)value : 0;
+
+    switch (signal->type) {
+    case SIGNAL_FLAG:
+        return place != 0 ? "yes" : "no";
+    case SIGNAL_IS_drive_state:
+        return drive_state_name((enum drive_state)place);
+    case SIGNAL_IS_drive_fault:
+        return drive_fault_name((enum drive_fault)place);
+    case SIGNAL_IS_drive_synchronism:
+        return drive_synchronism_name((enum drive_synchronism)place);
+    case SIGNAL_IS_drive_command_kind:
+        return drive_command_name((enum drive_command_kind)place);
+    default:
+        return NULL;
+    }
 }
 
 /* ---- faults ---- */

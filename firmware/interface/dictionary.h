@@ -1,6 +1,6 @@
 /*
- * The rows of commands_table.h and faults_table.h as data: what every reader and writer of them
- * goes by. What no image needs is in dictionary_text.c.
+ * The rows of commands_table.h, signals_table.h and faults_table.h as data: what every reader and
+ * writer of them goes by. What no image needs is in dictionary_text.c.
  */
 #ifndef STEADYSTEP_DICTIONARY_H
 #define STEADYSTEP_DICTIONARY_H
@@ -10,6 +10,56 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+enum signal_type {
+    SIGNAL_FLAG,
+    SIGNAL_COUNT,
+    SIGNAL_REAL,
+    SIGNAL_IS_drive_state, /* of an enumeration, from here on */
+    SIGNAL_IS_drive_fault,
+    SIGNAL_IS_drive_synchronism,
+    SIGNAL_IS_drive_command_kind
+};
+
+struct signal_row {
+    const char *name;  /* as the console and a trace spell it */
+    const char *brief; /* as `state` does, "": not at all */
+    uint16_t offset;   /* in struct drive_signals */
+    uint8_t type;      /* enum signal_type */
+    uint8_t size;      /* bytes */
+};
+
+/* Places in the order of the table, and how many are traced. */
+#define SIGNAL_PLACE(index, member, ...)                       SIGNAL_##member,
+#define SIGNAL_TRACED(index, member, path, brief, traced, ...) (SIGNAL_IS_##traced) +
+enum drive_signal {
+    DRIVE_SIGNALS_TABLE(SIGNAL_PLACE, SIGNAL_PLACE, SIGNAL_PLACE, SIGNAL_PLACE, SIGNAL_PLACE)
+        SIGNALS
+};
+enum { SIGNAL_IS_UNTRACED, SIGNAL_IS_TRACED };
+enum {
+    SIGNALS_TRACED = DRIVE_SIGNALS_TABLE(SIGNAL_TRACED, SIGNAL_TRACED, SIGNAL_TRACED, SIGNAL_TRACED,
+                                         SIGNAL_TRACED) 0
+};
+#undef SIGNAL_PLACE
+#undef SIGNAL_TRACED
+
+const struct signal_row *signal_at(enum drive_signal signal);
+
+/* As a number: a flag is 0 or 1, one of an enumeration its place there. */
+double signal_get(const struct drive_signals *signals, const struct signal_row *signal);
+
+/* The word for a value of a flag or an enumeration; NULL: it is a number. */
+const char *signal_word(const struct signal_row *signal, double value);
+
+struct signal_text {
+    const char *unit;
+    const char *sentence;
+    uint16_t index;
+    bool traced;
+};
+
+const struct signal_text *signal_text(enum drive_signal signal);
 
 struct fault_row {
     const char *name;  /* as scenarios and the console spell it */

@@ -1,4 +1,4 @@
-/* What of commands and faults no image needs: hosts and pages do. */
+/* What of commands, signals and faults no image needs: hosts and pages do. */
 #include "firmware/interface/dictionary.h"
 
 #ifndef STEADYSTEP_WITHOUT_SENTENCES
@@ -61,6 +61,25 @@ void parameter_put(struct drive_command *command, const struct parameter_row *pa
                    double value)
 {
     memcpy((char *)command + parameter->offset, &value, sizeof value);
+}
+
+/* ---- signals ---- */
+
+#define SIGNAL_TEXT(index, member, path, brief, traced, sentence)                                  \
+    {"", sentence, index, SIGNAL_IS_##traced},
+#define ANGLE_TEXT(index, member, path, brief, traced, sentence)                                   \
+    {"rad", sentence, index, SIGNAL_IS_##traced},
+#define NAMED_TEXT(index, member, path, brief, traced, type, sentence)                             \
+    {"", sentence, index, SIGNAL_IS_##traced},
+#define REAL_TEXT(index, member, path, brief, traced, base, unit, sentence)                        \
+    {unit, sentence, index, SIGNAL_IS_##traced},
+
+const struct signal_text *signal_text(enum drive_signal signal)
+{
+    static const struct signal_text texts[SIGNALS] = {
+        DRIVE_SIGNALS_TABLE(SIGNAL_TEXT, SIGNAL_TEXT, ANGLE_TEXT, NAMED_TEXT, REAL_TEXT)};
+
+    return &texts[signal];
 }
 
 /* ---- faults ---- */

@@ -14,6 +14,7 @@
 #include "firmware/interface/commands_table.h"
 #include "firmware/interface/faults_table.h"
 #include "firmware/interface/settings_table.h"
+#include "firmware/interface/signals_table.h"
 #include "firmware/motor/motor_params.h"
 
 struct hal_facts;
@@ -162,31 +163,20 @@ struct drive_command {
 #define DRIVE_LEAD_s     1e-3
 #define DRIVE_LEAD_MAX_s 50e-3
 
-/* What a drive shows each period, valid after the control interrupt k: values at S(k). */
+/* What a drive shows each period, valid after the control interrupt k: values at S(k); a member for
+   each row of signals_table.h. */
+#define DRIVE_FLAG_MEMBER(index, member, ...)                                  bool member;
+#define DRIVE_COUNT_MEMBER(index, member, ...)                                 uint32_t member;
+#define DRIVE_REAL_MEMBER(index, member, ...)                                  double member;
+#define DRIVE_NAMED_MEMBER(index, member, path, brief, traced, type, sentence) enum type member;
 struct drive_signals {
-    enum drive_state state;
-    enum drive_fault fault;
-    enum drive_synchronism synchronism;
-    uint32_t period; /* index k of the control interrupt */
-    bool holding;    /* d-axis hold in force */
-    bool reference_moving;
-    double theta_ref_rad; /* reference theta*(k) */
-    double omega_ref_rad_s;
-    double theta_est_rad; /* estimate (k|k) */
-    double omega_est_rad_s;
-    double load_torque_est_Nm;
-    double i_d_A, i_q_A; /* measured currents in the control frame */
-    double i_d_ref_A, i_q_ref_A;
-    double u_d_V, u_q_V; /* commanded voltages, after the limit */
-    double resistance_est_ohm;
-    double bus_V;
-    uint32_t reference_underruns; /* sines and set-points whose continuation came too late */
-    uint32_t commands_dropped;    /* accepted, but in their period the drive could not obey them: it
-                                     was in fault, as a rule, or a move would not have begun where
-                                     the reference was. What a disable or a stop has flushed does
-                                     not count */
-    enum drive_command_kind dropped_kind; /* of the last of them, if any */
+    DRIVE_SIGNALS_TABLE(DRIVE_FLAG_MEMBER, DRIVE_COUNT_MEMBER, DRIVE_REAL_MEMBER,
+                        DRIVE_NAMED_MEMBER, DRIVE_REAL_MEMBER)
 };
+#undef DRIVE_FLAG_MEMBER
+#undef DRIVE_COUNT_MEMBER
+#undef DRIVE_REAL_MEMBER
+#undef DRIVE_NAMED_MEMBER
 
 enum { DRIVE_ERROR_TEXT = 160 };
 

@@ -85,6 +85,25 @@ std::string settings_page()
            "\n## The motor\n\nA motor file gives them (`sil/motors/README.md`).\n\n" + head + motor;
 }
 
+std::string signals_page()
+{
+    std::string text =
+        "# Signals\n\n"
+        "What a drive shows of the last control period: `signals` on the console, columns of "
+        "`trace.csv`. Written by\n`steadystep-sil signals` from `signals_table.h`, which declares "
+        "each once.\n\n"
+        "| index | signal | unit | in `state` | traced | what it is |\n"
+        "| --- | --- | --- | --- | --- | --- |\n";
+    for (int i = 0; i < SIGNALS; ++i) {
+        const signal_row &row = *signal_at(static_cast<drive_signal>(i));
+        const struct signal_text &more = *signal_text(static_cast<drive_signal>(i));
+        text += format("| 0x%04x | `", unsigned(more.index)) + row.name + "` | " + more.unit +
+                " | " + (row.brief[0] != '\0' ? std::string("`") + row.brief + "`" : "") + " | " +
+                (more.traced ? "yes" : "") + " | " + more.sentence + " |\n";
+    }
+    return text;
+}
+
 /* "a phase current beyond `overcurrent_trip_A`" */
 std::string cause_of(drive_fault fault)
 {
@@ -158,6 +177,7 @@ const std::vector<Page> &pages()
     static const std::vector<Page> all = {
         {"settings", "settings of a drive: ranges and defaults", settings_page},
         {"commands", "commands of a drive: parameters, states", commands_page},
+        {"signals", "signals of a drive: units, meaning", signals_page},
         {"faults", "faults of a drive: causes and remedies", faults_page},
     };
     return all;

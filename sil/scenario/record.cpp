@@ -1,42 +1,52 @@
 #include "sil/scenario/record.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
 namespace scenario
 {
 
+namespace
+{
+
+/* The signal in each column; none where it is of the plant. */
+std::vector<const signal_row *> signals_of_columns()
+{
+#define OF_DRIVE(column, member) signal_at(SIGNAL_##member),
+#define OF_PLANT(column, name)   nullptr,
+    std::vector<const signal_row *> columns = {TRACE_COLUMNS(OF_DRIVE, OF_PLANT)};
+#undef OF_DRIVE
+#undef OF_PLANT
+    for (int i = 0; i < SIGNALS; ++i) {
+        const signal_row *signal = signal_at(static_cast<drive_signal>(i));
+        if (signal_text(static_cast<drive_signal>(i))->traced &&
+            std::find(columns.begin(), columns.end(), signal) == columns.end()) {
+            columns.push_back(signal);
+        }
+    }
+    return columns;
+}
+
+const std::vector<const signal_row *> column_signals = signals_of_columns();
+
+} // namespace
+
 const char *column_name(Column column)
 {
-    static const char *const names[COLUMNS] = {
-        "theta_ref_rad",
-        "theta_rad",
-        "theta_est_rad",
-        "omega_ref_rad_s",
-        "omega_rad_s",
-        "omega_est_rad_s",
-        "load_torque_Nm",
-        "load_torque_est_Nm",
-        "i_a_A",
-        "i_b_A",
-        "u_a_V",
-        "u_b_V",
-        "i_d_A",
-        "i_q_A",
-        "i_d_ref_A",
-        "i_q_ref_A",
-        "u_d_V",
-        "u_q_V",
-        "resistance_ohm",
-        "resistance_est_ohm",
-        "bus_V",
-        "drive_state",
-        "drive_fault",
-        "holding",
-        "reference_moving",
-        "synchronism",
-    };
-    return names[column];
+#define NAME(column, name) #name,
+    static const char *const names[NAMED_COLUMNS] = {TRACE_COLUMNS(NAME, NAME)};
+#undef NAME
+    return column < NAMED_COLUMNS ? names[column] : column_signals[column]->name;
+}
+
+void put_signals(Row &row, const drive_signals &signals)
+{
+    for (std::size_t column = 0; column < COLUMNS; ++column) {
+        if (column_signals[column] != nullptr) {
+            row[column] = signal_get(&signals, column_signals[column]);
+        }
+    }
 }
 
 void Record::append(const Row &row)

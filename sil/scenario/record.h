@@ -10,38 +10,51 @@
 #include <cstdint>
 #include <vector>
 
+#include "firmware/interface/dictionary.h"
+
 namespace scenario
 {
 
+/* In the order of trace.csv: signals of the drive (firmware/interface/signals_table.h), and what is
+   true, in the plant. The drive's traced signals that do not stand here follow. */
+#define TRACE_COLUMNS(DRIVE, TRUE)                                                                 \
+    DRIVE(THETA_REF, theta_ref_rad)                                                                \
+    TRUE(THETA, theta_rad)                                                                         \
+    DRIVE(THETA_EST, theta_est_rad)                                                                \
+    DRIVE(OMEGA_REF, omega_ref_rad_s)                                                              \
+    TRUE(OMEGA, omega_rad_s)                                                                       \
+    DRIVE(OMEGA_EST, omega_est_rad_s)                                                              \
+    TRUE(LOAD_TORQUE, load_torque_Nm)                                                              \
+    DRIVE(LOAD_TORQUE_EST, load_torque_est_Nm)                                                     \
+    TRUE(I_A, i_a_A)                                                                               \
+    TRUE(I_B, i_b_A)                                                                               \
+    TRUE(U_A, u_a_V) /* phase voltages: means over S(k-1)...S(k) */                                \
+    TRUE(U_B, u_b_V)                                                                               \
+    DRIVE(I_D, i_d_A)                                                                              \
+    DRIVE(I_Q, i_q_A)                                                                              \
+    DRIVE(I_D_REF, i_d_ref_A)                                                                      \
+    DRIVE(I_Q_REF, i_q_ref_A)                                                                      \
+    DRIVE(U_D, u_d_V)                                                                              \
+    DRIVE(U_Q, u_q_V)                                                                              \
+    TRUE(RESISTANCE, resistance_ohm)                                                               \
+    DRIVE(RESISTANCE_EST, resistance_est_ohm)                                                      \
+    TRUE(BUS, bus_V)                                                                               \
+    DRIVE(DRIVE_STATE, state) /* of an enumeration: a number, so that a plotter can draw it */     \
+    DRIVE(DRIVE_FAULT_CODE, fault)                                                                 \
+    DRIVE(HOLDING, holding)                                                                        \
+    DRIVE(REFERENCE_MOVING, reference_moving)                                                      \
+    DRIVE(SYNCHRONISM, synchronism)
+
+#define COLUMN(column, name)  column,
+#define COUNTED(column, name) +1
+#define NOT_COUNTED(column, name)
 enum Column : std::size_t {
-    THETA_REF,
-    THETA,
-    THETA_EST,
-    OMEGA_REF,
-    OMEGA,
-    OMEGA_EST,
-    LOAD_TORQUE,
-    LOAD_TORQUE_EST,
-    I_A,
-    I_B,
-    U_A, /* phase voltages: means over S(k-1)...S(k) */
-    U_B,
-    I_D,
-    I_Q,
-    I_D_REF,
-    I_Q_REF,
-    U_D,
-    U_Q,
-    RESISTANCE,
-    RESISTANCE_EST,
-    BUS,
-    DRIVE_STATE, /* drive_state and drive_fault as numbers, so that a plotter can draw them */
-    DRIVE_FAULT_CODE,
-    HOLDING,
-    REFERENCE_MOVING,
-    SYNCHRONISM, /* drive_synchronism, likewise */
-    COLUMNS
+    TRACE_COLUMNS(COLUMN, COLUMN) NAMED_COLUMNS,
+    COLUMNS = NAMED_COLUMNS + SIGNALS_TRACED - (0 TRACE_COLUMNS(COUNTED, NOT_COUNTED))
 };
+#undef COLUMN
+#undef COUNTED
+#undef NOT_COUNTED
 
 /* Name with unit, as trace.csv heads the column. */
 const char *column_name(Column column);
@@ -50,6 +63,9 @@ const char *column_name(Column column);
 double time_of(double periods, double period_s);
 
 using Row = std::array<double, COLUMNS>;
+
+/* What the drive shows. */
+void put_signals(Row &row, const drive_signals &signals);
 
 class Record
 {

@@ -340,35 +340,18 @@ class Runner
             return;
         }
         const plant::State &state = board_.plant().state();
-        const drive_signals &drive = board_.signals();
         Row row;
-        row[THETA_REF] = drive.theta_ref_rad;
+        put_signals(row, board_.signals());
         row[THETA] = state.theta_rad;
-        row[THETA_EST] = drive.theta_est_rad;
-        row[OMEGA_REF] = drive.omega_ref_rad_s;
         row[OMEGA] = state.omega_rad_s;
-        row[OMEGA_EST] = drive.omega_est_rad_s;
         row[LOAD_TORQUE] = state.load_torque_Nm;
-        row[LOAD_TORQUE_EST] = drive.load_torque_est_Nm;
         row[I_A] = state.i_a_A;
         row[I_B] = state.i_b_A;
         row[U_A] = state.u_a_V;
         row[U_B] = state.u_b_V;
-        row[I_D] = drive.i_d_A;
-        row[I_Q] = drive.i_q_A;
-        row[I_D_REF] = drive.i_d_ref_A;
-        row[I_Q_REF] = drive.i_q_ref_A;
-        row[U_D] = drive.u_d_V;
-        row[U_Q] = drive.u_q_V;
         row[RESISTANCE] =
             motor_.resistance_ohm + scenario_.plant.imperfections.bridge_resistance_ohm;
-        row[RESISTANCE_EST] = drive.resistance_est_ohm;
         row[BUS] = state.bus_V;
-        row[DRIVE_STATE] = drive.state;
-        row[DRIVE_FAULT_CODE] = drive.fault;
-        row[HOLDING] = drive.holding ? 1 : 0;
-        row[REFERENCE_MOVING] = drive.reference_moving ? 1 : 0;
-        row[SYNCHRONISM] = drive.synchronism;
         result_.record.append(row);
     }
 

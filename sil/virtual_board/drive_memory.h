@@ -9,7 +9,7 @@
 #include <string>
 
 #include "firmware/drive/drive_hash.h"
-#include "firmware/interface/drive_interface.h"
+#include "firmware/interface/dictionary.h"
 #include "sil/virtual_board/image_map.h"
 #include "sil/virtual_board/machine.h"
 
@@ -37,22 +37,16 @@ class DriveMemory
         std::uint64_t bits() const;
         double number() const;
     };
-    struct Estimate {
-        Place turns, fraction, speed, load_torque, resistance;
+    struct Signal {
+        Place place, with; /* with: the fraction of an angle's turns, the base of a real number */
     };
 
     Place place(Machine &machine, const ImageMap &map, const std::string &name, bool is_num) const;
-    const Estimate &estimate() const;
-    double angle_rad(const Place &turns, const Place &fraction) const;
+    double angle_rad(const Signal &angle) const;
 
     Place gains_, high_counts_[4], bridge_on_;
-    Place state_, fault_, synchronism_, period_, bus_, holding_, estimator_, teeth_, underruns_,
-        dropped_, dropped_kind_;
-    Place reference_turns_, reference_fraction_, reference_speed_, reference_moving_;
-    Place current_d_, current_q_, current_reference_d_, current_reference_q_, voltage_d_,
-        voltage_q_;
-    Place base_current_, base_voltage_, base_speed_, base_torque_, base_resistance_;
-    Estimate estimates_[4]; /* in the order of enum estimator_kind, estimator/estimator.h */
+    Place teeth_;
+    Signal signals_[SIGNALS];
 };
 
 } // namespace virtual_board

@@ -356,6 +356,8 @@ static void test_a_fault_is_announced_with_its_reason(void)
     bench_periods(5);
     TEST_ASSERT_EQUAL_STRING("", bench_heard());
     answers("state", "ok fault fault=bus-voltage period=22 position_rad=");
+    answers("signals", "ok signals state=fault fault=bus-voltage period=22 theta_est_rad=");
+    TEST_ASSERT_NOT_NULL(strstr(bench_ask("signals"), " reference_moving=no holding=no "));
 }
 
 static void test_readiness_is_announced(void)

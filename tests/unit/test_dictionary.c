@@ -12,6 +12,25 @@ void tearDown(void)
 {
 }
 
+static void test_every_signal_has_an_index_of_its_own_and_shows_its_member(void)
+{
+    struct drive_signals signals = {.state = DRIVE_FAULT, .theta_est_rad = 0.5, .period = 70000};
+
+    signals.holding = true;
+    for (int i = 0; i < SIGNALS; i++) {
+        for (int j = 0; j < i; j++) {
+            TEST_ASSERT_NOT_EQUAL(signal_text((enum drive_signal)i)->index,
+                                  signal_text((enum drive_signal)j)->index);
+        }
+    }
+    TEST_ASSERT_TRUE(signal_get(&signals, signal_at(SIGNAL_theta_est_rad)) == 0.5);
+    TEST_ASSERT_TRUE(signal_get(&signals, signal_at(SIGNAL_period)) == 70000.0);
+    TEST_ASSERT_EQUAL_STRING("fault", signal_word(signal_at(SIGNAL_state), DRIVE_FAULT));
+    TEST_ASSERT_EQUAL_STRING("yes", signal_word(signal_at(SIGNAL_holding), 1.0));
+    TEST_ASSERT_NULL(signal_word(signal_at(SIGNAL_i_d_A), 1.0));
+    TEST_ASSERT_EQUAL_HEX16(0x603f, signal_text(SIGNAL_fault)->index);
+}
+
 static void test_every_fault_has_a_name_and_a_code_of_its_own(void)
 {
     for (int i = 0; i < DRIVE_FAULTS; i++) {
@@ -84,6 +103,7 @@ static void test_a_fault_names_the_setting_that_limits(void)
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_every_signal_has_an_index_of_its_own_and_shows_its_member);
     RUN_TEST(test_every_fault_has_a_name_and_a_code_of_its_own);
     RUN_TEST(test_every_command_has_a_name_and_a_number_of_its_own);
     RUN_TEST(test_a_command_has_its_parameters_in_the_order_of_the_table);
