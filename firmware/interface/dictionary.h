@@ -29,20 +29,15 @@ struct signal_row {
     uint8_t size;      /* bytes */
 };
 
-/* Places in the order of the table, and how many are traced. */
-#define SIGNAL_PLACE(index, member, ...)                       SIGNAL_##member,
-#define SIGNAL_TRACED(index, member, path, brief, traced, ...) (SIGNAL_IS_##traced) +
+/* Places in the order of the table. */
+#define SIGNAL_PLACE(index, member, ...) SIGNAL_##member,
 enum drive_signal {
     DRIVE_SIGNALS_TABLE(SIGNAL_PLACE, SIGNAL_PLACE, SIGNAL_PLACE, SIGNAL_PLACE, SIGNAL_PLACE)
         SIGNALS
 };
-enum { SIGNAL_IS_UNTRACED, SIGNAL_IS_TRACED };
-enum {
-    SIGNALS_TRACED = DRIVE_SIGNALS_TABLE(SIGNAL_TRACED, SIGNAL_TRACED, SIGNAL_TRACED, SIGNAL_TRACED,
-                                         SIGNAL_TRACED) 0
-};
 #undef SIGNAL_PLACE
-#undef SIGNAL_TRACED
+
+enum { SIGNAL_IS_UNTRACED, SIGNAL_IS_TRACED };
 
 const struct signal_row *signal_at(enum drive_signal signal);
 

@@ -45,16 +45,27 @@ namespace scenario
     DRIVE(REFERENCE_MOVING, reference_moving)                                                      \
     DRIVE(SYNCHRONISM, synchronism)
 
-#define COLUMN(column, name)  column,
-#define COUNTED(column, name) +1
-#define NOT_COUNTED(column, name)
+#define TRACED(index, member, path, brief, traced, ...) SIGNAL_IS_##traced,
+#define COLUMN(column, name)                            column,
+#define IS_OF_DRIVE(column, name)                       1,
+#define IS_TRUE(column, name)                           0,
+template <std::size_t Length> constexpr std::size_t sum(const int (&ones)[Length])
+{
+    std::size_t all = 0;
+    for (const int one : ones) {
+        all += static_cast<std::size_t>(one);
+    }
+    return all;
+}
 enum Column : std::size_t {
     TRACE_COLUMNS(COLUMN, COLUMN) NAMED_COLUMNS,
-    COLUMNS = NAMED_COLUMNS + SIGNALS_TRACED - (0 TRACE_COLUMNS(COUNTED, NOT_COUNTED))
+    COLUMNS = NAMED_COLUMNS + sum({DRIVE_SIGNALS_TABLE(TRACED, TRACED, TRACED, TRACED, TRACED)}) -
+              sum({TRACE_COLUMNS(IS_OF_DRIVE, IS_TRUE)})
 };
+#undef TRACED
 #undef COLUMN
-#undef COUNTED
-#undef NOT_COUNTED
+#undef IS_OF_DRIVE
+#undef IS_TRUE
 
 /* Name with unit, as trace.csv heads the column. */
 const char *column_name(Column column);
