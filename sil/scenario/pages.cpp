@@ -1,6 +1,7 @@
 #include "sil/scenario/pages.h"
 
 #include "firmware/interface/dictionary.h"
+#include "sil/scenario/eds.h"
 #include "sil/scenario/text.h"
 
 namespace scenario
@@ -179,6 +180,7 @@ const std::vector<Page> &pages()
         {"commands", "commands of a drive: parameters, states", commands_page},
         {"signals", "signals of a drive: units, meaning", signals_page},
         {"faults", "faults of a drive: causes and remedies", faults_page},
+        {"eds", "object dictionary of a drive, as CiA 306 has it", electronic_data_sheet},
     };
     return all;
 }
