@@ -8,7 +8,7 @@ static struct position initial_position(const struct drive *drive, struct positi
     const struct drive_params *params = &drive->params;
 
     return params->enabling.encoder_zero_known
-               ? encoder_position(&params->estimator.encoder.encoder, encoder_zero,
+               ? encoder_position(&params->estimator.encoder_observer.encoder, encoder_zero,
                                   drive->encoder_count)
                : drive->enabling.start;
 }
@@ -25,7 +25,7 @@ void drive_reset_blocks(struct drive *drive)
         .encoder_count = drive->encoder_count,
     };
 
-    estimator_reset(&drive->estimator, &params->estimator, &start);
+    estimator_begin(&drive->estimator, &params->estimator, &start);
     reference_reset(&drive->reference, start.position);
     standstill_hold_reset(&drive->hold, &params->hold);
     position_law_reset(&drive->law);

@@ -190,7 +190,9 @@ compensate_detent(struct drive *drive, const struct estimate *estimate, struct p
     detent_compensation_step(&drive->detent, &drive->params.detent, next->rotor.position.fraction,
                              next->frame, next->rotor.speed, estimate->rotor.load_torque,
                              drive->reference.now.moving == drive->reference.next.moving);
-    estimator_tell_torque(&drive->estimator, &drive->params.estimator, drive->detent.torque);
+    if (estimator_is(&drive->params.estimator, ESTIMATOR_ENCODER_OBSERVER)) {
+        encoder_observer_set_known_torque(&drive->estimator.encoder_observer, drive->detent.torque);
+    }
     next->load_torque_change = drive->detent.torque - before;
     next->rotor.load_torque = estimate->rotor.load_torque + drive->detent.torque;
 }
@@ -312,9 +314,13 @@ IN_PLACE const struct estimate *observe(struct drive *drive, const struct sample
         winding = drive->input.winding;
     }
     actuation_observe(&drive->actuation, winding.voltage);
-    return estimator_step(&drive->estimator, &drive->params.estimator, &winding,
-                          drive->encoder_count,
-                          (struct rotor_hold){drive->hold.active, &drive->hold.leads});
+    const struct estimator_input input = {
+        .winding = &winding,
+        .encoder_count = drive->encoder_count,
+        .hold = {.active = drive->hold.active, .leads = &drive->hold.leads},
+    };
+
+    return estimator_observe(&drive->estimator, &drive->params.estimator, &input);
 }
 
 /* The bridge is on and stays on for this period: what it needs of estimate and duties. */

@@ -9,13 +9,10 @@
 #include "firmware/drive/parameter_store.h"
 #include "firmware/drive/synchronism.h"
 
-#define BEGINS_WITH_ITS_ESTIMATE(estimator)                                                        \
-    _Static_assert(offsetof(struct estimator, estimate) == 0, "union estimator")
+#define BEGINS_WITH_ITS_ESTIMATE(constant, name)                                                   \
+    _Static_assert(offsetof(struct name, estimate) == 0, #name);
 
-BEGINS_WITH_ITS_ESTIMATE(invariant_ekf);
-BEGINS_WITH_ITS_ESTIMATE(steady_state_ekf);
-BEGINS_WITH_ITS_ESTIMATE(encoder_observer);
-BEGINS_WITH_ITS_ESTIMATE(high_gain_observer);
+ESTIMATORS(BEGINS_WITH_ITS_ESTIMATE)
 
 static bool design_high_gain_observer(struct drive *drive, const struct drive_settings *settings,
                                       double period_s, char error[DRIVE_ERROR_TEXT])
@@ -23,14 +20,15 @@ static bool design_high_gain_observer(struct drive *drive, const struct drive_se
     struct estimator_params *params = &drive->params.estimator;
     const struct high_gain_observer_task task = {
         .base = &drive->base,
-        .encoder = &params->encoder.encoder,
+        .encoder = &params->encoder_observer.encoder,
         .period_s = period_s,
         .epsilon_s = settings->high_gain_epsilon_s,
         .speed_limit_rad_s = settings->speed_limit_rad_s,
     };
 
     params->kind = ESTIMATOR_HIGH_GAIN_OBSERVER;
-    return high_gain_observer_design(&params->high_gain, &drive->params.model, &task, error);
+    return high_gain_observer_design(&params->high_gain_observer, &drive->params.model, &task,
+                                     error);
 }
 
 static bool holds(const struct drive_settings *settings)
@@ -71,7 +69,7 @@ design_encoder_observers(struct drive *drive, const struct drive_settings *setti
     };
 
     params->kind = ESTIMATOR_ENCODER_OBSERVER;
-    if (!encoder_observer_design(&params->encoder, &drive->params.model, &task, error)) {
+    if (!encoder_observer_design(&params->encoder_observer, &drive->params.model, &task, error)) {
         return false;
     }
     encoder_aligning_design(drive, settings, period_s, current_A);
@@ -91,7 +89,7 @@ __attribute__((noinline)) static bool design_steady_state_ekf(struct drive *driv
         return false;
     }
     params->kind = ESTIMATOR_STEADY_STATE_EKF;
-    params->steady_state = steady_state_ekf_scale(&drive->params.model, &drive->base, &gains);
+    params->steady_state_ekf = steady_state_ekf_scale(&drive->params.model, &drive->base, &gains);
     return true;
 }
 
@@ -118,7 +116,8 @@ __attribute__((noinline)) static bool design_invariant_ekf(struct drive *drive,
         holding.unloaded.k_resistance_ohm_A2 = 0.0;
     }
     params->kind = ESTIMATOR_INVARIANT_EKF;
-    params->invariant = invariant_ekf_scale(&drive->params.model, &drive->base, &moving, &holding);
+    params->invariant_ekf =
+        invariant_ekf_scale(&drive->params.model, &drive->base, &moving, &holding);
     return true;
 }
 
@@ -141,7 +140,7 @@ static bool design_estimator(struct drive *drive, const struct drive_settings *s
     if (!designed) {
         return false;
     }
-    estimator_reset(&drive->estimator, &drive->params.estimator, &start);
+    estimator_begin(&drive->estimator, &drive->params.estimator, &start);
     return true;
 }
 

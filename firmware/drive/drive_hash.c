@@ -36,19 +36,19 @@ static uint64_t hash_estimator(uint64_t hash, const struct estimator_params *p)
 {
     switch (p->kind) {
     case ESTIMATOR_INVARIANT_EKF:
-        hash = HASH_RANGE(hash, p->invariant.moving, current, load_settle);
-        hash = HASH_RANGE(hash, p->invariant.holding, current, load_settle);
-        hash = HASH_RANGE(hash, p->invariant.unloaded, current, load_settle);
-        return HASH_RANGE(hash, p->invariant.following, current, load_settle);
+        hash = HASH_RANGE(hash, p->invariant_ekf.moving, current, load_settle);
+        hash = HASH_RANGE(hash, p->invariant_ekf.holding, current, load_settle);
+        hash = HASH_RANGE(hash, p->invariant_ekf.unloaded, current, load_settle);
+        return HASH_RANGE(hash, p->invariant_ekf.following, current, load_settle);
     case ESTIMATOR_STEADY_STATE_EKF:
-        return HASH_RANGE(hash, p->steady_state, rotation, gain_load);
+        return HASH_RANGE(hash, p->steady_state_ekf, rotation, gain_load);
     case ESTIMATOR_HIGH_GAIN_OBSERVER:
-        hash = HASH_RANGE(hash, p->high_gain, transition[0][0], acceleration_per_turn);
+        hash = HASH_RANGE(hash, p->high_gain_observer, transition[0][0], acceleration_per_turn);
         break;
     case ESTIMATOR_ENCODER_OBSERVER:
         break;
     }
-    return HASH_RANGE(hash, p->encoder, gain_angle, gain_resistance);
+    return HASH_RANGE(hash, p->encoder_observer, gain_angle, gain_resistance);
 }
 
 uint64_t drive_hash_gains(const struct drive_params *p)

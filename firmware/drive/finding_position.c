@@ -33,7 +33,7 @@ static void go_on(struct drive *drive, const struct sample_set *now)
     if (!finding->by_impulses) {
         standstill_hold_preset(&drive->hold, finding->current_reference);
         current_control_preset(&drive->current_control, (struct dq){finding->voltage, NUM(0.0)});
-        estimator_take_current(&drive->estimator, &drive->params.estimator, now->winding.current);
+        estimator_preset_current(&drive->estimator, &drive->params.estimator, now->winding.current);
     }
 }
 

@@ -1,13 +1,21 @@
 #include "firmware/drive/standstill_angle.h"
 
+/* Offset of the measured voltage, of which the steady-state EKF knows nothing. */
+static struct phases estimated_bias(const struct drive *drive)
+{
+    return estimator_is(&drive->params.estimator, ESTIMATOR_INVARIANT_EKF)
+               ? drive->estimator.invariant_ekf.bias
+               : (struct phases){NUM(0.0), NUM(0.0)};
+}
+
 /*
  * Half of the way each time: 1.5 degrees of noise in a measurement leave 0.9, and a load is known
  * in some five of them, 0.15 s. The load is the torque that holds the rotor there: with any other
- * the estimator's model would turn away from the angle that it is told. The estimator corrects its
- * voltage offset across the rotor's frame, which moves with what it is told: without a hold on what
+ * the estimator's model would turn away from the angle that is preset. The estimator corrects its
+ * voltage offset across the rotor's frame, which moves with what is preset: without a hold on what
  * this adds along the current, offset and resistance would drift away together.
  */
-static void tell_estimator(struct drive *drive, const struct standstill_angle *shown)
+static void preset_estimator(struct drive *drive, const struct standstill_angle *shown)
 {
     const struct estimate *x = &drive->estimator.estimate;
     const int32_t difference = (int32_t)(shown->angle - x->rotor.position.fraction);
@@ -16,16 +24,22 @@ static void tell_estimator(struct drive *drive, const struct standstill_angle *s
     rotor.position = position_add(rotor.position, difference / 2);
     rotor.speed = NUM(0.0);
     rotor.load_torque = park(shown->current, sincos_of(rotor.position.fraction)).q;
-    estimator_tell_rotor(&drive->estimator, &drive->params.estimator, &rotor);
-    estimator_tell_bias_along(&drive->estimator, &drive->params.estimator,
-                              drive->standstill.bias_of_motion, drive->hold.frame);
+    estimator_preset_rotor(&drive->estimator, &drive->params.estimator, &rotor);
+    if (estimator_is(&drive->params.estimator, ESTIMATOR_INVARIANT_EKF)) {
+        invariant_ekf_preset_bias_along(&drive->estimator.invariant_ekf,
+                                        drive->standstill.bias_of_motion, drive->hold.frame);
+    }
 }
 
-/* Apart: compiled once. */
+/* Of the coming S(k), had this voltage acted since S(k-1). Apart: compiled once. */
 __attribute__((noinline)) static struct phases expected_current(const struct drive *drive,
                                                                 struct phases voltage)
 {
-    return estimator_expected_current(&drive->estimator, &drive->params.estimator, voltage);
+    const struct estimate *x = &drive->estimator.estimate;
+    const struct phases bias = estimated_bias(drive);
+    const struct phases driving = {voltage.a - bias.a, voltage.b - bias.b};
+
+    return forced_current(&x->winding, x->free_current, driving);
 }
 
 void standstill_angle_blank_sample(struct drive *drive, struct channels *winding)
@@ -58,8 +72,7 @@ void standstill_angle_step(struct drive *drive, const struct estimate *estimate,
     if (!drive->hold.active || drive->supervision.state != DRIVE_OPERATION_ENABLED ||
         pulses->signal == NUM(0.0)) {
         standstill_pulses_stop(pulses);
-        drive->standstill.bias_of_motion =
-            estimator_bias(&drive->estimator, &drive->params.estimator);
+        drive->standstill.bias_of_motion = estimated_bias(drive);
         return;
     }
     if (standstill_pulses_add(pulses, &drive->standstill.params, estimate->current,
@@ -68,6 +81,6 @@ void standstill_angle_step(struct drive *drive, const struct estimate *estimate,
     }
     shown = standstill_pulses_result(pulses, &drive->standstill.params);
     if (shown.found) {
-        tell_estimator(drive, &shown);
+        preset_estimator(drive, &shown);
     }
 }

@@ -15,8 +15,8 @@ void synchronism_design(struct drive *drive, const struct drive_settings *settin
         .base = &drive->base,
         .model = &params->model,
         .period_s = period_s,
-        .current_gain_moving = coef_to_double(params->estimator.invariant.moving.current),
-        .current_gain_holding = coef_to_double(params->estimator.invariant.holding.current),
+        .current_gain_moving = coef_to_double(params->estimator.invariant_ekf.moving.current),
+        .current_gain_holding = coef_to_double(params->estimator.invariant_ekf.holding.current),
         .current_limit_A = settings->current_limit_A,
         .resistance_adapted = settings->resistance_adaptation,
         .resistance_calibrated = settings->resistance_adaptation && settings->hold_on_enable,
@@ -54,7 +54,7 @@ void synchronism_start(struct drive *drive)
     if (drive->synchronism.monitored) {
         drive->synchronism.step = TAKE;
         drive->synchronism.due = drive->supervision.period + SYNCHRONISM_BLOCK_PERIODS;
-        (void)invariant_ekf_take_innovation_sum(&drive->estimator.invariant);
+        (void)invariant_ekf_take_innovation_sum(&drive->estimator.invariant_ekf);
     }
 }
 
@@ -103,7 +103,7 @@ static enum synchronism step(struct drive *drive, const struct rotor *rotor)
     case TAKE:
         drive->synchronism.block_began = drive->supervision.period;
         synchronism_monitor_take(monitor, params,
-                                 invariant_ekf_take_innovation_sum(&drive->estimator.invariant),
+                                 invariant_ekf_take_innovation_sum(&drive->estimator.invariant_ekf),
                                  drive->hold.active);
         return SYNCHRONISM_SURE;
     case JUDGE_VOLTAGE:

@@ -67,4 +67,27 @@ __attribute__((noinline)) void encoder_observer_step(struct encoder_observer *ob
                                                      struct phases current, struct phases voltage,
                                                      int32_t count, bool holding);
 
+static inline void encoder_observer_begin(struct encoder_observer *observer,
+                                          const struct encoder_observer_params *params,
+                                          const struct estimator_start *start)
+{
+    encoder_observer_reset(observer, params, start->encoder_position, start->load_torque,
+                           start->resistance, start->encoder_count);
+}
+
+static inline void encoder_observer_observe(struct encoder_observer *observer,
+                                            const struct encoder_observer_params *params,
+                                            const struct estimator_input *input)
+{
+    encoder_observer_step(observer, params, input->winding->current, input->winding->voltage,
+                          input->encoder_count, input->hold.active);
+}
+
+/* Torque that the next prediction takes into account besides the load. */
+static inline void encoder_observer_set_known_torque(struct encoder_observer *observer,
+                                                     num_t torque)
+{
+    observer->known_torque = torque;
+}
+
 #endif

@@ -10,6 +10,23 @@ struct rotor_hold {
     const bool *leads; /* the rotor, else it holds it at rest; read in hold alone */
 };
 
+/* What is known when the bridge is switched on: at rest, without current. */
+struct estimator_start {
+    struct position position;         /* as it is assumed */
+    struct position encoder_position; /* that the count stands for */
+    num_t load_torque;
+    num_t resistance;
+    uint32_t unloaded_periods; /* of the hold that follows: no load begins in them */
+    int32_t encoder_count;
+};
+
+/* What an estimator goes by from S(k-1) to S(k). */
+struct estimator_input {
+    const struct channels *winding; /* current sampled at S(k), mean voltage since S(k-1) */
+    int32_t encoder_count;
+    struct rotor_hold hold;
+};
+
 struct estimate {
     struct phases current;
     struct rotor rotor;

@@ -94,9 +94,11 @@ void high_gain_observer_reset(struct high_gain_observer *observer,
     observer->x[2] = NUM(0.0);
 }
 
-void high_gain_observer_place(struct high_gain_observer *observer, struct position position,
-                              int32_t count)
+void high_gain_observer_place(struct high_gain_observer *observer,
+                              const struct high_gain_observer_params *params,
+                              struct position position, int32_t count)
 {
+    (void)params;
     encoder_set(&observer->encoder, position, count);
     observer->estimate.rotor.position = position;
     observer->measured = position;

@@ -67,12 +67,28 @@ void high_gain_observer_reset(struct high_gain_observer *observer,
                               int32_t count);
 
 /* The rotor is where the encoder now is: at `position`. */
-void high_gain_observer_place(struct high_gain_observer *observer, struct position position,
-                              int32_t count);
+void high_gain_observer_place(struct high_gain_observer *observer,
+                              const struct high_gain_observer_params *params,
+                              struct position position, int32_t count);
 
 /* From S(k-1) to S(k). */
 void high_gain_observer_step(struct high_gain_observer *observer,
                              const struct high_gain_observer_params *params, struct phases current,
                              int32_t count);
+
+static inline void high_gain_observer_begin(struct high_gain_observer *observer,
+                                            const struct high_gain_observer_params *params,
+                                            const struct estimator_start *start)
+{
+    high_gain_observer_reset(observer, params, start->position, start->encoder_position,
+                             start->resistance, start->encoder_count);
+}
+
+static inline void high_gain_observer_observe(struct high_gain_observer *observer,
+                                              const struct high_gain_observer_params *params,
+                                              const struct estimator_input *input)
+{
+    high_gain_observer_step(observer, params, input->winding->current, input->encoder_count);
+}
 
 #endif

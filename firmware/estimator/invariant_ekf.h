@@ -100,4 +100,50 @@ static inline num_t invariant_ekf_take_innovation_sum(struct invariant_ekf *ekf)
 void invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
                         struct phases current, struct phases voltage, struct rotor_hold hold);
 
+static inline void invariant_ekf_begin(struct invariant_ekf *ekf,
+                                       const struct invariant_ekf_params *params,
+                                       const struct estimator_start *start)
+{
+    invariant_ekf_reset(ekf, params, start->position, start->resistance, start->unloaded_periods);
+}
+
+static inline void invariant_ekf_observe(struct invariant_ekf *ekf,
+                                         const struct invariant_ekf_params *params,
+                                         const struct estimator_input *input)
+{
+    invariant_ekf_step(ekf, params, input->winding->current, input->winding->voltage, input->hold);
+}
+
+static inline void invariant_ekf_preset_current(struct invariant_ekf *ekf,
+                                                const struct invariant_ekf_params *params,
+                                                struct phases current)
+{
+    ekf->estimate.current = current;
+    estimate_look_ahead(&ekf->estimate, &params->model);
+}
+
+static inline void invariant_ekf_preset_rotor(struct invariant_ekf *ekf,
+                                              const struct invariant_ekf_params *params,
+                                              const struct rotor *rotor)
+{
+    ekf->estimate.rotor = *rotor;
+    ekf->settled_load = rotor->load_torque;
+    estimate_look_ahead(&ekf->estimate, &params->model);
+}
+
+/*
+ * Held: of the offset the part along the hold current, the d axis of `frame`, becomes that of
+ * `known`. At rest it looks like the drop at the resistance.
+ */
+static inline void invariant_ekf_preset_bias_along(struct invariant_ekf *ekf, struct phases known,
+                                                   struct sincos frame)
+{
+    struct phases *bias = &ekf->bias;
+    const struct phases change = {known.a - bias->a, known.b - bias->b};
+    const num_t along = park(change, frame).d;
+
+    bias->a += num_mul_unit(along, frame.cos);
+    bias->b += num_mul_unit(along, frame.sin);
+}
+
 #endif

@@ -40,4 +40,36 @@ __attribute__((noinline)) void steady_state_ekf_step(struct steady_state_ekf *ek
                                                      const struct steady_state_ekf_params *params,
                                                      struct phases current, struct phases voltage);
 
+static inline void steady_state_ekf_begin(struct steady_state_ekf *ekf,
+                                          const struct steady_state_ekf_params *params,
+                                          const struct estimator_start *start)
+{
+    steady_state_ekf_reset(ekf, params, start->position, start->resistance);
+}
+
+/* It has no tuning of its own for the hold. */
+static inline void steady_state_ekf_observe(struct steady_state_ekf *ekf,
+                                            const struct steady_state_ekf_params *params,
+                                            const struct estimator_input *input)
+{
+    steady_state_ekf_step(ekf, params, input->winding->current, input->winding->voltage);
+}
+
+static inline void steady_state_ekf_preset_current(struct steady_state_ekf *ekf,
+                                                   const struct steady_state_ekf_params *params,
+                                                   struct phases current)
+{
+    ekf->estimate.current = current;
+    ekf->current = park(current, estimate_begin_of_period(&ekf->estimate));
+    estimate_look_ahead(&ekf->estimate, &params->model);
+}
+
+static inline void steady_state_ekf_preset_rotor(struct steady_state_ekf *ekf,
+                                                 const struct steady_state_ekf_params *params,
+                                                 const struct rotor *rotor)
+{
+    ekf->estimate.rotor = *rotor;
+    estimate_look_ahead(&ekf->estimate, &params->model);
+}
+
 #endif

@@ -418,7 +418,7 @@ MUTANTS = [
            ".reference_speed = reference->speed"),
     Mutant(DRIVE + "control_cycle.c", "drive",
            "the_first_hold_aligns_the_rotor_and_finds_the_resistance",
-           "(struct rotor_hold){drive->hold.active,", "(struct rotor_hold){false,"),
+           ".hold = {.active = drive->hold.active,", ".hold = {.active = false,"),
     Mutant(DRIVE + "encoder_aligning.c", "drive",
            "on_both_ways_of_the_alignment_the_rotor_stands_where_it_is_held",
            "encoder_alignment_speed(alignment, &drive->enabling.alignment_params)", "NUM(0.0)"),
