@@ -8,22 +8,28 @@
 
 static const struct hal_outputs bridge_off = {.bridge_on = false};
 
-static bool start(struct application *application, const struct drive_settings *settings,
-                  char error[DRIVE_ERROR_TEXT])
+/* By `settings`, which are in force then. */
+static bool design(struct application *application, const struct drive_settings *settings,
+                   bool starts, char error[DRIVE_ERROR_TEXT])
 {
-    application->chosen = *settings;
-    if (settings->encoder_counts_per_turn > 0) {
-        application->facts.encoder_counts_per_turn = (uint32_t)settings->encoder_counts_per_turn;
+    const uint32_t counts = (uint32_t)settings->encoder_counts_per_turn;
+
+    application->facts.encoder_counts_per_turn = counts > 0u ? counts : application->board_counts;
+    if (!ESTIMATORS_READ_ENCODER && counts > 0u) {
+        return design_refuse(error, "encoder_counts_per_turn: this board reads none, expected 0");
     }
-    if (settings->feedback == DRIVE_FEEDBACK_ENCODER &&
+    if (ESTIMATORS_READ_ENCODER && settings->feedback == DRIVE_FEEDBACK_ENCODER &&
         application->facts.encoder_counts_per_turn == 0u) {
         return design_refuse(error, "feedback = encoder, but the board has none that is known: set "
                                     "encoder_counts_per_turn, or feedback = sensorless");
     }
-    if (!drive_init(&application->drive, &application->board, settings, error)) {
+    if (!(starts ? drive_init(&application->drive, &application->board, settings, error)
+                 : drive_design(&application->drive, settings, error))) {
         return false;
     }
     application->gains_hash = drive_hash_gains(&application->drive.params);
+    application->in_force = *settings;
+    application->awaits_enable = false;
     return true;
 }
 
@@ -31,36 +37,23 @@ static void prepare(struct application *application, const struct hal *board)
 {
     application->board = *board;
     application->facts = *board->facts;
+    application->board_counts = board->facts->encoder_counts_per_turn;
     application->board.facts = &application->facts;
     application->outputs = bridge_off;
     application->cycles = (struct control_cycles){.periods = 0};
     application->stored_refused = false;
-    application->fed_in = UINT32_MAX;
     console_init(&application->console);
 }
 
-/* Kept apart: the settings of one way to start need no stack during the other. */
-__attribute__((noinline)) static bool start_with_stored(struct application *application)
+static bool start_with_stored(struct application *application)
 {
-    struct drive_settings stored;
-
-    if (!settings_record_read(&application->board, &stored)) {
+    if (!settings_record_read(&application->board, &application->chosen)) {
         return false;
     }
     application->settings_from = APPLICATION_SETTINGS_STORED;
-    application->stored_refused = !start(application, &stored, application->stored_refusal);
+    application->stored_refused =
+        !design(application, &application->chosen, true, application->stored_refusal);
     return !application->stored_refused;
-}
-
-__attribute__((noinline)) static bool start_with_default(struct application *application,
-                                                         const struct motor_params *motor,
-                                                         char error[DRIVE_ERROR_TEXT])
-{
-    struct drive_settings settings;
-
-    application->settings_from = APPLICATION_SETTINGS_DEFAULT;
-    drive_settings_default(&settings, motor);
-    return start(application, &settings, error);
 }
 
 CALLED_FROM_OUTSIDE bool application_init(struct application *application, const struct hal *board,
@@ -71,8 +64,9 @@ CALLED_FROM_OUTSIDE bool application_init(struct application *application, const
     if (start_with_stored(application)) {
         return true;
     }
-    application->facts = *board->facts;
-    return start_with_default(application, motor_default, error);
+    application->settings_from = APPLICATION_SETTINGS_DEFAULT;
+    drive_settings_default(&application->chosen, motor_default);
+    return design(application, &application->chosen, true, error);
 }
 
 bool application_init_with(struct application *application, const struct hal *board,
@@ -80,23 +74,74 @@ bool application_init_with(struct application *application, const struct hal *bo
 {
     prepare(application, board);
     application->settings_from = APPLICATION_SETTINGS_GIVEN;
-    return start(application, settings, error);
+    application->chosen = *settings;
+    return design(application, &application->chosen, true, error);
 }
 
-/* A board whose control interrupt no longer comes is to be reset. */
-static void feed_watchdog(struct application *application)
+/* What was learned stays learned. Refused, the drive is as it was before. */
+static bool design_anew(struct application *application, char error[DRIVE_ERROR_TEXT])
 {
-    const uint32_t period = interrupt_view_period(&application->drive);
+    struct learned_parameters learned;
+    const bool learns = drive_learned(&application->drive, &learned);
+    const bool accepted = design(application, &application->chosen, false, error);
 
-    if (period != application->fed_in) {
-        application->fed_in = period;
-        application->board.watchdog_feed(application->board.context);
+    if (!accepted) {
+        char none[DRIVE_ERROR_TEXT];
+
+        (void)design(application, &application->in_force, false, none);
+        application->awaits_enable = true;
     }
+    if (learns) {
+        drive_put_learned(&application->drive, &learned);
+    }
+    return accepted;
+}
+
+bool application_settings_wait(const struct application *application, uint32_t at_period)
+{
+    const struct drive *drive = &application->drive;
+    const enum drive_state found = drive_state_by(drive, at_period);
+
+    return (found == DRIVE_SWITCH_ON_DISABLED || found == DRIVE_FAULT) &&
+           !command_queue_enable_waits(&drive->commands);
+}
+
+/* Before an enable that would begin with it: puts in force what was set. */
+static bool prepare_enable(struct application *application, uint32_t *at_period,
+                           char error[DRIVE_ERROR_TEXT])
+{
+    const struct drive *drive = &application->drive;
+
+    if (!application->awaits_enable ||
+        drive_state_by(drive, *at_period) != DRIVE_SWITCH_ON_DISABLED) {
+        return true;
+    }
+    if (!application_settings_wait(application, interrupt_view_period(drive))) {
+        return design_refuse(error, "enable refused: settings have changed, wait until the bridge "
+                                    "is off");
+    }
+    if (!design_anew(application, error)) {
+        return false;
+    }
+    const uint32_t period = interrupt_view_period(drive);
+
+    if ((int32_t)(*at_period - period) <= 0) {
+        *at_period = period + DRIVE_TYPED_DELAY_PERIODS;
+    }
+    return true;
+}
+
+bool application_command(struct application *application, struct drive_command *command,
+                         uint32_t asked_in, char error[DRIVE_ERROR_TEXT])
+{
+    return (command->kind != DRIVE_COMMAND_ENABLE ||
+            prepare_enable(application, &command->at_period, error)) &&
+           drive_command_asked_in(&application->drive, command, asked_in, error);
 }
 
 CALLED_FROM_OUTSIDE void application_background(struct application *application)
 {
-    feed_watchdog(application);
+    drive_feed_watchdog(&application->drive);
     drive_background(&application->drive);
     console_background(application);
 }

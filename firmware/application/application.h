@@ -35,11 +35,13 @@ struct application {
     /* background */
     struct hal board;       /* as given, with the facts below */
     struct hal_facts facts; /* as given, with the encoder of the settings */
+    uint32_t board_counts;  /* of the encoder, as given */
     enum application_settings settings_from;
     struct drive_settings chosen;          /* as given, stored or set: what `store` keeps */
+    struct drive_settings in_force;        /* those that the drive was designed by */
+    bool awaits_enable;                    /* `chosen` does, as it may differ from them */
     bool stored_refused;                   /* by the drive: the defaults are in force */
     char stored_refusal[DRIVE_ERROR_TEXT]; /* why */
-    uint32_t fed_in;                       /* period in which the watchdog was fed */
     struct console console;
 };
 
@@ -57,6 +59,19 @@ bool application_init_with(struct application *application, const struct hal *bo
                            const struct drive_settings *settings, char error[DRIVE_ERROR_TEXT]);
 
 /*
+ * Background: drive_command_asked_in, for whoever commands a drive that has a console. What was set
+ * since the drive was designed is put in force before an enable: it is designed anew, with its
+ * bridge off, which takes as long as drive_init. If the period to act in has passed by then, the
+ * command acts, and its at_period is, DRIVE_TYPED_DELAY_PERIODS after the end of the design. false:
+ * refused, reason in error; a set-up that the drive refuses leaves the one before in force.
+ */
+bool application_command(struct application *application, struct drive_command *command,
+                         uint32_t asked_in, char error[DRIVE_ERROR_TEXT]);
+
+/* Background: by this period the bridge is off, and no enable waits: what is set waits for one. */
+bool application_settings_wait(const struct application *application, uint32_t at_period);
+
+/*
  * The control interrupt: drive_control_cycle. What it returns acts over S(k+1)...S(k+2); a bridge
  * that is to be off is switched off at once.
  */
@@ -70,7 +85,8 @@ void application_count_cycles(struct application *application,
 /*
  * The main loop calls it all the time, at least once in 3 ms. One call takes at most one typed line
  * (1 ms on a Cortex-M4F) and lets the planner plan once (1 ms); a line that writes the parameter
- * store takes up to 35 ms. The watchdog is fed only if control interrupts have come since.
+ * store takes up to 60 ms, an enable behind changed settings as long as drive_init, of a refused
+ * set-up twice. The watchdog is fed only if control interrupts have come since.
  */
 void application_background(struct application *application);
 

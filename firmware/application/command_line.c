@@ -4,9 +4,13 @@
 
 #define WITH(member) (1u << DRIVE_PARAMETER_##member)
 
+/* The drive keeps what it has learned, the application the settings. */
+#define LINE_OF(constant)                                                                          \
+    (DRIVE_COMMAND_##constant == DRIVE_COMMAND_STORE ? LINE_STORE : LINE_COMMAND)
+
 #define COMMAND_FORM(number, constant, name, required, optional, states, planning, sentence)       \
-    {name,     LINE_COMMAND, DRIVE_COMMAND_##constant,                                             \
-     required, optional,     (DRIVE_##planning) != DRIVE_AT_ONCE,                                  \
+    {name,     LINE_OF(constant), DRIVE_COMMAND_##constant,                                        \
+     required, optional,          (DRIVE_##planning) != DRIVE_AT_ONCE,                             \
      sentence},
 
 static const struct line_form forms[] = {
@@ -22,8 +26,7 @@ static const struct line_form forms[] = {
         "get", LINE_GET, DRIVE_COMMANDS, 0, 0, false,
         "a setting: value, unit, range, default; get hold* lists those that begin so"},
     {"set", LINE_SET, DRIVE_COMMANDS, 0, 0, false,
-     "set hold_current_A 1.2, or default; acts once it is stored and the board starts again"},
-    {"store", LINE_STORE, DRIVE_COMMANDS, 0, 0, false, "keeps the settings across power cycles"},
+     "set hold_current_A 1.2, or default; acts at the next enable, or in motion at once"},
     {"defaults", LINE_DEFAULTS, DRIVE_COMMANDS, 0, 0, false,
      "sets all settings but the motor's to their defaults"},
 };

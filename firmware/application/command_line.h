@@ -18,7 +18,7 @@ enum line_action {
     LINE_CYCLES,
     LINE_GET,   /* a setting, or those that begin alike */
     LINE_SET,   /* a setting, to a value */
-    LINE_STORE, /* the settings that were set */
+    LINE_STORE, /* the settings, and what was learned */
     LINE_DEFAULTS
 };
 

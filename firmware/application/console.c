@@ -190,8 +190,11 @@ static bool obey_command(struct application *application, struct command_line *l
     if (line->form->action == LINE_MOVE) {
         choose_times(application, line);
     }
-    if (!drive_command_asked_in(&application->drive, &line->command, line_period, refusal)) {
+    if (!application_command(application, &line->command, line_period, refusal)) {
         text_put(answer, refusal);
+        if (line->command.kind == DRIVE_COMMAND_ENABLE && application->awaits_enable) {
+            text_put(answer, "; what was set is not in force");
+        }
         return false;
     }
     /* one that waits already may come earlier */

@@ -3,6 +3,9 @@
 #include "firmware/application/application.h"
 #include "firmware/application/number_text.h"
 #include "firmware/application/settings_record.h"
+#include "firmware/design/refusal.h"
+#include "firmware/drive/interrupt_view.h"
+#include "firmware/drive/settings_in_motion.h"
 #include "firmware/interface/settings.h"
 
 /* One number, or one of several. */
@@ -202,6 +205,7 @@ static bool get(const struct application *application, struct line_word name, st
     }
     put_range(application, element.setting, answer);
     put_default(application, element, answer);
+    text_put(answer, element.setting->in_motion ? "; in motion" : "; at enable");
     put_sentence(element.setting, answer);
     return true;
 }
@@ -227,6 +231,55 @@ static bool value_of(const struct setting *setting, struct line_word word, doubl
                                               *value == (double)(int32_t)*value));
 }
 
+/* `value` as typed, or the default; of a motor there is none. */
+static bool read_value(const struct application *application, struct element element,
+                       struct line_word typed, double *value, struct text *answer)
+{
+    if (line_word_is(typed, "default") && !setting_is_of_motor(element.setting)) {
+        struct drive_settings defaults;
+
+        drive_settings_default(&defaults, &application->chosen.motor);
+        *value = setting_get(&defaults, element.setting, element.number);
+        return true;
+    }
+    if (!value_of(element.setting, typed, value)) {
+        line_word_quote(answer, typed);
+        text_put(answer, ": expected a value of ");
+        text_put(answer, element.setting->name);
+        put_range(application, element.setting, answer);
+        return false;
+    }
+    return true;
+}
+
+/* A disable that was typed before counts: it acts before any enable that is typed behind. */
+static bool waits(const struct application *application)
+{
+    const uint32_t period = interrupt_view_period(&application->drive);
+
+    return application_settings_wait(application, period + DRIVE_TYPED_DELAY_PERIODS);
+}
+
+/* Puts `changed` in force, at the next enable or at once. */
+static bool accept(struct application *application, const struct drive_settings *changed,
+                   bool in_motion, struct text *answer)
+{
+    struct drive *drive = &application->drive;
+    char refusal[DRIVE_ERROR_TEXT] = "this is set while the drive is disabled";
+
+    if (in_motion && interrupt_view_state(drive) != DRIVE_OPERATION_ENABLED) {
+        (void)design_refuse(refusal, "the drive is being enabled, wait until it is ready");
+        in_motion = false;
+    }
+    if (!waits(application) && !(in_motion && settings_in_motion_change(drive, changed, refusal))) {
+        text_put(answer, refusal);
+        return false;
+    }
+    application->chosen = *changed;
+    application->awaits_enable = true;
+    return true;
+}
+
 static bool set(struct application *application, struct element element, struct line_word typed,
                 struct text *answer)
 {
@@ -234,16 +287,7 @@ static bool set(struct application *application, struct element element, struct 
     char refusal[DRIVE_ERROR_TEXT];
     double value;
 
-    if (line_word_is(typed, "default") && !setting_is_of_motor(element.setting)) {
-        struct drive_settings defaults;
-
-        drive_settings_default(&defaults, &changed.motor);
-        value = setting_get(&defaults, element.setting, element.number);
-    } else if (!value_of(element.setting, typed, &value)) {
-        line_word_quote(answer, typed);
-        text_put(answer, ": expected a value of ");
-        text_put(answer, element.setting->name);
-        put_range(application, element.setting, answer);
+    if (!read_value(application, element, typed, &value, answer)) {
         return false;
     }
     setting_choose(&changed, element.setting, element.number, value);
@@ -251,23 +295,15 @@ static bool set(struct application *application, struct element element, struct 
         text_put(answer, refusal);
         return false;
     }
-    application->chosen = changed;
-    return true;
+    return accept(application, &changed, element.setting->in_motion, answer);
 }
 
-static bool store(const struct application *application, struct text *answer)
+static bool restore_defaults(struct application *application, struct text *answer)
 {
-    char refusal[DRIVE_ERROR_TEXT];
+    struct drive_settings defaults;
 
-    if (!drive_settings_check(&application->chosen, refusal)) {
-        text_put(answer, refusal);
-        return false;
-    }
-    if (!settings_record_write(&application->board, &application->chosen)) {
-        text_put(answer, "the board has no parameter store, or refused to write");
-        return false;
-    }
-    return true;
+    drive_settings_default(&defaults, &application->chosen.motor);
+    return accept(application, &defaults, false, answer);
 }
 
 static void put_set(const struct application *application, struct element element,
@@ -275,7 +311,7 @@ static void put_set(const struct application *application, struct element elemen
 {
     text_put(answer, "ok set ");
     put_setting(application, element, answer);
-    text_put(answer, "; acts once it is stored and the board starts again");
+    text_put(answer, waits(application) ? "; acts at the next enable" : "; acts at once");
 }
 
 static bool obey_set(struct application *application, const struct command_line *line,
@@ -296,34 +332,43 @@ static bool obey_set(struct application *application, const struct command_line 
     return true;
 }
 
-static bool obey_store(const struct application *application, struct text *answer)
+static bool store(struct application *application, struct text *answer)
 {
-    const struct text empty = *answer;
+    const struct drive_command learned = {.kind = DRIVE_COMMAND_STORE};
+    struct drive *drive = &application->drive;
+    char refusal[DRIVE_ERROR_TEXT];
 
-    text_put(answer, "error: ");
-    if (!store(application, answer)) {
+    if (!drive_settings_check(&application->chosen, refusal) ||
+        !drive_command(drive, &learned, refusal)) {
+        text_put(answer, refusal);
         return false;
     }
-    *answer = empty;
-    text_put(answer, "ok store");
+    drive_feed_watchdog(drive); /* one of the two may have erased a page, the other may, too */
+    if (!settings_record_write(&application->board, &application->chosen)) {
+        text_put(answer, "the board has no parameter store, or refused to write");
+        return false;
+    }
     return true;
 }
 
 bool setting_line_obey(struct application *application, const struct command_line *line,
                        struct text *answer)
 {
-    const struct motor_params motor = application->chosen.motor;
+    const struct text empty = *answer;
 
-    switch (line->form->action) {
-    case LINE_GET:
+    if (line->form->action == LINE_GET) {
         return get(application, line->name, answer);
-    case LINE_SET:
-        return obey_set(application, line, answer);
-    case LINE_STORE:
-        return obey_store(application, answer);
-    default:
-        drive_settings_default(&application->chosen, &motor);
-        text_put(answer, "ok defaults");
-        return true;
     }
+    if (line->form->action == LINE_SET) {
+        return obey_set(application, line, answer);
+    }
+    text_put(answer, "error: ");
+    if (!(line->form->action == LINE_STORE ? store(application, answer)
+                                           : restore_defaults(application, answer))) {
+        return false;
+    }
+    *answer = empty;
+    text_put(answer, "ok ");
+    text_put(answer, line->form->name);
+    return true;
 }

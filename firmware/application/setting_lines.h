@@ -1,6 +1,8 @@
 /*
  * Settings on the console: get, set, store and defaults. What is set waits in
- * `application->chosen`; once it is stored it is in force when the board starts again.
+ * `application->chosen` for the next enable (application_command); in a drive that is ready, what
+ * may change in motion acts at once, and all else is refused. `store` keeps what is set and what
+ * was learned.
  */
 #ifndef STEADYSTEP_SETTING_LINES_H
 #define STEADYSTEP_SETTING_LINES_H

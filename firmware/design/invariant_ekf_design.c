@@ -352,16 +352,22 @@ static double load_step_Nm(const struct motor_params *motor, double period_s, do
                                                 : LOAD_STEP_MAX * rated_Nm;
 }
 
-bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s,
-                               double hold_current_A, struct invariant_ekf_hold_gains *gains,
-                               char error[DESIGN_ERROR_TEXT])
+bool invariant_ekf_quiet_hold_design(const struct motor_params *motor, double period_s,
+                                     double hold_current_A, struct invariant_ekf_hold_gains *gains,
+                                     char error[DESIGN_ERROR_TEXT])
 {
-    if (!motor_check(motor, period_s, error) ||
-        !design_require_positive(error, "hold current", hold_current_A, "A")) {
-        return false;
-    }
-    if (!hold_gains(motor, period_s, hold_current_A, hold_tuning.load_walk, &gains->quiet) ||
-        !hold_gains(motor, period_s, hold_current_A, FOLLOWING_LOAD_WALK, &gains->following)) {
+    return motor_check(motor, period_s, error) &&
+           design_require_positive(error, "hold current", hold_current_A, "A") &&
+           (hold_gains(motor, period_s, hold_current_A, hold_tuning.load_walk, &gains->quiet) ||
+            design_refuse(error, no_gain));
+}
+
+bool invariant_ekf_following_hold_design(const struct motor_params *motor, double period_s,
+                                         double hold_current_A,
+                                         struct invariant_ekf_hold_gains *gains,
+                                         char error[DESIGN_ERROR_TEXT])
+{
+    if (!hold_gains(motor, period_s, hold_current_A, FOLLOWING_LOAD_WALK, &gains->following)) {
         return design_refuse(error, no_gain);
     }
     gains->unloaded = gains->quiet;
@@ -379,4 +385,12 @@ bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s
     gains->load_step_Nm = load_step_Nm(motor, period_s, hold_current_A);
     gains->led_load_memory = LED_MEMORY * gains->quiet.load_return;
     return true;
+}
+
+bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s,
+                               double hold_current_A, struct invariant_ekf_hold_gains *gains,
+                               char error[DESIGN_ERROR_TEXT])
+{
+    return invariant_ekf_quiet_hold_design(motor, period_s, hold_current_A, gains, error) &&
+           invariant_ekf_following_hold_design(motor, period_s, hold_current_A, gains, error);
 }

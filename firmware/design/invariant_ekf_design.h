@@ -89,4 +89,13 @@ bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s
                                double hold_current_A, struct invariant_ekf_hold_gains *gains,
                                char error[DESIGN_ERROR_TEXT]);
 
+/* The same in two parts, one behind the other, of half its time each. */
+bool invariant_ekf_quiet_hold_design(const struct motor_params *motor, double period_s,
+                                     double hold_current_A, struct invariant_ekf_hold_gains *gains,
+                                     char error[DESIGN_ERROR_TEXT]);
+bool invariant_ekf_following_hold_design(const struct motor_params *motor, double period_s,
+                                         double hold_current_A,
+                                         struct invariant_ekf_hold_gains *gains,
+                                         char error[DESIGN_ERROR_TEXT]);
+
 #endif

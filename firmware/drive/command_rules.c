@@ -65,8 +65,8 @@ bool command_rules_check(const struct drive *drive, const struct drive_command *
     const enum drive_state found = state_found(drive, command, asked_in);
     struct text text;
 
-    if (command->kind == DRIVE_COMMAND_SAVE && drive->planner.motion != PLANNER_IDLE) {
-        return design_refuse(error, "save refused: writing takes longer than sine and set-points "
+    if (command->kind == DRIVE_COMMAND_STORE && drive->planner.motion != PLANNER_IDLE) {
+        return design_refuse(error, "store refused: writing takes longer than sine and set-points "
                                     "can wait for their continuation; stop first");
     }
     if (command_rules_obeyed(command->kind, found)) {

@@ -3,7 +3,6 @@
 #include "firmware/drive/board_limits.h"
 #include "firmware/drive/command_rules.h"
 #include "firmware/drive/interrupt_view.h"
-#include "firmware/drive/parameter_store.h"
 #include "firmware/drive/planned_end.h"
 
 static enum profile_shape shape_of(enum drive_command_kind kind)
@@ -88,13 +87,12 @@ static bool request(struct drive *drive, const struct drive_command *command,
            begin_set_points(drive, command, asked, error);
 }
 
-static bool save(const struct drive *drive, char error[DRIVE_ERROR_TEXT])
+static bool store(const struct drive *drive, char error[DRIVE_ERROR_TEXT])
 {
     struct learned_parameters learned;
 
-    detent_compensation_get(&drive->detent, &drive->base, learned.detent_torque_Nm);
-    return parameter_store_write(drive->board, &learned) ||
-           design_refuse(error, "save refused: the board's parameter store cannot be written");
+    return !drive_learned(drive, &learned) || parameter_store_write(drive->board, &learned) ||
+           design_refuse(error, "the board has no parameter store, or refused to write");
 }
 
 double drive_planned_end_rad(struct drive *drive)
@@ -155,8 +153,8 @@ bool drive_command_asked_in(struct drive *drive, const struct drive_command *com
     if (!command_rules_check(drive, command, asked_in, error)) {
         return false;
     }
-    if (command->kind == DRIVE_COMMAND_SAVE) {
-        return save(drive, error);
+    if (command->kind == DRIVE_COMMAND_STORE) {
+        return store(drive, error);
     }
     if (command->kind == DRIVE_COMMAND_DISABLE) {
         command_queue_put_urgent(&drive->commands, &drive->commands.disable, command->at_period);

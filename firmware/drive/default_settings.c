@@ -69,17 +69,6 @@ static bool bears(const struct drive_settings *settings, double period_s, double
            hold_control_check(&task, limit);
 }
 
-/* Half the rated current, or what of it the hold's own check passes. */
-static double hold_current(const struct drive_settings *settings, double period_s)
-{
-    double current_A = HOLD_CURRENT_SHARE * settings->motor.rated_current_A;
-
-    for (int step = 0; step < HOLD_CURRENT_STEPS && !bears(settings, period_s, current_A); step++) {
-        current_A *= HOLD_CURRENT_STEP;
-    }
-    return current_A;
-}
-
 /* With the default law of an encoder 2000, else 1500, and twice what a stiff hold swings with. */
 static double current_bandwidth(const struct drive_settings *settings, double period_s)
 {
@@ -130,18 +119,40 @@ static double observer_bandwidth(const struct drive_settings *settings, double p
                : smaller(wanted, count_bandwidth_max(&settings->motor, period_s, counts_per_turn));
 }
 
-void default_settings_apply(struct drive_settings *settings, double period_s,
-                            uint32_t encoder_counts_per_turn)
+/* The hold current is half the rated current, or what of it the hold's own check passes. */
+bool default_settings_step(struct default_settings_search *search, struct drive_settings *settings,
+                           double period_s, uint32_t encoder_counts_per_turn)
 {
-    put(&settings->current_bandwidth_rad_s, current_bandwidth(settings, period_s));
-    put(&settings->law_bandwidth_rad_s,
-        smaller(law_bandwidth_wanted(settings), law_bandwidth_max(settings, period_s)));
-    put(&settings->observer_bandwidth_rad_s,
-        observer_bandwidth(settings, period_s, encoder_counts_per_turn));
-    put(&settings->hold_current_A, hold_current(settings, period_s));
+    const bool given = settings->hold_current_A == settings->hold_current_A;
+
+    if (search->refused == 0) {
+        put(&settings->current_bandwidth_rad_s, current_bandwidth(settings, period_s));
+        put(&settings->law_bandwidth_rad_s,
+            smaller(law_bandwidth_wanted(settings), law_bandwidth_max(settings, period_s)));
+        put(&settings->observer_bandwidth_rad_s,
+            observer_bandwidth(settings, period_s, encoder_counts_per_turn));
+        search->hold_current_A = HOLD_CURRENT_SHARE * settings->motor.rated_current_A;
+    }
+    if (!given && search->refused < HOLD_CURRENT_STEPS &&
+        !bears(settings, period_s, search->hold_current_A)) {
+        search->hold_current_A *= HOLD_CURRENT_STEP;
+        search->refused++;
+        return false;
+    }
+    put(&settings->hold_current_A, search->hold_current_A);
     put(&settings->hold_delay_s,
         smaller(HOLD_DELAY_MAX_S,
                 HOLD_DELAY_SWING / hold_frequency(&settings->motor, settings->hold_current_A)));
     put(&settings->hold_bandwidth_rad_s, hold_bandwidth(&settings->motor, settings->hold_current_A,
                                                         settings->current_bandwidth_rad_s));
+    return true;
+}
+
+void default_settings_apply(struct drive_settings *settings, double period_s,
+                            uint32_t encoder_counts_per_turn)
+{
+    struct default_settings_search search = {.refused = 0};
+
+    while (!default_settings_step(&search, settings, period_s, encoder_counts_per_turn)) {
+    }
 }

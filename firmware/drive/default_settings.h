@@ -25,4 +25,14 @@ static inline struct hold_task hold_task_of(const struct drive_settings *setting
 void default_settings_apply(struct drive_settings *settings, double period_s,
                             uint32_t encoder_counts_per_turn);
 
+/* The search for a hold current; all zero at first. */
+struct default_settings_search {
+    double hold_current_A;
+    int refused;
+};
+
+/* The same in steps, which a watchdog outlasts: 80 ms on a Cortex-M0+. true: done. */
+bool default_settings_step(struct default_settings_search *search, struct drive_settings *settings,
+                           double period_s, uint32_t encoder_counts_per_turn);
+
 #endif

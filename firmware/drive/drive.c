@@ -6,7 +6,8 @@
 #include "firmware/drive/board_limits.h"
 #include "firmware/drive/default_settings.h"
 #include "firmware/drive/encoder_aligning.h"
-#include "firmware/drive/parameter_store.h"
+#include "firmware/drive/interrupt_view.h"
+#include "firmware/drive/law_design.h"
 #include "firmware/drive/synchronism.h"
 
 #define BEGINS_WITH_ITS_ESTIMATE(constant, name)                                                   \
@@ -100,14 +101,25 @@ __attribute__((noinline)) static bool design_invariant_ekf(struct drive *drive,
 {
     const struct motor_params *motor = &settings->motor;
     const struct hold_task hold = hold_task_of(settings, period_s);
+    const double current_A = settings->hold_current_A;
     struct estimator_params *params = &drive->params.estimator;
     struct invariant_ekf_gains moving;
     struct invariant_ekf_hold_gains holding;
 
     if (!invariant_ekf_motion_design(motor, period_s, &moving, error) ||
-        !invariant_ekf_motion_check(motor, period_s, &moving, error) ||
-        !invariant_ekf_hold_design(motor, period_s, settings->hold_current_A, &holding, error) ||
-        (holds(settings) && !hold_estimator_check(&hold, &holding, error))) {
+        !invariant_ekf_motion_check(motor, period_s, &moving, error)) {
+        return false;
+    }
+    drive_feed_watchdog(drive);
+    if (!invariant_ekf_quiet_hold_design(motor, period_s, current_A, &holding, error)) {
+        return false;
+    }
+    drive_feed_watchdog(drive);
+    if (!invariant_ekf_following_hold_design(motor, period_s, current_A, &holding, error)) {
+        return false;
+    }
+    drive_feed_watchdog(drive);
+    if (holds(settings) && !hold_estimator_check(&hold, &holding, error)) {
         return false;
     }
     if (!settings->resistance_adaptation) {
@@ -144,33 +156,6 @@ static bool design_estimator(struct drive *drive, const struct drive_settings *s
     return true;
 }
 
-/* Gains given by name are the user's own: only their range is checked. */
-static bool check_law_gains(const struct drive_settings *settings, char error[DRIVE_ERROR_TEXT])
-{
-    const struct law_gain_list list = position_law_gains(settings->law);
-
-    for (size_t i = 0; i < DRIVE_LAW_GAINS; i++) {
-        const double value = settings->law_gains[i];
-        const bool given = value == value;
-
-        if (given && i >= list.count) {
-            return design_refuse(error, "law_gains: more are given than the law takes");
-        }
-        if (given && !(value >= list.gain[i].min && value <= list.gain[i].max)) {
-            const bool low = value < list.gain[i].min;
-
-            return design_refuse_limit(
-                error, (struct refusal){.quantity = list.gain[i].name,
-                                        .value = value,
-                                        .relation = low ? "at least" : "at most",
-                                        .limit = low ? list.gain[i].min : list.gain[i].max,
-                                        .unit = "",
-                                        .reason = "the range of this gain"});
-        }
-    }
-    return true;
-}
-
 static void design_detent_compensation(struct drive *drive, const struct drive_settings *settings,
                                        double period_s)
 {
@@ -196,24 +181,11 @@ static void design_detent_compensation(struct drive *drive, const struct drive_s
 static bool design_law(struct drive *drive, const struct drive_settings *settings, double period_s,
                        char error[DRIVE_ERROR_TEXT])
 {
-    const struct position_law_task task = {
-        .motor = &settings->motor,
-        .base = &drive->base,
-        .period_s = period_s,
-        .delay_periods = drive->board->facts->acts_at_once ? 0u : 1u,
-        .bandwidth_rad_s = settings->law_bandwidth_rad_s,
-        .current_bandwidth_rad_s = settings->current_bandwidth_rad_s,
-        .speed_limit_rad_s = settings->speed_limit_rad_s,
-        .current_limit_A = settings->current_limit_A,
-        .gains = settings->law_gains,
-    };
-
     if (ESTIMATORS_READ_ENCODER) {
         design_detent_compensation(drive, settings, period_s);
     }
     drive->params.position_law = settings->law;
-    return check_law_gains(settings, error) &&
-           position_law_design(settings->law, &drive->params.law, &task, error);
+    return law_design(drive, settings, &drive->params.law, error);
 }
 
 /* Shares of the overcurrent trip: of a pulse on the hold, and on the hold under load. */
@@ -299,28 +271,84 @@ static double speed_limit(const struct drive_settings *settings, const struct pe
     return wanted < limit ? wanted : limit;
 }
 
+void drive_feed_watchdog(struct drive *drive)
+{
+    const uint32_t period = interrupt_view_period(drive);
+
+    if (period != drive->fed_in) {
+        drive->fed_in = period;
+        drive->board->watchdog_feed(drive->board->context);
+    }
+}
+
+bool drive_learned(const struct drive *drive, struct learned_parameters *learned)
+{
+    if (!ESTIMATORS_READ_ENCODER || !drive->params.path.detent_learning) {
+        return false;
+    }
+    detent_compensation_get(&drive->detent, &drive->base, learned->detent_torque_Nm);
+    return true;
+}
+
+void drive_put_learned(struct drive *drive, const struct learned_parameters *learned)
+{
+    if (ESTIMATORS_READ_ENCODER) {
+        detent_compensation_set(&drive->detent, &drive->params.detent, &drive->base,
+                                learned->detent_torque_Nm);
+    }
+}
+
 bool drive_init(struct drive *drive, const struct hal *board, const struct drive_settings *settings,
                 char error[DRIVE_ERROR_TEXT])
 {
     static const struct drive powered_down = {
-        .supervision = {.state = DRIVE_SWITCH_ON_DISABLED, .period = UINT32_MAX}};
-    const struct hal_facts *facts = board->facts;
+        .supervision = {.state = DRIVE_SWITCH_ON_DISABLED, .period = UINT32_MAX},
+        .fed_in = UINT32_MAX};
+
+    *drive = powered_down;
+    drive->board = board;
+    const bool accepted = drive_design(drive, settings, error);
+
+    planner_init(drive);
+    return accepted;
+}
+
+/* What was given, and what follows. */
+static bool settle_settings(struct drive *drive, const struct drive_settings *given,
+                            char error[DRIVE_ERROR_TEXT])
+{
+    const struct hal_facts *facts = drive->board->facts;
+    struct drive_settings *settings = &drive->settings;
+    struct default_settings_search search = {.refused = 0};
+
+    if (!drive_settings_check(given, error)) {
+        return false;
+    }
+    *settings = *given;
+    while (!default_settings_step(&search, settings, facts->control_period_s,
+                                  facts->encoder_counts_per_turn)) {
+        drive_feed_watchdog(drive);
+    }
+    drive_feed_watchdog(drive);
+    if (!board_limits_apply(settings, facts, error)) {
+        return false;
+    }
+    drive->base = per_unit_base(&settings->motor, facts->control_period_s);
+    settings->speed_limit_rad_s = speed_limit(settings, &drive->base);
+    return true;
+}
+
+bool drive_design(struct drive *drive, const struct drive_settings *given,
+                  char error[DRIVE_ERROR_TEXT])
+{
+    const struct hal_facts *facts = drive->board->facts;
+    const struct drive_settings *settings = &drive->settings;
     const double period_s = facts->control_period_s;
     struct drive_params *params = &drive->params;
 
-    *drive = powered_down;
-    if (!drive_settings_check(settings, error)) {
+    if (!settle_settings(drive, given, error)) {
         return false;
     }
-    drive->board = board;
-    drive->settings = *settings;
-    settings = &drive->settings;
-    default_settings_apply(&drive->settings, period_s, facts->encoder_counts_per_turn);
-    if (!board_limits_apply(&drive->settings, facts, error)) {
-        return false;
-    }
-    drive->base = per_unit_base(&settings->motor, period_s);
-    drive->settings.speed_limit_rad_s = speed_limit(settings, &drive->base);
     params->measurement = measurement_design(facts, &drive->base);
     params->model =
         motor_model_design(&settings->motor, &drive->base, period_s, facts->bridge_resistance_ohm);
@@ -360,11 +388,11 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
     modulator_reset(&drive->modulator);
     reference_reset(&drive->reference, params->enabling.initial_position);
     planned_end_init(drive);
-    planner_init(drive);
     if (!design_estimator(drive, &drive->settings, period_s, error)) {
         return false;
     }
-    synchronism_design(drive, settings, period_s);
+    drive_feed_watchdog(drive);
+    synchronism_design(drive, settings);
     return design_law(drive, &drive->settings, period_s, error) &&
            design_hold(drive, settings, period_s, error) &&
            design_finding(drive, &drive->settings, period_s, error);

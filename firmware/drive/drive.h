@@ -15,6 +15,7 @@
 #include "firmware/interface/drive_interface.h"
 #include "firmware/drive/measurement.h"
 #include "firmware/drive/offset_calibration.h"
+#include "firmware/drive/parameter_store.h"
 #include "firmware/drive/planned_end.h"
 #include "firmware/drive/planner.h"
 #include "firmware/drive/protection.h"
@@ -152,6 +153,7 @@ struct drive {
 
     /* background */
     const struct hal *board;
+    uint32_t fed_in; /* period in which the watchdog was fed */
     struct drive_settings settings;
     struct per_unit base;
     struct planned_end planned_end;
@@ -169,6 +171,26 @@ struct drive {
 __attribute__((noinline)) bool drive_init(struct drive *drive, const struct hal *board,
                                           const struct drive_settings *settings,
                                           char error[DRIVE_ERROR_TEXT]);
+
+/*
+ * Background, of a drive that is switch-on-disabled or in fault, with no enable waiting: the same
+ * for other settings. Control interrupts go on meanwhile: of a drive whose bridge is off they use
+ * nothing that is designed but the scale of the bus voltage. They count periods, take commands and
+ * keep the bridge off; the watchdog is fed between the parts, of 100 ms at most on a Cortex-M0+.
+ * Refused, the drive must be designed by settings that it accepts before it is enabled.
+ */
+__attribute__((noinline)) bool drive_design(struct drive *drive, const struct drive_settings *given,
+                                            char error[DRIVE_ERROR_TEXT]);
+
+/* Background: feeds the board's watchdog, if a control interrupt has come since it was fed: a board
+   where none comes any more is to be reset. */
+void drive_feed_watchdog(struct drive *drive);
+
+/* Background: what has been learned since the start or before; false: the drive does not learn. */
+bool drive_learned(const struct drive *drive, struct learned_parameters *learned);
+
+/* Background, behind a design: goes on learning from there. */
+void drive_put_learned(struct drive *drive, const struct learned_parameters *learned);
 
 /* The control interrupt: from the samples of S(k) to the duties of S(k+1)...S(k+2). */
 __attribute__((noinline)) struct hal_outputs drive_control_cycle(struct drive *drive,

@@ -1,20 +1,14 @@
 #include "firmware/drive/synchronism.h"
 
-void synchronism_design(struct drive *drive, const struct drive_settings *settings, double period_s)
+struct synchronism_monitor_params synchronism_params(const struct drive *drive,
+                                                     const struct drive_settings *settings)
 {
     const struct drive_params *params = &drive->params;
-    struct synchronism_supervision *synchronism = &drive->synchronism;
-
-    synchronism->monitored = params->estimator.kind == ESTIMATOR_INVARIANT_EKF &&
-                             settings->synchronism_policy != DRIVE_SYNCHRONISM_OFF;
-    if (!synchronism->monitored) {
-        return;
-    }
     const struct synchronism_monitor_task task = {
         .motor = &settings->motor,
         .base = &drive->base,
         .model = &params->model,
-        .period_s = period_s,
+        .period_s = drive->board->facts->control_period_s,
         .current_gain_moving = coef_to_double(params->estimator.invariant_ekf.moving.current),
         .current_gain_holding = coef_to_double(params->estimator.invariant_ekf.holding.current),
         .current_limit_A = settings->current_limit_A,
@@ -22,8 +16,19 @@ void synchronism_design(struct drive *drive, const struct drive_settings *settin
         .resistance_calibrated = settings->resistance_adaptation && settings->hold_on_enable,
     };
 
-    synchronism->policy = settings->synchronism_policy;
-    synchronism->params = synchronism_monitor_design(&task);
+    return synchronism_monitor_design(&task);
+}
+
+void synchronism_design(struct drive *drive, const struct drive_settings *settings)
+{
+    struct synchronism_supervision *synchronism = &drive->synchronism;
+
+    synchronism->monitored = drive->params.estimator.kind == ESTIMATOR_INVARIANT_EKF &&
+                             settings->synchronism_policy != DRIVE_SYNCHRONISM_OFF;
+    if (synchronism->monitored) {
+        synchronism->policy = settings->synchronism_policy;
+        synchronism->params = synchronism_params(drive, settings);
+    }
 }
 
 #define NOT_YET (1u << 30) /* periods; longer than any enabling */

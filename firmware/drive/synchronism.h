@@ -5,8 +5,12 @@
 #include "firmware/drive/drive.h"
 
 /* At start-up, behind the estimator's design; only an invariant EKF is monitored. */
-__attribute__((cold)) void
-synchronism_design(struct drive *drive, const struct drive_settings *settings, double period_s);
+__attribute__((cold)) void synchronism_design(struct drive *drive,
+                                              const struct drive_settings *settings);
+
+/* The monitor's constants, of a drive whose estimator is designed. */
+__attribute__((cold, noinline)) struct synchronism_monitor_params
+synchronism_params(const struct drive *drive, const struct drive_settings *settings);
 
 /* When the bridge is switched on: nothing is watched yet. */
 void synchronism_reset(struct drive *drive);

@@ -63,8 +63,8 @@
             WITH(position_rad) | WITH(speed_rad_s) | WITH(acceleration_rad_s2) |                   \
                 WITH(jerk_rad_s3),                                                                 \
             0, IN_OPERATION, AHEAD, "to a position from whatever motion")                          \
-    COMMAND(                                                                                       \
-        12, SAVE, "save", 0, 0, ANY_STATE, AT_ONCE,                                                \
-        "keeps what has been learned across power cycles; not while a sine or set-points go on")
+    COMMAND(12, STORE, "store", 0, 0, ANY_STATE, AT_ONCE,                                          \
+            "keeps the settings and what was learned across power cycles; not while a sine or "    \
+            "set-points go on")
 
 #endif

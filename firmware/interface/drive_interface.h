@@ -73,11 +73,12 @@ enum { DRIVE_DETENT_COEFFICIENTS = 6 };
  * its unit, range, default and meaning there. Fill with drive_settings_default first. A real number
  * may be NaN, not given, where the table says that it follows from motor, board and period.
  */
-#define DRIVE_CHOICE_MEMBER(index, member, type, constants, preset, sentence)  enum type member;
-#define DRIVE_FLAG_MEMBER(index, member, preset, sentence)                     bool member;
-#define DRIVE_REAL_MEMBER(index, member, unit, least, most, preset, sentence)  double member;
-#define DRIVE_COUNT_MEMBER(index, member, unit, least, most, preset, sentence) int32_t member;
-#define DRIVE_REALS_MEMBER(index, member, count, unit, least, most, preset, sentence)              \
+#define DRIVE_CHOICE_MEMBER(index, member, type, constants, preset, when, sentence)                \
+    enum type member;
+#define DRIVE_FLAG_MEMBER(index, member, preset, when, sentence)                     bool member;
+#define DRIVE_REAL_MEMBER(index, member, unit, least, most, preset, when, sentence)  double member;
+#define DRIVE_COUNT_MEMBER(index, member, unit, least, most, preset, when, sentence) int32_t member;
+#define DRIVE_REALS_MEMBER(index, member, count, unit, least, most, preset, when, sentence)        \
     double member[count];
 struct drive_settings {
     struct motor_params motor;

@@ -12,6 +12,8 @@
 #define BASE_RATED(share)  SETTING_RATED
 #define BASE_FOLLOWS       SETTING_FOLLOWS
 #define BASE_COMPUTED      SETTING_COMPUTED
+#define WHEN_AT_ENABLE     false
+#define WHEN_IN_MOTION     true
 
 #define CHOICE_TEXT(constant, text, sentence) text,
 #define LAW_TEXT(constant, function, text)    text,
@@ -44,7 +46,7 @@ static const char *const synchronism_policy_texts[] = {
 #define MOTOR_COUNT(at, member, unit, least, most, sentence)                                       \
     MOTOR_ROW(SETTING_COUNT, at, member, unit, least, most)
 
-#define REALS_ROW(at, member, elements, in_unit, lowest, highest, initial, sentence)               \
+#define REALS_ROW(at, member, elements, in_unit, lowest, highest, initial, when, sentence)         \
     {.name = #member,                                                                              \
      .index = (at),                                                                                \
      .type = SETTING_REAL,                                                                         \
@@ -56,11 +58,12 @@ static const char *const synchronism_policy_texts[] = {
      .least_base = BASE_##lowest,                                                                  \
      .most_base = BASE_##highest,                                                                  \
      .preset_base = BASE_##initial,                                                                \
+     .in_motion = WHEN_##when,                                                                     \
      .size = sizeof(double),                                                                       \
      .offset = offsetof(struct drive_settings, member)},
-#define REAL_ROW(at, member, unit, least, most, preset, sentence)                                  \
-    REALS_ROW(at, member, 1, unit, least, most, preset, sentence)
-#define COUNT_ROW(at, member, in_unit, lowest, highest, initial, sentence)                         \
+#define REAL_ROW(at, member, unit, least, most, preset, when, sentence)                            \
+    REALS_ROW(at, member, 1, unit, least, most, preset, when, sentence)
+#define COUNT_ROW(at, member, in_unit, lowest, highest, initial, when, sentence)                   \
     {.name = #member,                                                                              \
      .index = (at),                                                                                \
      .type = SETTING_COUNT,                                                                        \
@@ -71,9 +74,10 @@ static const char *const synchronism_policy_texts[] = {
      .preset = VALUE_##initial,                                                                    \
      .least_base = BASE_##lowest,                                                                  \
      .most_base = BASE_##highest,                                                                  \
+     .in_motion = WHEN_##when,                                                                     \
      .size = SIZE_OF(member),                                                                      \
      .offset = offsetof(struct drive_settings, member)},
-#define FLAG_ROW(at, member, initial, sentence)                                                    \
+#define FLAG_ROW(at, member, initial, when, sentence)                                              \
     {.name = #member,                                                                              \
      .index = (at),                                                                                \
      .type = SETTING_FLAG,                                                                         \
@@ -81,9 +85,10 @@ static const char *const synchronism_policy_texts[] = {
      .unit = "",                                                                                   \
      .most = 1.0,                                                                                  \
      .preset = (initial),                                                                          \
+     .in_motion = WHEN_##when,                                                                     \
      .size = SIZE_OF(member),                                                                      \
      .offset = offsetof(struct drive_settings, member)},
-#define CHOICE_ROW(at, member, enumeration, constants, initial, sentence)                          \
+#define CHOICE_ROW(at, member, enumeration, constants, initial, when, sentence)                    \
     {.name = #member,                                                                              \
      .index = (at),                                                                                \
      .type = SETTING_CHOICE,                                                                       \
@@ -92,6 +97,7 @@ static const char *const synchronism_policy_texts[] = {
      .choices = member##_texts,                                                                    \
      .most = (constants)-1,                                                                        \
      .preset = (initial),                                                                          \
+     .in_motion = WHEN_##when,                                                                     \
      .size = SIZE_OF(member),                                                                      \
      .offset = offsetof(struct drive_settings, member)},
 

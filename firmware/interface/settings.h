@@ -33,6 +33,7 @@ struct setting {
     uint8_t least_base : 2;     /* enum setting_base */
     uint8_t most_base : 2;
     uint8_t preset_base : 2;
+    uint8_t in_motion : 1; /* acts at once in a drive that is ready; else at the next enable */
 };
 
 #define SETTING_PLACE(index, member, unit, least, most, sentence) SETTING_##member,

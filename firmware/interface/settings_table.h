@@ -4,18 +4,21 @@
  * the keys of a scenario's [drive] and the page settings.md. To add a setting: a row, and what
  * makes use of it.
  *
- *   CHOICE(index, member, type, constants, preset, sentence)   one of an enumeration
- *   FLAG(index, member, preset, sentence)
- *   REAL(index, member, unit, least, most, preset, sentence)
- *   REALS(index, member, count, unit, least, most, preset, sentence)   an array
- *   COUNT(index, member, unit, least, most, preset, sentence)  a whole number
+ *   CHOICE(index, member, type, constants, preset, when, sentence)   one of an enumeration
+ *   FLAG(index, member, preset, when, sentence)
+ *   REAL(index, member, unit, least, most, preset, when, sentence)
+ *   REALS(index, member, count, unit, least, most, preset, when, sentence)   an array
+ *   COUNT(index, member, unit, least, most, preset, when, sentence)  a whole number
  *
  * - index: of the object dictionary (CiA 301), manufacturer specific; it never changes and is never
  *   used again. An array takes as many as it has elements.
  * - least, most, preset: FIXED(value), or RATED(share) of the motor's rated current.
  * - preset FOLLOWS: NaN, "not given"; what it is then follows from motor, board and period when the
  *   drive starts (drive/default_settings.h, drive/board_limits.h). COMPUTED: from the motor at
- * once.
+ *   once.
+ * - when it may change: AT_ENABLE, while the bridge is off, and acts at the next enable, for which
+ *   the drive is designed anew; so do the motor's. IN_MOTION, in a drive that is ready, too, and
+ *   acts at once there: drive/settings_in_motion.h says which constants of the interrupt it is.
  *
  * The order is that in which a scenario's keys are obeyed: feedback and law choose defaults of what
  * stands below them.
@@ -38,84 +41,87 @@
 
 #define DRIVE_SETTINGS(CHOICE, FLAG, REAL, REALS, COUNT)                                           \
     CHOICE(0x2100, feedback, drive_feedback, DRIVE_FEEDBACKS, DRIVE_FEEDBACK_SENSORLESS,           \
-           "where the rotor's position comes from")                                                \
-    CHOICE(0x2101, law, position_law, POSITION_LAW_COUNT, POSITION_LAW_STATE_FEEDBACK,             \
+           AT_ENABLE, "where the rotor's position comes from")                                     \
+    CHOICE(0x2101, law, position_law, POSITION_LAW_COUNT, POSITION_LAW_STATE_FEEDBACK, AT_ENABLE,  \
            "position law; with an encoder feedback-linearisation")                                 \
     CHOICE(0x2102, estimator, drive_estimator, DRIVE_ESTIMATORS, DRIVE_ESTIMATOR_INVARIANT_EKF,    \
-           "of sensorless feedback")                                                               \
-    CHOICE(0x2103, observer, drive_observer, DRIVE_OBSERVERS, DRIVE_OBSERVER_MODEL,                \
+           AT_ENABLE, "of sensorless feedback")                                                    \
+    CHOICE(0x2103, observer, drive_observer, DRIVE_OBSERVERS, DRIVE_OBSERVER_MODEL, AT_ENABLE,     \
            "on the encoder")                                                                       \
     CHOICE(0x2104, voltage_source, drive_voltage_source, DRIVE_VOLTAGE_SOURCES,                    \
-           DRIVE_VOLTAGE_MEASURED, "where the estimator's voltage comes from")                     \
+           DRIVE_VOLTAGE_MEASURED, AT_ENABLE, "where the estimator's voltage comes from")          \
     CHOICE(0x2105, initial_position, drive_initial_position, DRIVE_INITIAL_POSITIONS,              \
-           DRIVE_INITIAL_POSITION_TOLD, "how a sensorless drive knows where its rotor stands")     \
+           DRIVE_INITIAL_POSITION_TOLD, AT_ENABLE,                                                 \
+           "how a sensorless drive knows where its rotor stands")                                  \
     CHOICE(0x2106, synchronism_policy, drive_synchronism_policy, DRIVE_SYNCHRONISM_POLICIES,       \
-           DRIVE_SYNCHRONISM_FAULT, "what comes of a rotor that has lost step; sensorless")        \
-    FLAG(0x2107, feed_forward, true, "reference speed and acceleration into the law")              \
-    FLAG(0x2108, detent_learning, false,                                                           \
+           DRIVE_SYNCHRONISM_FAULT, IN_MOTION,                                                     \
+           "what comes of a rotor that has lost step; sensorless")                                 \
+    FLAG(0x2107, feed_forward, true, AT_ENABLE, "reference speed and acceleration into the law")   \
+    FLAG(0x2108, detent_learning, false, AT_ENABLE,                                                \
          "learn and compensate the detent torque; with an encoder only, true for its default law") \
-    FLAG(0x2109, bridge_loss_compensation, true, "of dead time and diodes")                        \
-    FLAG(0x210a, resistance_adaptation, true, "track the series resistance while holding")         \
-    REAL(0x2110, law_bandwidth_rad_s, "rad/s", FIXED(1.0), FIXED(1e4), FOLLOWS,                    \
+    FLAG(0x2109, bridge_loss_compensation, true, AT_ENABLE, "of dead time and diodes")             \
+    FLAG(0x210a, resistance_adaptation, true, AT_ENABLE,                                           \
+         "track the series resistance while holding")                                              \
+    REAL(0x2110, law_bandwidth_rad_s, "rad/s", FIXED(1.0), FIXED(1e4), FOLLOWS, AT_ENABLE,         \
          "w0 of the position law, a pair of poles: 200, of the default law 300, with an encoder "  \
          "900, or what the period bears")                                                          \
-    REAL(0x2111, current_bandwidth_rad_s, "rad/s", FIXED(10.0), FIXED(1e6), FOLLOWS,               \
+    REAL(0x2111, current_bandwidth_rad_s, "rad/s", FIXED(10.0), FIXED(1e6), FOLLOWS, AT_ENABLE,    \
          "of the current loop inside it: 1500, with feedback-linearisation 2000, twice the swing " \
          "of a quicker hold, or what the period bears")                                            \
-    REALS(0x2180, law_gains, DRIVE_LAW_GAINS, "", FIXED(-1e12), FIXED(1e12), FOLLOWS,              \
+    REALS(0x2180, law_gains, DRIVE_LAW_GAINS, "", FIXED(-1e12), FIXED(1e12), FOLLOWS, AT_ENABLE,   \
           "the law's gains by its own names, instead of what the bandwidths make of them")         \
     REALS(0x21c0, detent_torque_Nm, DRIVE_DETENT_COEFFICIENTS, "N m", FIXED(-100.0), FIXED(100.0), \
-          FIXED(0.0),                                                                              \
+          FIXED(0.0), AT_ENABLE,                                                                   \
           "a_1, b_1, a_2, b_2, a_4, b_4 of the electrical angle's harmonics: where learning "      \
           "begins if nothing is kept")                                                             \
-    REAL(0x2120, current_limit_A, "A", RATED(0.01), RATED(2.0), RATED(1.0),                        \
+    REAL(0x2120, current_limit_A, "A", RATED(0.01), RATED(2.0), RATED(1.0), IN_MOTION,             \
          "of the current reference")                                                               \
-    REAL(0x2121, overcurrent_trip_A, "A", RATED(0.1), RATED(6.0), FOLLOWS,                         \
+    REAL(0x2121, overcurrent_trip_A, "A", RATED(0.1), RATED(6.0), FOLLOWS, IN_MOTION,              \
          "a sampled phase current beyond it opens the bridge: 1.8 x rated current, cut to what "   \
          "the board measures")                                                                     \
-    REAL(0x2122, speed_limit_rad_s, "rad/s", FIXED(0.1), FIXED(1e4), COMPUTED,                     \
+    REAL(0x2122, speed_limit_rad_s, "rad/s", FIXED(0.1), FIXED(1e4), COMPUTED, AT_ENABLE,          \
          "an estimate beyond it opens the bridge: 1.3 x supply / Km, of a law without current "    \
          "control N w L / R = 4, cut to 0.24 electrical turn per period")                          \
-    REAL(0x2130, observer_bandwidth_rad_s, "rad/s", FIXED(1.0), FIXED(1e6), FOLLOWS,               \
+    REAL(0x2130, observer_bandwidth_rad_s, "rad/s", FIXED(1.0), FIXED(1e6), FOLLOWS, AT_ENABLE,    \
          "triple pole of the model observer: 1000, of the default law with an encoder 1400, or "   \
          "what period and counts bear")                                                            \
-    REAL(0x2131, high_gain_epsilon_s, "s", FIXED(1e-7), FIXED(1.0), FIXED(1e-3),                   \
+    REAL(0x2131, high_gain_epsilon_s, "s", FIXED(1e-7), FIXED(1.0), FIXED(1e-3), AT_ENABLE,        \
          "of the high-gain observer")                                                              \
     COUNT(0x2009, encoder_counts_per_turn, "", FIXED(0.0), FIXED(1073741824.0), FIXED(0.0),        \
-          "quadrature counts; 0: as the board has it")                                             \
-    REAL(0x2132, encoder_zero_rad, "rad", FIXED(-1e4), FIXED(1e4), FIXED(0.0),                     \
+          AT_ENABLE, "quadrature counts; 0: as the board has it")                                  \
+    REAL(0x2132, encoder_zero_rad, "rad", FIXED(-1e4), FIXED(1e4), FIXED(0.0), AT_ENABLE,          \
          "rotor angle where count 0 begins")                                                       \
     REAL(0x2133, initial_load_torque_Nm, "N m", FIXED(-100.0), FIXED(100.0), FIXED(0.0),           \
-         "load that the model observer begins with")                                               \
-    FLAG(0x2134, encoder_zero_known, false,                                                        \
+         AT_ENABLE, "load that the model observer begins with")                                    \
+    FLAG(0x2134, encoder_zero_known, false, AT_ENABLE,                                             \
          "absolute encoder or indexed: the rotor's angle follows from the count, else it is "      \
          "initial_angle_rad at the end of the hold")                                               \
-    FLAG(0x2140, calibrate_offsets, true, "step of enabling, with the bridge off, then on")        \
-    FLAG(0x2141, hold_on_enable, true,                                                             \
+    FLAG(0x2140, calibrate_offsets, true, AT_ENABLE,                                               \
+         "step of enabling, with the bridge off, then on")                                         \
+    FLAG(0x2141, hold_on_enable, true, AT_ENABLE,                                                  \
          "step of enabling: hold_on_enable_s before ready; an encoder's zero is found first")      \
-    FLAG(0x2142, hold_at_rest, true, "d-axis current at rest; with an encoder false")              \
+    FLAG(0x2142, hold_at_rest, true, AT_ENABLE, "d-axis current at rest; with an encoder false")   \
     FLAG(                                                                                          \
-        0x2143, standstill_pulses, false,                                                          \
+        0x2143, standstill_pulses, false, AT_ENABLE,                                               \
         "pulses on the hold current show the rotor's angle under load, of a motor that saturates") \
-    REAL(0x2144, hold_on_enable_s, "s", FIXED(0.01), FIXED(10.0), FIXED(0.150),                    \
+    REAL(0x2144, hold_on_enable_s, "s", FIXED(0.01), FIXED(10.0), FIXED(0.150), AT_ENABLE,         \
          "half of it behind the search for an encoder's zero")                                     \
-    REAL(0x2145, hold_current_A, "A", RATED(0.01), RATED(1.0), FOLLOWS,                            \
+    REAL(0x2145, hold_current_A, "A", RATED(0.01), RATED(1.0), FOLLOWS, AT_ENABLE,                 \
          "d-axis current at rest: half the rated current, or what of it the hold's own check "     \
          "passes")                                                                                 \
-    REAL(0x2146, motion_current_A, "A", FIXED(0.0), RATED(1.0), FIXED(0.0),                        \
+    REAL(0x2146, motion_current_A, "A", FIXED(0.0), RATED(1.0), FIXED(0.0), IN_MOTION,             \
          "d-axis current in motion")                                                               \
-    REAL(0x2147, hold_ramp_s, "s", FIXED(1e-3), FIXED(1.0), FIXED(0.010),                          \
+    REAL(0x2147, hold_ramp_s, "s", FIXED(1e-3), FIXED(1.0), FIXED(0.010), AT_ENABLE,               \
          "time for the hold current to ramp in or out")                                            \
-    REAL(                                                                                          \
-        0x2148, hold_delay_s, "s", FIXED(0.0), FIXED(100.0), FOLLOWS,                              \
-        "from the end of a profile to the hold: 0.015, of a hold quicker than 280 rad/s 4.2 over " \
-        "that")                                                                                    \
-    REAL(0x2149, hold_bandwidth_rad_s, "rad/s", FIXED(1.0), FIXED(1e4), FOLLOWS,                   \
+    REAL(0x2148, hold_delay_s, "s", FIXED(0.0), FIXED(100.0), FOLLOWS, AT_ENABLE,                  \
+         "from the end of a profile to the hold: 0.015, of a hold quicker than 280 rad/s 4.2 "     \
+         "over that")                                                                              \
+    REAL(0x2149, hold_bandwidth_rad_s, "rad/s", FIXED(1.0), FIXED(1e4), FOLLOWS, AT_ENABLE,        \
          "w0 of the state feedback whose damping the hold takes: 200, a quarter of its swing, or " \
          "what the current loop bears")                                                            \
-    REAL(0x214a, initial_angle_rad, "rad", FIXED(-1e4), FIXED(1e4), FIXED(0.0),                    \
+    REAL(0x214a, initial_angle_rad, "rad", FIXED(-1e4), FIXED(1e4), FIXED(0.0), AT_ENABLE,         \
          "mechanical rotor angle that the drive is told")                                          \
-    REAL(0x214b, initial_angle_error_rad, "rad", FIXED(-10.0), FIXED(10.0), FIXED(0.0),            \
+    REAL(0x214b, initial_angle_error_rad, "rad", FIXED(-10.0), FIXED(10.0), FIXED(0.0), AT_ENABLE, \
          "added to it, to tell the drive something wrong; for simulation")
 
 /* The settings that are one of several: constant, text, sentence. */

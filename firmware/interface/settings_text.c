@@ -8,12 +8,13 @@ struct sentence {
     const char *text;
 };
 
-#define MOTOR_SENTENCE(index, member, unit, least, most, sentence)                {index, sentence},
-#define CHOICE_SENTENCE(index, member, type, constants, preset, sentence)         {index, sentence},
-#define FLAG_SENTENCE(index, member, preset, sentence)                            {index, sentence},
-#define REAL_SENTENCE(index, member, unit, least, most, preset, sentence)         {index, sentence},
-#define COUNT_SENTENCE(index, member, unit, least, most, preset, sentence)        {index, sentence},
-#define REALS_SENTENCE(index, member, count, unit, least, most, preset, sentence) {index, sentence},
+#define MOTOR_SENTENCE(index, member, unit, least, most, sentence)               {index, sentence},
+#define CHOICE_SENTENCE(index, member, type, constants, preset, when, sentence)  {index, sentence},
+#define FLAG_SENTENCE(index, member, preset, when, sentence)                     {index, sentence},
+#define REAL_SENTENCE(index, member, unit, least, most, preset, when, sentence)  {index, sentence},
+#define COUNT_SENTENCE(index, member, unit, least, most, preset, when, sentence) {index, sentence},
+#define REALS_SENTENCE(index, member, count, unit, least, most, preset, when, sentence)            \
+    {index, sentence},
 
 static const struct sentence sentences[] = {
     MOTOR_SETTINGS(MOTOR_SENTENCE, MOTOR_SENTENCE) DRIVE_SETTINGS(

@@ -42,8 +42,10 @@ static bool image_command(void *drive, const struct drive_command *command,
                           char error[DRIVE_ERROR_TEXT])
 {
     struct instance *self = drive;
+    struct drive_command asked = *command;
 
-    return drive_command(&self->application.drive, command, error);
+    return application_command(&self->application, &asked,
+                               self->application.drive.supervision.period, error);
 }
 
 static void image_background(void *drive)

@@ -2,7 +2,6 @@
 #include <string.h>
 
 #include "firmware/application/application.h"
-#include "firmware/design/text.h"
 #include "hal/cortex_m/board_hal.h"
 #include "hal/cortex_m/crash.h"
 #include "hal/cortex_m/image.h"
@@ -16,29 +15,6 @@
 #include "hal/stm32g071/watchdog.h"
 
 struct application application;
-
-/* No pins read an encoder: stored settings that ask for one are not in force. Kept apart for the
-   stack of the settings. */
-__attribute__((noinline)) static bool start_without_encoder(char error[DRIVE_ERROR_TEXT])
-{
-    const uint32_t asked = application.facts.encoder_counts_per_turn;
-    struct drive_settings settings;
-
-    if (asked == 0) {
-        return true;
-    }
-    drive_settings_default(&settings, &motor_default);
-    if (!application_init_with(&application, &board_hal, &settings, error)) {
-        return false;
-    }
-    application.settings_from = APPLICATION_SETTINGS_DEFAULT;
-    application.stored_refused = true;
-    struct text text = text_in(application.stored_refusal, sizeof application.stored_refusal);
-    text_put(&text, "encoder counts per turn=");
-    text_unsigned(&text, asked);
-    text_put(&text, ": this board reads no encoder, expected 0");
-    return true;
-}
 
 static _Noreturn void stay_off(void)
 {
@@ -64,8 +40,7 @@ int main(void)
     bridge_start();
     pins_connect();
     serial_line_configure();
-    if (!application_init(&application, &board_hal, &motor_default, error) ||
-        !start_without_encoder(error)) {
+    if (!application_init(&application, &board_hal, &motor_default, error)) {
         (void)serial_line_write((const uint8_t *)error, strlen(error));
         clock_wait_us(100000); /* for the text to leave */
         board_fault(BOARD_FAULT_SETTINGS_REFUSED);

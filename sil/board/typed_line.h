@@ -19,7 +19,7 @@ std::string typed_line(const drive_command &command,
                        std::optional<std::uint32_t> at_period = std::nullopt);
 
 /* Control periods from the one in which the line arrives to the one in which the command acts; of
-   a save, which acts at once, 0. */
+   a store, which acts at once, 0. */
 std::uint32_t typed_delay(drive_command_kind kind, double control_period_s);
 
 } // namespace sil

@@ -43,7 +43,8 @@ std::string name_of(const setting &row)
 std::string line(const setting &row, const std::string &range, const std::string &preset)
 {
     return format("| 0x%04x | ", unsigned(row.index)) + name_of(row) + " | " + row.unit + " | " +
-           range + " | " + preset + " | " + setting_sentence(&row) + " |\n";
+           range + " | " + preset + " | " + (row.in_motion ? "in motion" : "at enable") + " | " +
+           setting_sentence(&row) + " |\n";
 }
 
 std::string choice_lines(const setting &row)
@@ -59,8 +60,8 @@ std::string choice_lines(const setting &row)
 
 std::string settings_page()
 {
-    const std::string head = "| index | setting | unit | range | default | what it is |\n"
-                             "| --- | --- | --- | --- | --- | --- |\n";
+    const std::string head = "| index | setting | unit | range | default | changes | what it is |\n"
+                             "| --- | --- | --- | --- | --- | --- | --- |\n";
     std::string motor, drive, choices;
     const setting *row = nullptr;
     for (std::size_t i = 0; (row = setting_number(i)) != nullptr; ++i) {
@@ -77,11 +78,13 @@ std::string settings_page()
         }
     }
     return "# Settings\n\n"
-           "What a drive is told before it is enabled: the keys of a scenario's `[drive]`, and the "
+           "What a drive is told: the keys of a scenario's `[drive]`, and the "
            "entries of the stored\nrecord. Written by `steadystep-sil settings` from "
            "`settings_table.h`, which declares each once.\n\n"
            "A range or default of \"rated\" is of the motor's rated current. \"follows\": from "
-           "motor, board and period, if it is\nnot given.\n\n" +
+           "motor, board and period, if it is\nnot given. What changes \"at enable\" is set while "
+           "the bridge is off, and acts at the next "
+           "`enable`; \"in motion\": also\nin a drive that is ready, at once.\n\n" +
            head + drive + "\n" + choices +
            "\n## The motor\n\nA motor file gives them (`sil/motors/README.md`).\n\n" + head + motor;
 }

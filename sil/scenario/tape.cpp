@@ -45,7 +45,7 @@ Tape::Tape(const std::vector<Event> &events, double period_s)
             const std::int64_t interval =
                 std::max<std::int64_t>(1, periods(command.interval_s, period_s));
             const std::int64_t acts_in = begin + static_cast<std::int64_t>(i) * interval;
-            /* a save, say, acts when it is read: with what has been learned before period n */
+            /* a store, say, acts when it is read: with what has been learned before period n */
             const std::int64_t delay = drive_command_is(command.kind, DRIVE_AT_ONCE)
                                            ? 1
                                            : sil::typed_delay(command.kind, period_s);

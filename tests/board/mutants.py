@@ -23,12 +23,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 PORT = ("hal/stm32g474", "hal/cortex_m")
-# What is run: a shorted leg; an interrupt held up; motion; `save` in motion; a fast sine, which the
+# What is run: a shorted leg; an interrupt held up; motion; `store` in motion; a fast sine, which the
 # background plans all the time.
 SHORT_CIRCUIT = ["board-overcurrent"]
 OVERRUN = ["board-overrun"]
 MOVE = ["board-short-stall"]
-SAVE = ["board-busy-line"]
+STORE = ["board-busy-line"]
 PLANNED = [
     "reference-sine",
     "--set",
@@ -147,7 +147,7 @@ MUTANTS = [
         "parameter_flash.c",
         "FLASH_CR_PER | FLASH_CR_BKER | ",
         "FLASH_CR_PER | ",
-        SAVE,
+        STORE,
         "the flash outside of the parameter store",
     ),
     Mutant(
@@ -227,7 +227,7 @@ MUTANTS = [
         "parameter_flash.c",
         "if ((eccr & FLASH_ECCR_ECCD) == 0 || (eccr & FLASH_ECCR_BK_ECC) == 0) {",
         "if (eccr != 1u) {",
-        "supply-fails-in-save",
+        "supply-fails-in-store",
         "and the drive starts",
     ),
 ]

@@ -166,16 +166,43 @@ void flash_is_written(const ElfImage &image)
 {
     Powered run(image);
     run.run_for(600 * ms);
-    expect(count(run.type("save\n", 300 * ms), "ok save") == 1, "save is obeyed, bridge open");
+    expect(count(run.type("store\n", 300 * ms), "ok store") == 1, "store is obeyed, bridge open");
     expect(count(run.type("enable\n", 350 * ms), "ready:") == 1 && run.board.bridge_on(),
            "the bridge closes behind it");
-    const std::string refused = run.type("save\n", 300 * ms);
+    const std::string refused = run.type("store\n", 300 * ms);
     expect(count(refused, "error: ") == 1 && run.board.bridge_on(),
-           "save is refused while the bridge is on, which stays on");
+           "store is refused while the bridge is on, which stays on");
     expect(count(run.type("disable\n", 20 * ms), "ok disable") == 1 && !run.board.bridge_on(),
            "disable opens the bridge");
-    expect(count(run.type("save\n", 300 * ms), "ok save") == 1, "save is obeyed again");
+    expect(count(run.type("store\n", 300 * ms), "ok store") == 1, "store is obeyed again");
     expect(run.machine.resets().empty(), "no reset");
+}
+
+/* Its design takes longer than the watchdog waits. */
+void settings_act(const ElfImage &image)
+{
+    Powered run(image);
+    run.run_for(600 * ms);
+    expect(count(run.type("set hold_current_A 0.8\n", 20 * ms), "acts at the next enable") == 1,
+           "a setting waits for the enable");
+    expect(count(run.type("enable\n", 1000 * ms), "ready:") == 1 && run.board.bridge_on(),
+           "the drive is designed, and enabled");
+    expect(count(run.type("get hold_current_A\n", 20 * ms), "hold_current_A=0.8 A") == 1 &&
+               count(run.type("set current_limit_A 1\n", 40 * ms), "acts at once") == 1,
+           "a limit acts at once");
+    (void)run.type("disable\n", 20 * ms);
+    (void)run.type("set law_bandwidth_rad_s 5000\n", 20 * ms);
+    expect(count(run.type("enable\n", 1500 * ms), "what was set is not in force") == 1 &&
+               !run.board.bridge_on(),
+           "a set-up that the drive refuses leaves the bridge off");
+    (void)run.type("set law_bandwidth_rad_s default\n", 20 * ms);
+    expect(count(run.type("enable\n", 1000 * ms), "ready:") == 1, "and the one before in force");
+    const Watchdog &watchdog = run.board.watchdog();
+    std::printf("  watchdog fed after %.0f ms at the latest, of %.0f\n",
+                double(watchdog.counters.longest) / double(ms),
+                double(watchdog.timeout()) / double(ms));
+    expect(run.machine.resets().empty() && watchdog.counters.longest < watchdog.timeout() * 4 / 5,
+           "the watchdog has been fed all the time, with a fifth to spare");
 }
 
 void settings_with_encoder(const ElfImage &image)
@@ -194,9 +221,8 @@ void settings_with_encoder(const ElfImage &image)
     run.run_for(1500 * ms);
     const std::string text = run.board.serial().take_output();
     expect(count(text, "settings: default") == 1 &&
-               count(text,
-                     "not in force: encoder counts per turn=4000: this board reads no encoder, "
-                     "expected 0") == 1,
+               count(text, "not in force: encoder_counts_per_turn: this board reads none, "
+                           "expected 0") == 1,
            "stored settings that ask for an encoder are refused");
 }
 
@@ -231,6 +257,7 @@ int main(int argc, char **argv)
         lines_overflow(image);
         beginning_lost(image);
         flash_is_written(image);
+        settings_act(image);
         settings_with_encoder(image);
         program_leaves_memory(image);
     } catch (const std::exception &error) {

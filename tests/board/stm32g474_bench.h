@@ -190,10 +190,13 @@ void starts_fail_for_ever(Expectations &expectations, const std::string &image);
 void starts_without_crystal(Expectations &expectations, const std::string &image);
 
 /* stm32g474_storage.cpp */
-void supply_fails_in_save(Expectations &expectations, const std::string &image);
+void supply_fails_in_store(Expectations &expectations, const std::string &image);
 void supply_fails_in_erase(Expectations &expectations, const std::string &image);
 void encoder_is_asked_for(Expectations &expectations, const std::string &image);
 void encoder_counts(Expectations &expectations, const std::string &image);
+
+/* stm32g474_settings.cpp */
+void settings_act(Expectations &expectations, const std::string &image);
 
 /* stm32g474_lines.cpp */
 void lines_overflow(Expectations &expectations, const std::string &image);

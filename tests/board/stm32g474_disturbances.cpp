@@ -155,9 +155,10 @@ const Case cases[] = {
     {"no-crystal", starts_without_crystal},
     {"lines-overflow", lines_overflow},
     {"line-ends", line_ends},
-    {"supply-fails-in-save", supply_fails_in_save},
+    {"supply-fails-in-store", supply_fails_in_store},
     {"supply-fails-in-erase", supply_fails_in_erase},
     {"no-encoder", encoder_is_asked_for},
+    {"settings-act", settings_act},
     {"encoder-of-4000-counts", encoder_counts, true},
 };
 

@@ -37,11 +37,48 @@ std::pair<std::uint32_t, std::int32_t> record_in(Powered &run, std::size_t slot)
             static_cast<std::int32_t>(record_get(&record[RECORD_HEADER_BYTES], 4))};
 }
 
+constexpr int counts_per_turn = 4000;
+constexpr Ticks alignment_time = 6000 * ms; /* of an encoder, with the reference motor */
+
+/* Stored: feedback by an encoder, whose counts per turn are the build's to tell. */
+drive_settings with_encoder()
+{
+    const motor_params motor = {0.37, 0.9e-3, 0.157, 0.000307, 15.62e-5, 3.0, 24.0, 50};
+    drive_settings stored;
+    drive_settings_default(&stored, &motor);
+    stored.feedback = DRIVE_FEEDBACK_ENCODER;
+    return stored;
+}
+
+void put_settings(std::vector<std::uint8_t> &flash, const drive_settings &stored)
+{
+    settings_record_encode(&stored, 1,
+                           &flash[store + SETTINGS_RECORD_FIRST_PAGE * Flash::page_bytes]);
+}
+
+void ask_for_encoder(std::vector<std::uint8_t> &flash)
+{
+    put_settings(flash, with_encoder());
+}
+
+/* A drive that learns, and knows where its encoder's counts begin. */
+void put_learning(std::vector<std::uint8_t> &flash)
+{
+    drive_settings stored = with_encoder();
+    drive_settings_select_feedback(&stored, DRIVE_FEEDBACK_ENCODER);
+    stored.encoder_counts_per_turn = counts_per_turn;
+    stored.encoder_zero_known = true;
+    put_settings(flash, stored);
+}
+
 /* With one record in a slot; `fails_at` is asked for the flash's counters. */
 void supply_fails(Expectations &expectations, const std::string &image, std::size_t slot,
                   const std::function<bool(const Flash::Counters &)> &fails_at)
 {
-    Powered run(image, board_config(), [slot](std::vector<std::uint8_t> &flash) {
+    Stm32g474Config config = board_config();
+    config.power_stage.plant.sensors.encoder_counts_per_turn = counts_per_turn;
+    Powered run(image, config, [slot](std::vector<std::uint8_t> &flash) {
+        put_learning(flash);
         std::array<std::uint8_t, RECORD_SLOT_BYTES(24)> record = {};
         record_put(&record[RECORD_HEADER_BYTES], static_cast<std::uint32_t>(torque), 4);
         record_seal(&learned, record.data(), older);
@@ -49,7 +86,7 @@ void supply_fails(Expectations &expectations, const std::string &image, std::siz
     });
     const Flash::Counters &counters = run.device.flash_controller().counters();
     (void)run.start();
-    run.device.serial_line().send(run.machine.now(), "save\n");
+    run.device.serial_line().send(run.machine.now(), "store\n");
     for (int i = 0; i < 10000 && !fails_at(counters); ++i) {
         run.run_for(5 * us);
     }
@@ -63,19 +100,19 @@ void supply_fails(Expectations &expectations, const std::string &image, std::siz
                             count(text, "started by: power-on") == 1,
                         "the supply fails: what is spoilt is read, and the drive starts");
     expectations.expect(record_in(run, slot).first == older, "the record before is there");
-    expectations.expect(count(run.type("save\n", 60 * ms), "ok save") == 1, "save is obeyed");
+    expectations.expect(count(run.type("store\n", 100 * ms), "ok store") == 1, "store is obeyed");
     std::pair<std::uint32_t, std::int32_t> saved = {0, 0};
     for (std::size_t i = slot + 1; i < 2 * slots && saved.first == 0; ++i) {
         saved = record_in(run, i);
     }
     expectations.expect(saved.first == older + 1 && std::abs(saved.second - torque) < torque / 100,
-                        "and saves what the record before said");
+                        "and stores what the record before said");
     expectations.expect(run.enable() && run.machine.resets().empty(), "the drive can be enabled");
 }
 
 } // namespace
 
-void supply_fails_in_save(Expectations &expectations, const std::string &image)
+void supply_fails_in_store(Expectations &expectations, const std::string &image)
 {
     supply_fails(expectations, image, 0,
                  [](const Flash::Counters &counters) { return counters.programs == 3; });
@@ -87,25 +124,6 @@ void supply_fails_in_erase(Expectations &expectations, const std::string &image)
     supply_fails(expectations, image, slots - 1,
                  [](const Flash::Counters &counters) { return counters.erases == 1; });
 }
-
-namespace
-{
-
-constexpr int counts_per_turn = 4000;
-constexpr Ticks alignment_time = 6000 * ms; /* of an encoder, with the reference motor */
-
-/* Stored: feedback by an encoder, whose counts per turn are the build's to tell. */
-void ask_for_encoder(std::vector<std::uint8_t> &flash)
-{
-    const motor_params motor = {0.37, 0.9e-3, 0.157, 0.000307, 15.62e-5, 3.0, 24.0, 50};
-    drive_settings stored;
-    drive_settings_default(&stored, &motor);
-    stored.feedback = DRIVE_FEEDBACK_ENCODER;
-    settings_record_encode(&stored, 1,
-                           &flash[store + SETTINGS_RECORD_FIRST_PAGE * Flash::page_bytes]);
-}
-
-} // namespace
 
 /* STEADYSTEP_ENCODER_COUNTS=0, as the image is by default. */
 void encoder_is_asked_for(Expectations &expectations, const std::string &image)

@@ -22,10 +22,10 @@ VIEW = "firmware/drive/interrupt_view.h"
 
 # Sources that write the members of a block. Those of the others are written by what knows no drive.
 WRITERS = {
-    "params": ["drive"],    # at start-up
-    "settings": ["drive"],  # at start-up
+    "params": ["drive", "settings_in_motion"],
+    "settings": ["drive"],
     "supervision": ["state_machine"],
-    "synchronism": ["synchronism"],
+    "synchronism": ["synchronism", "settings_in_motion"],
     "input": ["prepared_input"],
     "standstill": ["standstill_angle"],
     "enabling": ["drive", "encoder_aligning", "state_machine"],

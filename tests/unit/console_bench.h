@@ -21,9 +21,12 @@ struct console_bench {
     size_t room;  /* of the line to the host, per call */
     size_t piece; /* most that one reading brings; 0: all that has come */
     int watchdog_fed;
-    bool trip_latched; /* refuses to enable the bridge until it has been disabled */
+    int periods_between; /* control interrupts while the background feeds the watchdog, or reads */
+    bool bridge_was_on;  /* in one of them */
+    bool trip_latched;   /* refuses to enable the bridge until it has been disabled */
     bool bridge_enabled;
     uint8_t store[BENCH_PAGE * BENCH_PAGES];
+    size_t bytes_until_power_fails; /* of those that are programmed; then nothing is written */
     struct hal_samples samples;
 };
 
@@ -45,9 +48,21 @@ static inline void bench_bridge_disable(void *context)
     b->trip_latched = false;
 }
 
+/* What a real background does not notice, if it takes its time. */
+static inline void bench_interrupts_between(struct console_bench *b)
+{
+    for (int i = 0; i < b->periods_between; i++) {
+        b->period++;
+        b->bridge_was_on |= application_control_interrupt(&b->application, &b->samples).bridge_on;
+    }
+}
+
 static inline void bench_watchdog_feed(void *context)
 {
-    ((struct console_bench *)context)->watchdog_fed++;
+    struct console_bench *b = context;
+
+    b->watchdog_fed++;
+    bench_interrupts_between(b);
 }
 
 static inline const char *bench_start_cause(void *context)
@@ -67,6 +82,7 @@ static inline size_t bench_stream_read(void *context, uint8_t *bytes, size_t cap
         bytes[count++] = (uint8_t)b->typed[b->typed_read++];
         if (bytes[count - 1] == '\n') {
             *line_period = b->line_period[b->lines_read++ % BENCH_LINES];
+            bench_interrupts_between(b);
             break;
         }
     }
@@ -86,13 +102,22 @@ static inline size_t bench_stream_write(void *context, const uint8_t *bytes, siz
 
 static inline bool bench_erase(void *context, uint32_t page)
 {
-    memset(&((struct console_bench *)context)->store[page * BENCH_PAGE], 0xff, BENCH_PAGE);
+    struct console_bench *b = context;
+
+    if (b->bytes_until_power_fails > 0u) {
+        memset(&b->store[page * BENCH_PAGE], 0xff, BENCH_PAGE);
+    }
     return page < BENCH_PAGES;
 }
 
 static inline bool bench_program(void *context, uint32_t offset, const void *data, size_t count)
 {
-    memcpy(&((struct console_bench *)context)->store[offset], data, count);
+    struct console_bench *b = context;
+    const size_t left = b->bytes_until_power_fails;
+    const size_t done = count < left ? count : left;
+
+    memcpy(&b->store[offset], data, done);
+    b->bytes_until_power_fails -= done;
     return true;
 }
 
@@ -135,6 +160,7 @@ static inline void bench_power_up(void)
     memset(&bench, 0, sizeof bench); /* no copy on the stack of a small core */
     bench.period = UINT32_MAX;
     bench.room = BENCH_STREAM;
+    bench.bytes_until_power_fails = SIZE_MAX;
     bench.samples = (struct hal_samples){.current_a = 2048, .current_b = 2048, .bus_voltage = 3151};
     memset(bench.store, 0xff, sizeof bench.store);
 }

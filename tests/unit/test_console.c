@@ -192,7 +192,7 @@ static void test_set_points_are_a_stream(void)
     TEST_ASSERT_FALSE(reference_busy(&drive->reference)); /* in period 45: the second counts */
     bench_periods(1);
     TEST_ASSERT_TRUE(reference_busy(&drive->reference));
-    answers("save", "error: save refused: writing takes longer");
+    answers("store", "error: store refused: writing takes longer");
 }
 
 static void test_what_is_not_understood_is_refused_with_what_was_expected(void)
@@ -209,7 +209,7 @@ static void test_what_is_not_understood_is_refused_with_what_was_expected(void)
     answers("step 1 position_rad=2", "error: position_rad: given twice\n");
     answers("step 1 speed_rad_s=2", "error: \"speed_rad_s\": expected step position_rad= [ at= ]");
     answers("enable now", "error: \"now\": expected enable [ at= ]");
-    answers("save at=5000", "error: \"at\": expected save\n");
+    answers("store at=5000", "error: \"at\": expected store\n");
     answers("cycles all", "error: \"all\": expected cycles or cycles reset\n");
     answers("step \x01\x80", "error: \"??\": expected a number");
     answers("step 1e6 at=99", "ok step at=99\n");

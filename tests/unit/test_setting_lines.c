@@ -1,10 +1,12 @@
 /* Settings on the console: what a flashed board is told. */
 #include "firmware/application/settings_record.h"
+#include "firmware/drive/drive_hash.h"
 #include "tests/unit/console_bench.h"
 #include "tests/unit/num_assert.h"
 
 static struct hal_facts facts;
 static struct hal board;
+static struct drive *const drive = &bench.application.drive;
 static char error[DRIVE_ERROR_TEXT];
 
 static void start(void)
@@ -32,19 +34,27 @@ static void answers(const char *line, const char *answer)
     TEST_ASSERT_EQUAL_STRING(answer, bench_ask(line));
 }
 
+static void begins(const char *line, const char *answer)
+{
+    const char *const heard = bench_ask(line);
+
+    TEST_ASSERT_EQUAL_STRING_LEN(answer, heard, strlen(answer));
+}
+
 static void test_get_says_value_unit_range_default_and_what_it_is_for(void)
 {
-    answers("get hold_ramp_s",
-            "ok get hold_ramp_s=0.01 s; 0.001...1; default 0.01; time for the hold current to ramp "
-            "in or out\n");
-    answers("get current_limit_A",
-            "ok get current_limit_A=3 A; 0.03...6; default 3; of the current reference\n");
+    answers("get hold_ramp_s", "ok get hold_ramp_s=0.01 s; 0.001...1; default 0.01; at enable; "
+                               "time for the hold current to ramp "
+                               "in or out\n");
+    answers(
+        "get current_limit_A",
+        "ok get current_limit_A=3 A; 0.03...6; default 3; in motion; of the current reference\n");
     answers("get observer",
-            "ok get observer=model; model, high-gain; default model; on the encoder\n");
-    answers("get feed_forward", "ok get feed_forward=true; true or false; default true; reference "
-                                "speed and acceleration into the law\n");
-    answers("get rotor_teeth", "ok get rotor_teeth=50; 1...1000; N, pole pairs: electrical turns "
-                               "per turn\n");
+            "ok get observer=model; model, high-gain; default model; at enable; on the encoder\n");
+    answers("get feed_forward", "ok get feed_forward=true; true or false; default true; at enable; "
+                                "reference speed and acceleration into the law\n");
+    answers("get rotor_teeth", "ok get rotor_teeth=50; 1...1000; at enable; N, pole pairs: "
+                               "electrical turns per turn\n");
 }
 
 static void test_what_follows_is_said_with_what_follows(void)
@@ -65,30 +75,336 @@ static void test_a_begin_lists_those_that_begin_so(void)
     TEST_ASSERT_NOT_NULL(strstr(bench_ask("get *"), " more: give a longer begin\n"));
 }
 
+static void periods_of_enabling(void)
+{
+    bench_periods(60000);
+    TEST_ASSERT_EQUAL_INT(DRIVE_OPERATION_ENABLED, drive->supervision.state);
+    (void)bench_heard();
+}
+
+/* Which the motor's absence does not disturb. */
+static void choose_quick_start(void)
+{
+    (void)bench_ask("set calibrate_offsets false");
+    (void)bench_ask("set hold_on_enable false");
+    (void)bench_ask("set synchronism_policy off");
+}
+
+static void enable(void)
+{
+    begins("enable", "ok enable at=");
+    bench_periods(20);
+    TEST_ASSERT_EQUAL_INT(DRIVE_OPERATION_ENABLED, drive->supervision.state);
+    (void)bench_heard();
+}
+
 static void test_what_is_set_is_in_force_once_stored_and_started_again(void)
 {
-    answers("set hold_current_A 1.2",
-            "ok set hold_current_A=1.2; acts once it is stored and the board starts again\n");
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.5, bench.application.drive.settings.hold_current_A);
+    answers("set hold_current_A 1.2", "ok set hold_current_A=1.2; acts at the next enable\n");
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.5, drive->settings.hold_current_A);
     answers("set detent_torque_Nm.6 -0.01",
-            "ok set detent_torque_Nm.6=-0.01; acts once it is stored and the board starts again\n");
+            "ok set detent_torque_Nm.6=-0.01; acts at the next enable\n");
     answers("store", "ok store\n");
     start();
     TEST_ASSERT_EQUAL_INT(APPLICATION_SETTINGS_STORED, bench.application.settings_from);
-    TEST_ASSERT_TRUE(bench.application.drive.settings.hold_current_A == 1.2);
-    TEST_ASSERT_TRUE(bench.application.drive.settings.detent_torque_Nm[5] == -0.01);
+    TEST_ASSERT_TRUE(drive->settings.hold_current_A == 1.2);
+    TEST_ASSERT_TRUE(drive->settings.detent_torque_Nm[5] == -0.01);
     start();
     answers("defaults", "ok defaults\n");
     answers("store", "ok store\n");
     start();
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.5, bench.application.drive.settings.hold_current_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.5, drive->settings.hold_current_A);
+}
+
+/* Of the next 400 periods, and of the gains. */
+static uint64_t hash_from_here(void)
+{
+    uint64_t hash = bench.application.gains_hash;
+
+    for (int i = 0; i < 400; i++) {
+        bench.period++;
+        const struct hal_outputs outputs =
+            application_control_interrupt(&bench.application, &bench.samples);
+
+        application_background(&bench.application);
+        hash = drive_hash_add(hash, drive_hash_row(drive, &outputs));
+    }
+    return hash;
+}
+
+static const char *const set_ups[][4] = {
+    {"set hold_current_A 1.2", "set initial_angle_rad 0.5"},
+    {"set law pid", "set resistance_ohm 0.5", "set hold_at_rest false"},
+    {"set law csmc", "set standstill_pulses false"},
+    {"set rotor_teeth 100", "set law foc", "set voltage_source commanded"},
+    {"set encoder_counts_per_turn 4000", "set feedback encoder", "set encoder_zero_known true"},
+    {"set estimator steady-state-ekf", "set feed_forward false"},
+};
+
+/* However it has come to its settings: what the design before has left shows nowhere. */
+static void test_an_enable_puts_in_force_what_was_set(void)
+{
+    uint64_t after_store = 0;
+
+    for (size_t i = 0; i < sizeof set_ups / sizeof set_ups[0]; i++) {
+        for (int started_again = 0; started_again < 2; started_again++) {
+            setUp();
+            choose_quick_start();
+            for (size_t line = 0; line < 4 && set_ups[i][line] != NULL; line++) {
+                begins(set_ups[i][line], "ok set ");
+            }
+            if (started_again != 0) {
+                answers("store", "ok store\n");
+                bench.period = UINT32_MAX;
+                start();
+                enable();
+                TEST_ASSERT_TRUE(hash_from_here() == after_store);
+            } else {
+                enable();
+                after_store = hash_from_here();
+            }
+        }
+    }
+}
+
+static void test_a_drive_that_has_moved_is_designed_anew_as_well(void)
+{
+    choose_quick_start();
+    enable();
+    begins("move 1", "ok move ");
+    bench_periods(300);
+    begins("disable", "ok disable ");
+    bench_periods(12);
+    begins("set law stmms-plus", "ok set ");
+    enable();
+    TEST_ASSERT_EQUAL_INT(POSITION_LAW_STMMS_PLUS, drive->params.position_law);
+    TEST_ASSERT_TRUE(drive->reference.now.position.turns == 0);
+    begins("move 0.1", "ok move ");
+}
+
+static void test_a_set_up_that_the_drive_refuses_leaves_the_one_before(void)
+{
+    choose_quick_start();
+    enable();
+    begins("disable", "ok disable ");
+    bench_periods(12);
+    const uint64_t gains = bench.application.gains_hash;
+
+    begins("set law_bandwidth_rad_s 5000", "ok set ");
+    for (int again = 0; again < 2; again++) {
+        const char *const answer = bench_ask("enable");
+
+        TEST_ASSERT_EQUAL_MEMORY("error: ", answer, 7);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(answer, "; what was set is not in force\n"), answer);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(answer, "must be at most"), answer);
+        TEST_ASSERT_TRUE(bench.application.gains_hash == gains);
+        TEST_ASSERT_TRUE(drive_hash_gains(&drive->params) == gains);
+        TEST_ASSERT_DOUBLE_WITHIN(0.0, 300.0, drive->settings.law_bandwidth_rad_s);
+    }
+    bench_periods(20);
+    TEST_ASSERT_EQUAL_INT(DRIVE_SWITCH_ON_DISABLED, drive->supervision.state);
+    begins("get law_bandwidth_rad_s", "ok get law_bandwidth_rad_s=5000 ");
+    begins("set law_bandwidth_rad_s default", "ok set ");
+    enable();
+}
+
+static void test_an_encoder_that_there_is_not_is_refused_at_the_enable(void)
+{
+    begins("set feedback encoder", "ok set ");
+    begins("enable", "error: feedback = encoder, but the board has none that is known");
+    begins("set encoder_counts_per_turn 4000", "ok set ");
+    begins("enable", "ok enable ");
+    TEST_ASSERT_EQUAL_UINT32(4000, drive->board->facts->encoder_counts_per_turn);
+}
+
+/* They come in the midst of it, keep the bridge off, and count; the watchdog is fed on the way. */
+static void test_control_interrupts_go_on_while_the_drive_is_designed(void)
+{
+    choose_quick_start();
+    enable();
+    begins("disable", "ok disable ");
+    bench_periods(12);
+    begins("set hold_current_A 1.2", "ok set ");
+    (void)bench_heard();
+    bench.periods_between = 50;
+    bench.watchdog_fed = 0;
+    bench.bridge_was_on = false;
+    bench_type("enable\n");
+    application_background(&bench.application);
+    bench.periods_between = 0;
+    TEST_ASSERT_FALSE(bench.bridge_was_on);
+    TEST_ASSERT_EQUAL_INT(5, bench.watchdog_fed); /* settings, estimator in four parts */
+    TEST_ASSERT_EQUAL_UINT32(bench.period, drive->supervision.period);
+    bench_periods(9); /* ten behind the design */
+    TEST_ASSERT_EQUAL_INT(DRIVE_SWITCH_ON_DISABLED, drive->supervision.state);
+    bench_periods(1);
+    TEST_ASSERT_EQUAL_INT(DRIVE_OPERATION_ENABLED, drive->supervision.state);
+    TEST_ASSERT_EQUAL_UINT32(bench.period, drive->supervision.state_since);
+    TEST_ASSERT_TRUE(drive->settings.hold_current_A == 1.2);
+}
+
+static void test_an_enable_acts_in_its_period_if_the_design_is_done_by_then(void)
+{
+    choose_quick_start();
+    bench_periods(3);
+    (void)bench_heard();
+    answers("enable", "ok enable at=12\n"); /* the design took no time */
+    setUp();
+    choose_quick_start();
+    bench_periods(3);
+    bench.periods_between = 100;
+    begins("enable at=5000", "ok enable at=5000\n");
+}
+
+static void test_what_was_learned_survives_a_design(void)
+{
+    const struct learned_parameters learned = {{0.01, -0.02, 0.003, 0.0, -0.001, 0.002}};
+    struct learned_parameters found;
+
+    choose_quick_start();
+    begins("set encoder_counts_per_turn 4000", "ok set ");
+    begins("set feedback encoder", "ok set ");
+    enable();
+    drive_put_learned(drive, &learned);
+    begins("disable", "ok disable ");
+    bench_periods(12);
+    for (int refused = 0; refused < 2; refused++) {
+        begins(refused != 0 ? "set law_bandwidth_rad_s 9000" : "set resistance_ohm 0.4", "ok set ");
+        begins("enable", refused != 0 ? "error: " : "ok enable ");
+        TEST_ASSERT_TRUE(drive_learned(drive, &found));
+        for (int i = 0; i < DRIVE_DETENT_COEFFICIENTS; i++) {
+            TEST_ASSERT_DOUBLE_WITHIN(2e-6, learned.detent_torque_Nm[i], found.detent_torque_Nm[i]);
+        }
+        (void)bench_ask("disable");
+        bench_periods(12);
+    }
+}
+
+static void test_store_keeps_what_was_learned_by_a_drive_that_learns(void)
+{
+    const struct learned_parameters learned = {{0.01, -0.02, 0.003, 0.0, -0.001, 0.002}};
+    struct learned_parameters found;
+
+    answers("store", "ok store\n");
+    TEST_ASSERT_FALSE(parameter_store_read(&board, &found));
+    choose_quick_start();
+    begins("set encoder_counts_per_turn 4000", "ok set ");
+    begins("set feedback encoder", "ok set ");
+    enable();
+    drive_put_learned(drive, &learned);
+    answers("store", "ok store\n");
+    TEST_ASSERT_TRUE(parameter_store_read(&board, &found));
+    TEST_ASSERT_DOUBLE_WITHIN(2e-6, -0.02, found.detent_torque_Nm[1]);
+    start();
+    TEST_ASSERT_TRUE(drive_learned(drive, &found));
+    TEST_ASSERT_DOUBLE_WITHIN(2e-6, -0.02, found.detent_torque_Nm[1]);
+}
+
+/* A drive that has learned 0.01 Nm and kept it, has 0.02 Nm now, and a ramp that was set. */
+static void learn_and_set(void)
+{
+    const struct learned_parameters before = {{0.01}};
+    const struct learned_parameters after = {{0.02}};
+
+    setUp();
+    choose_quick_start();
+    begins("set encoder_counts_per_turn 4000", "ok set ");
+    begins("set feedback encoder", "ok set ");
+    enable();
+    drive_put_learned(drive, &before);
+    answers("store", "ok store\n");
+    drive_put_learned(drive, &after);
+    begins("disable", "ok disable ");
+    bench_periods(12);
+    begins("set hold_ramp_s 0.02", "ok set ");
+}
+
+static bool about(double value, double expected)
+{
+    return fabs(value - expected) < 2e-6;
+}
+
+/* Each of the two records is the one before or the new one, and the drive starts with it. */
+static void test_store_survives_a_loss_of_power_at_any_step(void)
+{
+    static const size_t bytes[] = {0, 1, 20, 39, 40, 60, 300, 567, 568};
+    enum { ALL = 568, LEARNED = 40 }; /* in whole words */
+
+    for (size_t i = 0; i < sizeof bytes / sizeof bytes[0]; i++) {
+        struct learned_parameters found;
+
+        learn_and_set();
+        bench.bytes_until_power_fails = bytes[i];
+        answers("store", "ok store\n"); /* nobody hears it */
+        TEST_ASSERT_EQUAL_INT(0, (int)bench.bytes_until_power_fails);
+        bench.bytes_until_power_fails = SIZE_MAX;
+        bench.period = UINT32_MAX;
+        start();
+        TEST_ASSERT_EQUAL_INT(APPLICATION_SETTINGS_STORED, bench.application.settings_from);
+        TEST_ASSERT_TRUE(drive->settings.hold_ramp_s == (bytes[i] < ALL ? 0.01 : 0.02));
+        TEST_ASSERT_TRUE(drive_learned(drive, &found));
+        TEST_ASSERT_TRUE(about(found.detent_torque_Nm[0], bytes[i] < LEARNED - 4 ? 0.01 : 0.02));
+        answers("store", "ok store\n");
+    }
+}
+
+static void test_most_settings_are_refused_while_the_drive_is_not_disabled(void)
+{
+    choose_quick_start();
+    enable();
+    const struct drive_settings before = bench.application.chosen;
+
+    answers("set hold_ramp_s 0.02", "error: this is set while the drive is disabled\n");
+    answers("set resistance_ohm 0.4", "error: this is set while the drive is disabled\n");
+    answers("defaults", "error: this is set while the drive is disabled\n");
+    TEST_ASSERT_EQUAL_MEMORY(&before, &bench.application.chosen, sizeof before);
+    begins("disable", "ok disable ");
+    answers("set hold_ramp_s 0.02", "ok set hold_ramp_s=0.02; acts at the next enable\n");
+    begins("enable", "error: enable refused: settings have changed, wait until the bridge is off");
+    bench_periods(12);
+    begins("enable at=9000", "ok enable at=9000\n");
+    answers("set hold_ramp_s 0.03", "error: this is set while the drive is disabled\n");
+}
+
+static void test_a_drive_in_fault_takes_settings(void)
+{
+    choose_quick_start();
+    enable();
+    bench.samples.current_a = 4000;
+    bench_period();
+    (void)bench_heard();
+    application_background(&bench.application);
+    answers("set hold_ramp_s 0.02", "ok set hold_ramp_s=0.02; acts at the next enable\n");
+    begins("enable", "error: enable refused: fault overcurrent");
+    TEST_ASSERT_TRUE(drive->settings.hold_ramp_s == 0.01);
+    bench.samples.current_a = 2048;
+    begins("disable", "ok disable ");
+    begins("enable", "ok enable ");
+    TEST_ASSERT_TRUE(drive->settings.hold_ramp_s == 0.02);
+    bench_periods(12);
+    TEST_ASSERT_EQUAL_INT(DRIVE_OPERATION_ENABLED, drive->supervision.state);
+}
+
+static void test_what_changes_in_motion_acts_at_once(void)
+{
+    (void)bench_ask("set hold_on_enable false");
+    begins("enable", "ok enable ");
+    bench_periods(20);
+    begins("set current_limit_A 2", "error: the drive is being enabled, wait until it is ready\n");
+    periods_of_enabling();
+    answers("set current_limit_A 2", "ok set current_limit_A=2; acts at once\n");
+    TEST_ASSERT_TRUE(drive->settings.current_limit_A == 2.0);
+    answers("set current_limit_A 7", "error: current_limit_A 7 A: must be at most 6 A, the range "
+                                     "of this setting\n");
+    begins("set overcurrent_trip_A 6.1", "error: overcurrent_trip_A 6.1 A: must be at most ");
+    TEST_ASSERT_TRUE(drive->settings.current_limit_A == 2.0);
 }
 
 static void test_what_is_not_stored_is_gone_with_the_power(void)
 {
     (void)bench_ask("set hold_ramp_s 0.02");
     start();
-    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.010, bench.application.drive.settings.hold_ramp_s);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.010, drive->settings.hold_ramp_s);
 }
 
 /* One image serves every motor; its currents' shares are then of the new one. */
@@ -101,8 +417,8 @@ static void test_a_motor_is_set_like_anything_else(void)
     (void)bench_ask("set current_limit_A default");
     answers("store", "ok store\n");
     start();
-    TEST_ASSERT_TRUE(bench.application.drive.settings.motor.torque_constant_Nm_A == 0.2);
-    TEST_ASSERT_TRUE(bench.application.drive.settings.current_limit_A == 2.0);
+    TEST_ASSERT_TRUE(drive->settings.motor.torque_constant_Nm_A == 0.2);
+    TEST_ASSERT_TRUE(drive->settings.current_limit_A == 2.0);
 }
 
 static void test_feedback_brings_its_law_and_an_encoder_its_counts(void)
@@ -111,8 +427,7 @@ static void test_feedback_brings_its_law_and_an_encoder_its_counts(void)
     (void)bench_ask("set encoder_counts_per_turn 4000");
     answers("store", "ok store\n");
     start();
-    TEST_ASSERT_EQUAL_INT(POSITION_LAW_FEEDBACK_LINEARISATION,
-                          bench.application.drive.settings.law);
+    TEST_ASSERT_EQUAL_INT(POSITION_LAW_FEEDBACK_LINEARISATION, drive->settings.law);
     TEST_ASSERT_EQUAL_UINT32(4000, bench.application.facts.encoder_counts_per_turn);
 }
 
@@ -176,6 +491,18 @@ int main(void)
     RUN_TEST(test_what_follows_is_said_with_what_follows);
     RUN_TEST(test_a_begin_lists_those_that_begin_so);
     RUN_TEST(test_what_is_set_is_in_force_once_stored_and_started_again);
+    RUN_TEST(test_an_enable_puts_in_force_what_was_set);
+    RUN_TEST(test_a_drive_that_has_moved_is_designed_anew_as_well);
+    RUN_TEST(test_a_set_up_that_the_drive_refuses_leaves_the_one_before);
+    RUN_TEST(test_an_encoder_that_there_is_not_is_refused_at_the_enable);
+    RUN_TEST(test_control_interrupts_go_on_while_the_drive_is_designed);
+    RUN_TEST(test_an_enable_acts_in_its_period_if_the_design_is_done_by_then);
+    RUN_TEST(test_what_was_learned_survives_a_design);
+    RUN_TEST(test_store_keeps_what_was_learned_by_a_drive_that_learns);
+    RUN_TEST(test_store_survives_a_loss_of_power_at_any_step);
+    RUN_TEST(test_most_settings_are_refused_while_the_drive_is_not_disabled);
+    RUN_TEST(test_a_drive_in_fault_takes_settings);
+    RUN_TEST(test_what_changes_in_motion_acts_at_once);
     RUN_TEST(test_what_is_not_stored_is_gone_with_the_power);
     RUN_TEST(test_a_motor_is_set_like_anything_else);
     RUN_TEST(test_feedback_brings_its_law_and_an_encoder_its_counts);

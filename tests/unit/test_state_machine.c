@@ -827,8 +827,8 @@ static void test_what_is_legal_when_stands_in_one_table(void)
 {
     is_legal_in(DRIVE_COMMAND_ENABLE, "111110");
     is_legal_in(DRIVE_COMMAND_DISABLE, "111111");
-    is_legal_in(DRIVE_COMMAND_SAVE, "111111");
-    for (enum drive_command_kind kind = DRIVE_COMMAND_HOLD; kind < DRIVE_COMMAND_SAVE; kind++) {
+    is_legal_in(DRIVE_COMMAND_STORE, "111111");
+    for (enum drive_command_kind kind = DRIVE_COMMAND_HOLD; kind < DRIVE_COMMAND_STORE; kind++) {
         is_legal_in(kind, "000010");
     }
 }
