@@ -158,7 +158,7 @@ static void expect_current(struct drive *drive, const struct estimate *estimate,
                            struct prediction *next)
 {
     next->load_torque_change = NUM(0.0);
-    next->undisturbed_current = drive->params.path.zero_delay
+    next->undisturbed_current = has_zero_delay(&drive->params.path)
                                     ? estimate->current
                                     : forced_current(&estimate->winding, estimate->free_current,
                                                      drive->expectation.demanded_voltage);
@@ -170,7 +170,7 @@ static void remember_demand(struct drive *drive, const struct estimate *estimate
 {
     struct phases expected = next->undisturbed_current;
 
-    if (drive->params.path.zero_delay) {
+    if (has_zero_delay(&drive->params.path)) {
         expected = forced_current(&estimate->winding, estimate->free_current, voltage);
     }
     expectation_set(&drive->expectation, voltage, expected, estimate->mid_period);
@@ -183,8 +183,8 @@ compensate_detent(struct drive *drive, const struct estimate *estimate, struct p
 {
     const num_t before = drive->detent.torque;
 
-    if (!drive->params.path
-             .zero_delay) { /* the prediction knew the estimated part of the load alone */
+    if (!has_zero_delay(
+            &drive->params.path)) { /* the prediction knew the estimated part of the load alone */
         next->rotor.speed -= num_mul_coef(before, drive->params.model.speed_per_torque);
     }
     detent_compensation_step(&drive->detent, &drive->params.detent, next->rotor.position.fraction,
@@ -257,7 +257,7 @@ __attribute__((noinline)) static struct hal_outputs control_general(struct drive
     if (params->path.standstill_pulses) {
         standstill_angle_begin(drive);
     }
-    if (params->path.zero_delay) {
+    if (has_zero_delay(&params->path)) {
         present(&next, drive, estimate);
     } else {
         predict(&next, drive, estimate);
@@ -276,7 +276,7 @@ __attribute__((noinline)) static struct hal_outputs control_general(struct drive
     duties = modulate(drive, params->path.bridge_loss_compensation
                                  ? actuation_compensate(&drive->actuation, voltage)
                                  : voltage);
-    if (params->path.zero_delay) {
+    if (has_zero_delay(&params->path)) {
         actuation_commit_past(&drive->actuation); /* measured at the next S(k) already */
     }
     hand_over(drive, estimate, held);

@@ -1,3 +1,4 @@
+#include "firmware/design/text.h"
 #include "firmware/drive/drive.h"
 
 #include <stddef.h>
@@ -9,6 +10,7 @@
 #include "firmware/drive/interrupt_view.h"
 #include "firmware/drive/law_design.h"
 #include "firmware/drive/synchronism.h"
+#include "firmware/interface/simulation_only.h"
 
 #define BEGINS_WITH_ITS_ESTIMATE(constant, name)                                                   \
     _Static_assert(offsetof(struct name, estimate) == 0, #name);
@@ -74,7 +76,7 @@ design_encoder_observers(struct drive *drive, const struct drive_settings *setti
         return false;
     }
     encoder_aligning_design(drive, settings, period_s, current_A);
-    return settings->observer != DRIVE_OBSERVER_HIGH_GAIN ||
+    return !SERVES_SIMULATION || settings->observer != DRIVE_OBSERVER_HIGH_GAIN ||
            design_high_gain_observer(drive, settings, period_s, error);
 }
 
@@ -298,6 +300,26 @@ void drive_put_learned(struct drive *drive, const struct learned_parameters *lea
     }
 }
 
+/* What the image has been left without (firmware/simulation.h). */
+static bool check_simulation(const struct drive_settings *settings, const struct hal_facts *facts,
+                             char error[DRIVE_ERROR_TEXT])
+{
+    struct text refusal = text_in(error, DRIVE_ERROR_TEXT);
+
+    if (SERVES_SIMULATION) {
+        return true;
+    }
+    const char *setting =
+        facts->acts_at_once ? "a board without delay" : simulation_only_setting(settings);
+
+    if (setting == NULL) {
+        return true;
+    }
+    text_put(&refusal, setting);
+    text_put(&refusal, ": for simulation, this image has nothing of that");
+    return false;
+}
+
 bool drive_init(struct drive *drive, const struct hal *board, const struct drive_settings *settings,
                 char error[DRIVE_ERROR_TEXT])
 {
@@ -321,7 +343,7 @@ static bool settle_settings(struct drive *drive, const struct drive_settings *gi
     struct drive_settings *settings = &drive->settings;
     struct default_settings_search search = {.refused = 0};
 
-    if (!drive_settings_check(given, error)) {
+    if (!drive_settings_check(given, error) || !check_simulation(given, facts, error)) {
         return false;
     }
     *settings = *given;

@@ -27,6 +27,7 @@
 #include "firmware/motion/reference.h"
 #include "firmware/motor/actuation.h"
 #include "firmware/motor/bridge_loss.h"
+#include "firmware/simulation.h"
 #include "hal/hal.h"
 
 /* Which way the control interrupt goes. */
@@ -40,6 +41,11 @@ struct path_params {
     bool standstill_pulses;
     bool prepares_input; /* the estimator's, beyond what is measured */
 };
+
+static inline bool has_zero_delay(const struct path_params *path)
+{
+    return SERVES_SIMULATION && path->zero_delay;
+}
 
 /* The steps of enabling, and what is assumed of the motor before them. */
 struct enabling_params {

@@ -14,7 +14,7 @@ static struct hal_outputs act(struct drive *drive, struct initial_position_outpu
         modulate(drive, output.compensated ? actuation_compensate(&drive->actuation, output.voltage)
                                            : output.voltage);
 
-    if (drive->params.path.zero_delay) {
+    if (has_zero_delay(&drive->params.path)) {
         actuation_commit_past(&drive->actuation);
     }
     return duties;
@@ -38,7 +38,8 @@ static void go_on(struct drive *drive, const struct sample_set *now)
 }
 
 /* Measures on its own: a sample set that is handed over would cost the default path registers. */
-struct hal_outputs finding_position_cycle(struct drive *drive, const struct hal_samples *samples)
+__attribute__((noinline)) struct hal_outputs
+finding_position_cycle(struct drive *drive, const struct hal_samples *samples)
 {
     const struct sample_set set =
         measurement_step(&drive->measurement, &drive->params.measurement, samples);

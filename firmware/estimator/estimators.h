@@ -20,6 +20,8 @@
 #ifndef STEADYSTEP_ESTIMATORS_H
 #define STEADYSTEP_ESTIMATORS_H
 
+#include "firmware/simulation.h"
+
 #define SENSORLESS_ESTIMATORS(ESTIMATOR)                                                           \
     ESTIMATOR(INVARIANT_EKF, invariant_ekf)                                                        \
     ESTIMATOR(STEADY_STATE_EKF, steady_state_ekf)
@@ -46,11 +48,12 @@ enum { ESTIMATORS(ESTIMATOR_PLACE_IN_LIST) ESTIMATOR_COUNT };
 enum { SENSORLESS_ESTIMATORS(SENSORLESS_PLACE_IN_LIST) ESTIMATOR_ENCODER_FIRST };
 #undef SENSORLESS_PLACE_IN_LIST
 
-/* Those in an image: all, or, for a board that reads no encoder, what goes without one. */
+/* Those in an image: all; all but the last, the simulation's; or, for a board that reads no
+   encoder, what goes without one. */
 #ifdef STEADYSTEP_WITHOUT_ENCODER
 enum { ESTIMATOR_KINDS = ESTIMATOR_ENCODER_FIRST };
 #else
-enum { ESTIMATOR_KINDS = ESTIMATOR_COUNT };
+enum { ESTIMATOR_KINDS = ESTIMATOR_COUNT - (SERVES_SIMULATION ? 0 : 1) };
 #endif
 enum { ESTIMATORS_READ_ENCODER = (int)ESTIMATOR_KINDS > (int)ESTIMATOR_ENCODER_FIRST };
 

@@ -1,6 +1,7 @@
 #include "firmware/estimator/initial_position.h"
 
 #include "firmware/numeric/arctangent.h"
+#include "firmware/simulation.h"
 
 #define QUARTER_TURN (1u << 30)
 
@@ -32,9 +33,14 @@ static const double drawing_s = 0.075; /* behind the ramp, from anywhere */
 
 enum { QUIET_PERIODS = 64, QUIET_BEGIN = 4, ATTEMPTS = 2, REPETITIONS = 8 };
 
+static bool is_published(const struct initial_position_params *params)
+{
+    return SERVES_SIMULATION && params->order == IMPULSE_ORDER_PUBLISHED;
+}
+
 static uint32_t impulses_of(const struct initial_position_params *params)
 {
-    return params->order == IMPULSE_ORDER_PUBLISHED ? 4u : IMPULSES;
+    return is_published(params) ? 4u : IMPULSES;
 }
 
 /* Length and voltage of an impulse that ends at `peak`; false: the supply does not get there. */
@@ -243,7 +249,7 @@ static void listen(struct initial_position *finding, const struct initial_positi
 static struct impulse present_impulse(const struct initial_position *finding,
                                       const struct initial_position_params *params)
 {
-    if (params->order == IMPULSE_ORDER_PUBLISHED) {
+    if (is_published(params)) {
         return (struct impulse){.in_b = finding->impulse >= 2u,
                                 .negative = finding->impulse % 2u == 1u};
     }
@@ -277,7 +283,7 @@ static void evaluate(struct initial_position *finding, const struct initial_posi
     const num_t asymmetry = length_squared(sum);
     num_t error = params->floor_squared;
 
-    if (params->order == IMPULSE_ORDER_PALINDROMIC) {
+    if (!is_published(params)) {
         error += length_squared(difference(round[0], round[1]));
     }
     finding->asymmetry = num_sqrt(asymmetry);

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "firmware/interface/simulation_only.h"
 #include "sil/plant/sensors.h"
 
 namespace virtual_board
@@ -83,6 +84,14 @@ void require_image_facts(const plant::Config &config, const std::string &image_n
     require("plant.phase_voltage_range_V", plant::phase_voltage_V_per_code(config.sensors),
             phase_voltage_V_per_code);
     require("plant.bus_range_V", plant::bus_V_per_code(config.sensors), bus_V_per_code);
+}
+
+void require_image_settings(const drive_settings &settings)
+{
+    if (const char *setting = simulation_only_setting(&settings)) {
+        throw std::invalid_argument(std::string("drive: ") + setting +
+                                    ": for simulation, images have nothing of that");
+    }
 }
 
 } // namespace virtual_board

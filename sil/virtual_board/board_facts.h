@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "firmware/interface/drive_interface.h"
 #include "hal/hal.h"
 #include "sil/plant/plant.h"
 
@@ -16,6 +17,9 @@ hal_facts facts_of(const plant::Config &config);
 /* Throws std::invalid_argument: "<key>: <what the scenario has>; the image has <...>". */
 void require_image_facts(const plant::Config &config, const std::string &image_numeric,
                          const std::string &numeric);
+
+/* Throws std::invalid_argument for a setting that only a simulation asks for. */
+void require_image_settings(const drive_settings &settings);
 
 } // namespace virtual_board
 

@@ -122,6 +122,12 @@ VirtualBoard::VirtualBoard(const plant::Config &plant, const std::string &image_
     const std::size_t record_at = impl_->store() + SETTINGS_RECORD_FIRST_PAGE * page;
     drive_settings stored = settings;
     stored.encoder_counts_per_turn = plant.sensors.encoder_counts_per_turn;
+    if (settings.feedback ==
+        DRIVE_FEEDBACK_SENSORLESS) { /* what it is told is a setting of its own */
+        stored.initial_angle_rad += stored.initial_angle_error_rad;
+        stored.initial_angle_error_rad = 0;
+    }
+    require_image_settings(stored);
     settings_record_encode(&stored, 1, &flash[record_at]);
     impl_->machine.power_on();
 }

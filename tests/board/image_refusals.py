@@ -40,10 +40,17 @@ MAPS = [
 ]
 
 
-def wrong(simulator, image, words):
+# of a setting that images leave out, in the simulator's words
+SETTINGS = [
+    (["bendjedia-fig12", "--set", "drive.law=smc"], "law = smc: for simulation"),
+    (["initial-position-published"], "initial_position = published-impulses: for simulation"),
+]
+
+
+def wrong(simulator, image, words, scenario=(SCENARIO,)):
     """1, with a line, unless the image is refused in these words."""
     done = subprocess.run(
-        [simulator, "run", "--image", image, SCENARIO], capture_output=True, text=True
+        [simulator, "run", "--image", image, *scenario], capture_output=True, text=True
     )
     if done.returncode == 2 and words in done.stderr and done.stderr.count("\n") == 1:
         return 0
@@ -58,6 +65,8 @@ def main(simulator, image):
         file = copy.with_suffix(".map.json")
         shutil.copy(image, copy)
         errors += wrong(simulator, copy, "cannot be read; tools/image_map writes it")
+        for scenario, words in SETTINGS:
+            errors += wrong(simulator, image, words, scenario)
         text = Path(image).with_suffix(".map.json").read_text(encoding="utf-8")
         for change, words in MAPS:
             content = json.loads(text)

@@ -52,7 +52,8 @@ void settings_act(Expectations &expectations, const std::string &image)
     expectations.expect(
         answers(run, "set current_limit_A 1", "ok set current_limit_A=1; acts at once"),
         "a current limit is");
-    run.device.serial_line().send(run.machine.now(), "move 10 duration_s=0.3\n");
+    /* 80 electrical turns: the next enable finds the rotor where its hold draws it. */
+    run.device.serial_line().send(run.machine.now(), "move 10.0531 duration_s=0.3\n");
     const double moved_A = peak_A(run, 500 * ms);
     std::printf("  moved with %.2f A at most, 10 rad in 0.3 s would take more\n", moved_A);
     expectations.expect(moved_A < 1.2, "and limits the current");

@@ -1,5 +1,5 @@
 /* What the STM32G474 image finds in its parameter store: what was spoilt when the supply failed,
-   and settings that ask for an encoder. */
+   and settings that ask for an encoder, or for what only a simulation has. */
 #include <array>
 #include <cmath>
 
@@ -40,12 +40,19 @@ std::pair<std::uint32_t, std::int32_t> record_in(Powered &run, std::size_t slot)
 constexpr int counts_per_turn = 4000;
 constexpr Ticks alignment_time = 6000 * ms; /* of an encoder, with the reference motor */
 
+/* Of the reference motor. */
+drive_settings defaults()
+{
+    const motor_params motor = {0.37, 0.9e-3, 0.157, 0.000307, 15.62e-5, 3.0, 24.0, 50};
+    drive_settings settings;
+    drive_settings_default(&settings, &motor);
+    return settings;
+}
+
 /* Stored: feedback by an encoder, whose counts per turn are the build's to tell. */
 drive_settings with_encoder()
 {
-    const motor_params motor = {0.37, 0.9e-3, 0.157, 0.000307, 15.62e-5, 3.0, 24.0, 50};
-    drive_settings stored;
-    drive_settings_default(&stored, &motor);
+    drive_settings stored = defaults();
     stored.feedback = DRIVE_FEEDBACK_ENCODER;
     return stored;
 }
@@ -134,6 +141,37 @@ void encoder_is_asked_for(Expectations &expectations, const std::string &image)
         count(text, "settings: default") == 1 &&
             count(text, "not in force: feedback = encoder, but the board has none") == 1,
         "without an encoder settings that ask for one are refused");
+}
+
+/* STEADYSTEP_SIMULATION=OFF, as in every image. */
+void simulation_is_asked_for(Expectations &expectations, const std::string &image)
+{
+    const auto start_with = [&image](void (*ask)(drive_settings &)) {
+        Powered run(image, board_config(), [ask](std::vector<std::uint8_t> &flash) {
+            drive_settings stored = defaults();
+            ask(stored);
+            put_settings(flash, stored);
+        });
+        return run.start();
+    };
+    const std::string smc = start_with([](drive_settings &s) { s.law = POSITION_LAW_SMC; });
+    const std::string impulses = start_with(
+        [](drive_settings &s) { s.initial_position = DRIVE_INITIAL_POSITION_PUBLISHED_IMPULSES; });
+    const std::string wrong =
+        start_with([](drive_settings &s) { s.initial_angle_error_rad = 0.01; });
+    const std::string foc = start_with([](drive_settings &s) { s.law = POSITION_LAW_FOC; });
+    expectations.expect(count(smc, "settings: default") == 1 &&
+                            count(smc, "not in force: law = smc: for simulation, this image has") ==
+                                1,
+                        "a law that is there for simulation is refused");
+    expectations.expect(
+        count(impulses, "not in force: initial_position = published-impulses: for") == 1,
+        "and so are the published impulses");
+    expectations.expect(count(wrong, "not in force: initial_angle_error_rad other than 0: for") ==
+                            1,
+                        "and an initial angle that is wrong on purpose");
+    expectations.expect(count(foc, "settings: stored") == 1 && count(foc, "law=foc") == 1,
+                        "the other laws are what they were");
 }
 
 /* Of an image built with STEADYSTEP_ENCODER_COUNTS=4000. */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "firmware/interface/settings.h"
+#include "firmware/interface/simulation_only.h"
 #include "tests/unit/bench.h"
 #include "tests/unit/num_assert.h"
 
@@ -44,6 +45,24 @@ static void test_the_defaults_are_those_of_the_interface(void)
     TEST_ASSERT_TRUE(settings.resistance_adaptation);
     TEST_ASSERT_TRUE(settings.calibrate_offsets);
     TEST_ASSERT_TRUE(settings.hold_on_enable);
+}
+
+static void test_what_only_a_simulation_asks_for_is_told_by_name(void)
+{
+    TEST_ASSERT_NULL(simulation_only_setting(&settings));
+    settings.initial_angle_error_rad = -0.01;
+    TEST_ASSERT_EQUAL_STRING("initial_angle_error_rad other than 0",
+                             simulation_only_setting(&settings));
+    settings.initial_position = DRIVE_INITIAL_POSITION_PUBLISHED_IMPULSES;
+    TEST_ASSERT_EQUAL_STRING("initial_position = published-impulses",
+                             simulation_only_setting(&settings));
+    settings.observer = DRIVE_OBSERVER_HIGH_GAIN; /* of an encoder, which is not asked for yet */
+    TEST_ASSERT_EQUAL_STRING("initial_position = published-impulses",
+                             simulation_only_setting(&settings));
+    settings.feedback = DRIVE_FEEDBACK_ENCODER;
+    TEST_ASSERT_EQUAL_STRING("observer = high-gain", simulation_only_setting(&settings));
+    settings.law = POSITION_LAW_SMC;
+    TEST_ASSERT_EQUAL_STRING("law = smc", simulation_only_setting(&settings));
 }
 
 static void test_the_defaults_pass_the_check(void)
@@ -319,6 +338,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_defaults_are_those_of_the_interface);
+    RUN_TEST(test_what_only_a_simulation_asks_for_is_told_by_name);
     RUN_TEST(test_the_defaults_pass_the_check);
     RUN_TEST(test_ranges_and_units_are_those_of_the_contract);
     RUN_TEST(test_every_setting_may_take_the_bounds_of_its_range);

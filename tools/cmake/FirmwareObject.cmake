@@ -11,7 +11,7 @@ function(firmware_object file)
   add_custom_command(
     OUTPUT ${file}
     COMMAND arm-none-eabi-gcc ${flags} -fno-math-errno -ffp-contract=off -ffunction-sections
-            -fdata-sections -r -nostdlib -flinker-output=exec -fwhole-program -o ${file} ${ARGN}
+            -fdata-sections -r -nostdlib -flinker-output=exec -fwhole-program -flto-partition=one -o ${file} ${ARGN}
     DEPENDS ${ARGN}
     COMMENT "Optimising the firmware as a whole"
     COMMAND_EXPAND_LISTS VERBATIM)
