@@ -5,13 +5,16 @@
 /* k per electrical turn: nine tenths are learned in four turns, 1/12 turn of the shaft. */
 #define LEARNING_PER_TURN 0.6
 
-/* k_m: fast against the learning, slow against the first harmonic, whose phase it leads by 9 deg.
+/* k_m: a small load step is soon none of the residual; the first harmonic's phase leads by 26 deg.
  */
-#define MEAN_PER_TURN 1.0
+#define MEAN_PER_TURN 3.0
 
 /* Learning ends at this frequency of a harmonic over the observer's bandwidth: its delay of three
    time constants is then still within a tenth of a period of its phase. */
 static const double learning_share = 1.0;
+
+/* Of the observer's triple pole: a step is within 0.3 % then. */
+#define SETTLING_TIME_CONSTANTS 10.0
 
 /* Compensation ends at this angle of a harmonic per control period. */
 static const double playing_rad_per_period = 0.6;
@@ -69,6 +72,7 @@ detent_compensation_design(const struct detent_compensation_task *task)
         .learning = fade_out(learning_share * bandwidth / electrical_rad_s),
         .playing = fade_out(playing_rad_per_period / (electrical_rad_s * task->period_s)),
         .residual_limit = num_from_double(limit),
+        .settling_periods = (uint32_t)(SETTLING_TIME_CONSTANTS / (bandwidth * task->period_s)),
         .limit = num_from_double(limit * TORQUE_SCALE),
     };
 }
@@ -98,6 +102,7 @@ void detent_compensation_reset(struct detent_compensation *detent)
     detent->mean = NUM(0.0);
     detent->torque = NUM(0.0);
     detent->followed = false;
+    detent->unsettled_periods = 0;
 }
 
 /* How far the angle takes its follower along behind the play, 2^-32 turn; no matter which way. */
@@ -159,9 +164,18 @@ static void learn_all(struct detent_compensation *detent,
                       const struct detent_compensation_params *params, angle_t angle, num_t speed,
                       num_t pace, int32_t gone, num_t load_torque)
 {
+    const num_t residual = load_torque - detent->mean;
+
+    if (num_abs(residual) > params->residual_limit) {
+        detent->unsettled_periods = params->settling_periods;
+    }
+    if (detent->unsettled_periods > 0u) {
+        detent->unsettled_periods--;
+        detent->mean = load_torque;
+        return;
+    }
     const num_t travel = scaled_turns(gone);
     const num_t lag = num_limit(num_mul_coef(speed, params->lag), LAG_MAX);
-    const num_t residual = num_limit(load_torque - detent->mean, params->residual_limit);
     const num_t step = num_mul(num_mul_unit(residual, LEARNING_PACE), travel);
     struct sincos then = sincos_of(angle - (angle_t)angle_from_turns(lag));
     num_t pace_of_harmonic = pace;

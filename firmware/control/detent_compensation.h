@@ -23,7 +23,10 @@
  * - dphi is the way of a follower of the angle that has a play of 1.25 counts, 1/64 electrical turn
  *   at least. Otherwise a rotor at rest whose estimate goes to and fro between counts would learn
  *   them, until they turn the spring of the position law around.
- * - Every coefficient is bounded to 15 % of the holding torque.
+ * - Every coefficient is bounded to 15 % of the holding torque. A change of the load by more than
+ *   that is not the detent torque's: m goes with it until the observer has it, and nothing is
+ *   learned of it. What is learned wrongly turns the spring of the position law around, with a
+ * light rotor.
  */
 #ifndef STEADYSTEP_DETENT_COMPENSATION_H
 #define STEADYSTEP_DETENT_COMPENSATION_H
@@ -48,13 +51,15 @@ struct detent_compensation_params {
     coef_t lag;                  /* electrical turns from the lag to the present angle, per speed */
     struct detent_fade learning; /* of the first harmonic */
     struct detent_fade playing;
-    num_t residual_limit; /* of T_L - m */
-    num_t limit;          /* of a coefficient, scaled */
+    num_t residual_limit;      /* of T_L - m; beyond it the load has changed */
+    uint32_t settling_periods; /* for which the observer then follows */
+    num_t limit;               /* of a coefficient, scaled */
 };
 
 struct detent_compensation {
     num_t coefficient[DETENT_COEFFICIENTS]; /* a_1, b_1, a_2, b_2, a_4, b_4; scaled torque */
     num_t mean;                             /* m */
+    uint32_t unsettled_periods;             /* of way for which the load is changing yet */
     num_t torque;                           /* at the angle of the last step */
     bool followed;                          /* since the bridge is on */
     angle_t follower;                       /* of the angle, by its play behind */

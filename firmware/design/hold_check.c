@@ -19,6 +19,9 @@ static const double resonance_share = 0.125;
 static const double creep_back_emf = 0.026;
 static const double creep_lag_rad = 0.02; /* electrical */
 
+/* 1/w_h in which a load step shows most. */
+static const double shown_swings = 8.0;
+
 enum { CURRENT, SPEED, ANGLE, INTEGRAL, CONTROL_STATES, VOLTAGE = 3 };
 enum { LOAD = 3, OFFSET, ESTIMATION_STATES };
 
@@ -113,7 +116,10 @@ double hold_control_damping(const struct hold_task *task, double damping_As_rad)
     return modes_damping(CONTROL_STATES, &loop, task->period_s, 0.0);
 }
 
-double hold_estimator_damping(const struct hold_task *task, const struct invariant_ekf_gains *gains)
+/* The estimation error from one period to the next, its correction first; the number of its states.
+ */
+static int estimation_loop(const struct hold_task *task, const struct invariant_ekf_gains *gains,
+                           struct matrix *transition, struct matrix *loop)
 {
     const bool offset = gains->bias_return_V_Nm != 0.0 || gains->k_bias_q_V_A != 0.0;
     const int states = offset ? ESTIMATION_STATES : OFFSET;
@@ -125,14 +131,12 @@ double hold_estimator_damping(const struct hold_task *task, const struct invaria
         [OFFSET] = gains->k_bias_q_V_A,
     };
     struct matrix model;
-    struct matrix transition;
     struct matrix corrected = {{{0.0}}};
-    struct matrix loop;
 
     held_rotor(task, &model);
     model.at[SPEED][LOAD] = -task->period_s / task->motor->inertia_kgm2;
     model.at[CURRENT][OFFSET] = -task->period_s / task->motor->inductance_H;
-    matrix_exponential(states, &model, &transition);
+    matrix_exponential(states, &model, transition);
     for (int i = 0; i < states; i++) {
         corrected.at[i][i] = 1.0;
         corrected.at[i][CURRENT] -= correction[i];
@@ -140,8 +144,48 @@ double hold_estimator_damping(const struct hold_task *task, const struct invaria
     corrected.at[LOAD][LOAD] -= gains->load_return;
     corrected.at[ANGLE][LOAD] = gains->angle_return_rad_Nm;
     corrected.at[OFFSET][LOAD] = -gains->bias_return_V_Nm;
-    matrix_multiply(states, &transition, &corrected, &loop);
+    matrix_multiply(states, transition, &corrected, loop);
+    return states;
+}
+
+double hold_estimator_damping(const struct hold_task *task, const struct invariant_ekf_gains *gains)
+{
+    struct matrix transition;
+    struct matrix loop;
+    const int states = estimation_loop(task, gains, &transition, &loop);
+
     return modes_damping(states, &loop, task->period_s, drift_rad_s);
+}
+
+double hold_step_shown(const struct hold_task *task, const struct invariant_ekf_gains *quiet)
+{
+    const double swing_periods =
+        1.0 / (hold_frequency(task->motor, task->hold_current_A) * task->period_s);
+    struct matrix transition;
+    struct matrix loop;
+    const int states = estimation_loop(task, quiet, &transition, &loop);
+    double error[ESTIMATION_STATES] = {[LOAD] = -1.0};
+    double shown = 0.0;
+
+    for (int k = 0; k < (int)(shown_swings * swing_periods); k++) {
+        double next[ESTIMATION_STATES] = {0.0};
+
+        for (int i = 0; i < states; i++) { /* what returns, does so to the load before the step */
+            next[i] = transition.at[i][ANGLE] * quiet->angle_return_rad_Nm -
+                      transition.at[i][LOAD] * quiet->load_return;
+            if (states == ESTIMATION_STATES) {
+                next[i] -= transition.at[i][OFFSET] * quiet->bias_return_V_Nm;
+            }
+            for (int j = 0; j < states; j++) {
+                next[i] += loop.at[i][j] * error[j];
+            }
+        }
+        for (int i = 0; i < states; i++) {
+            error[i] = next[i];
+        }
+        shown = 1.0 + error[LOAD] > shown ? 1.0 + error[LOAD] : shown;
+    }
+    return shown;
 }
 
 static bool require_damping(char error[DESIGN_ERROR_TEXT], const char *quantity, double damping)

@@ -78,6 +78,12 @@ double hold_control_damping(const struct hold_task *task, double damping_As_rad)
 double hold_estimator_damping(const struct hold_task *task,
                               const struct invariant_ekf_gains *gains);
 
+/*
+ * What a quiet hold's load estimate shows of a load step at most, before it returns to the load
+ * before: a share.
+ */
+double hold_step_shown(const struct hold_task *task, const struct invariant_ekf_gains *quiet);
+
 /* False, with the quantity and its limit in `error`, if the held rotor swings too fast for the
    period or the control damps it by less than HOLD_DAMPING_MIN. */
 bool hold_control_check(const struct hold_task *task, char error[DESIGN_ERROR_TEXT]);

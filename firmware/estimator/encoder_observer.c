@@ -3,6 +3,12 @@
 #include "firmware/design/loop_bandwidth.h"
 #include "firmware/design/elementary.h"
 
+/* A step of the angle by x shows as a speed of up to 0.8 w_o x behind a triple pole: the most of
+   w_o x (3 s - s^2) e^-s. Of the speed base, supply / Km, one count may feign this share. */
+static const double rad_per_turn = 6.283185307179586;
+#define COUNT_SPEED     0.8
+#define COUNT_SPEED_MAX 0.45
+
 bool encoder_observer_design(struct encoder_observer_params *params,
                              const struct motor_model_params *model,
                              const struct encoder_observer_task *task,
@@ -31,6 +37,14 @@ bool encoder_observer_design(struct encoder_observer_params *params,
                                                     .limit = ENCODER_OBSERVER_PERIOD_MAX / period_s,
                                                     .unit = "rad/s",
                                                     .reason = "0.5 per control period"});
+    }
+    if (!design_require_within(error, "encoder_count_speed",
+                               COUNT_SPEED * task->bandwidth_rad_s * rad_per_turn /
+                                   (double)task->counts_per_turn,
+                               0.0, COUNT_SPEED_MAX * base->speed_rad_s, "rad/s",
+                               "0.45 of supply / Km: more counts, or less "
+                               "observer_bandwidth_rad_s")) {
+        return false;
     }
     /* 1 - p by its series' sum, exact for small w_o T */
     const double x = task->bandwidth_rad_s * period_s;

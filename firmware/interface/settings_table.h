@@ -83,8 +83,8 @@
          "an estimate beyond it opens the bridge: 1.3 x supply / Km, of a law without current "    \
          "control N w L / R = 4, cut to 0.24 electrical turn per period")                          \
     REAL(0x2130, observer_bandwidth_rad_s, "rad/s", FIXED(1.0), FIXED(1e6), FOLLOWS, AT_ENABLE,    \
-         "triple pole of the model observer: 1000, of the default law with an encoder 1400, or "   \
-         "what period and counts bear")                                                            \
+         "triple pole of the model observer: 1000, of the default law with an encoder 1400, of a " \
+         "light rotor what its swings ask for, or what period and counts bear")                    \
     REAL(0x2131, high_gain_epsilon_s, "s", FIXED(1e-7), FIXED(1.0), FIXED(1e-3), AT_ENABLE,        \
          "of the high-gain observer")                                                              \
     COUNT(0x2009, encoder_counts_per_turn, "", FIXED(0.0), FIXED(1073741824.0), FIXED(0.0),        \

@@ -271,7 +271,7 @@ CampaignOutcome judge_motors(const Result &result, const Record &record)
                       : !(commutation_deg <= 90)                    ? "lost silently"
                       : !(commutation_deg <= 45)           ? "commutation beyond 45 degrees"
                       : errors.position_rad <= allowed_rad ? "held"
-                      : errors.position_rad <= hold_yield_rad(scenario).value_or(0)
+                      : errors.position_rad <= hold_yield_rad(scenario, record).value_or(0)
                           ? "within its computed limit"
                           : "position at the end";
     outcome.figures = {commutation_deg, counts > 0 ? errors.ready_rad * degrees : Metrics::none,

@@ -21,9 +21,27 @@ double held_back_Nm(const Scenario &scenario)
             share.coulomb_friction);
 }
 
+/* The most that loads have changed by in a hold since the last motion without their being noticed:
+   by less than a step that is, or while the hold leads a reference that creeps. */
+double unnoticed_Nm(const Record &record, double noticed_step_Nm)
+{
+    double unnoticed = 0, most = 0;
+    for (std::size_t row = record.time_zero_row() + 1; row < record.rows(); ++row) {
+        if (record.at(row, HOLDING) == 0) {
+            unnoticed = most = 0;
+            continue;
+        }
+        const double change_Nm = record.at(row, LOAD_TORQUE) - record.at(row - 1, LOAD_TORQUE);
+        const bool led = record.at(row, REFERENCE_MOVING) != 0;
+        unnoticed += led || std::fabs(change_Nm) <= noticed_step_Nm ? change_Nm : 0;
+        most = std::max(most, std::fabs(unnoticed));
+    }
+    return most;
+}
+
 } // namespace
 
-std::optional<double> hold_yield_rad(const Scenario &scenario)
+std::optional<double> hold_yield_rad(const Scenario &scenario, const Record &record)
 {
     const plant::SensorConfig &sensors = scenario.plant.sensors;
     const motor_params &motor = scenario.motor.params;
@@ -34,7 +52,9 @@ std::optional<double> hold_yield_rad(const Scenario &scenario)
                                refusal)) {
         return {};
     }
-    const double load_Nm = bearing.noticed_step_Nm + held_back_Nm(scenario);
+    const double load_Nm =
+        std::max(bearing.noticed_step_Nm, unnoticed_Nm(record, bearing.noticed_step_Nm)) +
+        held_back_Nm(scenario);
     const double torque_Nm =
         bearing.torque_Nm * (1 - scenario.plant.imperfections.saturation_depth);
     const double swing_rad_s =

@@ -1,12 +1,13 @@
 /*
  * By how much the hold of a drive without an encoder yields at most, by computation: the limit of a
- * motor on a board, where its rest is judged.
+ * motor on a board in a run, where its rest is judged.
  */
 #ifndef STEADYSTEP_SCENARIO_HOLD_YIELD_H
 #define STEADYSTEP_SCENARIO_HOLD_YIELD_H
 
 #include <optional>
 
+#include "sil/scenario/record.h"
 #include "sil/scenario/scenario_file.h"
 
 namespace scenario
@@ -15,13 +16,14 @@ namespace scenario
 /*
  * Angle of the rotor, rad:
  *
- *   asin((T_noticed + T_detent + T_friction) / T_hold) / N  +  (u / Km) (8 / w_h)
+ *   asin((T_unnoticed + T_detent + T_friction) / T_hold) / N  +  (u / Km) (8 / w_h)
  *
- * to a load step that is not noticed yet (drive_hold_bearing), to detent torque and friction, of a
- * torque that saturation diminishes, and what u, half a code of the leg voltages, feigns while a
- * step is followed. No value: with an encoder, and of a motor that the drive refuses.
+ * to a load step that is just not noticed (drive_hold_bearing) or, if that is more, to what the
+ * loads of this run have changed by unnoticed since its last motion; to detent torque and friction,
+ * of a torque that saturation diminishes; and what u, half a code of the leg voltages, feigns while
+ * a step is followed. No value: with an encoder, and of a motor that the drive refuses.
  */
-std::optional<double> hold_yield_rad(const Scenario &scenario);
+std::optional<double> hold_yield_rad(const Scenario &scenario, const Record &record);
 
 } // namespace scenario
 

@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "sil/scenario/hold_yield.h"
 #include "sil/scenario/text.h"
 
 namespace scenario
@@ -193,8 +192,7 @@ Json summary(const Result &result)
     json["simulated_s"] = result.simulated_s;
     json["cpu_s"] = result.cpu_s;
     json["blind_below_rad_s"] = result.blind_below_rad_s ? Json(*result.blind_below_rad_s) : Json();
-    const std::optional<double> yield_rad = hold_yield_rad(scenario);
-    json["hold_yield_rad"] = yield_rad ? Json(*yield_rad) : Json();
+    json["hold_yield_rad"] = result.hold_yield_rad ? Json(*result.hold_yield_rad) : Json();
     json["trace_hash"] = hexadecimal(result.trace_hash);
     json["drive_hash"] = hexadecimal(result.drive_hash);
     json["metrics"]["move"] = window_json(result.move);

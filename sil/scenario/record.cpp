@@ -13,9 +13,9 @@ namespace
 /* The signal in each column; none where it is of the plant. */
 std::vector<const signal_row *> signals_of_columns()
 {
-#define OF_DRIVE(column, member) signal_at(SIGNAL_##member),
-#define OF_PLANT(column, name)   nullptr,
-    std::vector<const signal_row *> columns = {TRACE_COLUMNS(OF_DRIVE, OF_PLANT)};
+#define OF_DRIVE(column, member, ...) signal_at(SIGNAL_##member),
+#define OF_PLANT(column, name)        nullptr,
+    std::vector<const signal_row *> columns = {TRACE_COLUMNS(OF_DRIVE, OF_PLANT, OF_DRIVE)};
 #undef OF_DRIVE
 #undef OF_PLANT
     for (int i = 0; i < SIGNALS; ++i) {
@@ -34,9 +34,11 @@ const std::vector<const signal_row *> column_signals = signals_of_columns();
 
 const char *column_name(Column column)
 {
-#define NAME(column, name) #name,
-    static const char *const names[NAMED_COLUMNS] = {TRACE_COLUMNS(NAME, NAME)};
+#define NAME(column, name)            #name,
+#define RENAMED(column, member, name) #name,
+    static const char *const names[NAMED_COLUMNS] = {TRACE_COLUMNS(NAME, NAME, RENAMED)};
 #undef NAME
+#undef RENAMED
     return column < NAMED_COLUMNS ? names[column] : column_signals[column]->name;
 }
 

@@ -17,7 +17,7 @@ namespace scenario
 
 /* In the order of trace.csv: signals of the drive (firmware/interface/signals_table.h), and what is
    true, in the plant. The drive's traced signals that do not stand here follow. */
-#define TRACE_COLUMNS(DRIVE, TRUE)                                                                 \
+#define TRACE_COLUMNS(DRIVE, TRUE, RENAMED)                                                        \
     DRIVE(THETA_REF, theta_ref_rad)                                                                \
     TRUE(THETA, theta_rad)                                                                         \
     DRIVE(THETA_EST, theta_est_rad)                                                                \
@@ -39,16 +39,17 @@ namespace scenario
     TRUE(RESISTANCE, resistance_ohm)                                                               \
     DRIVE(RESISTANCE_EST, resistance_est_ohm)                                                      \
     TRUE(BUS, bus_V)                                                                               \
-    DRIVE(DRIVE_STATE, state) /* of an enumeration: a number, so that a plotter can draw it */     \
-    DRIVE(DRIVE_FAULT_CODE, fault)                                                                 \
+    /* of an enumeration: a number, so that a plotter can draw it */                               \
+    RENAMED(DRIVE_STATE, state, drive_state)                                                       \
+    RENAMED(DRIVE_FAULT_CODE, fault, drive_fault)                                                  \
     DRIVE(HOLDING, holding)                                                                        \
     DRIVE(REFERENCE_MOVING, reference_moving)                                                      \
     DRIVE(SYNCHRONISM, synchronism)
 
 #define TRACED(index, member, path, brief, traced, ...) SIGNAL_IS_##traced,
-#define COLUMN(column, name)                            column,
-#define IS_OF_DRIVE(column, name)                       1,
-#define IS_TRUE(column, name)                           0,
+#define COLUMN(column, ...)                             column,
+#define IS_OF_DRIVE(column, ...)                        1,
+#define IS_TRUE(column, ...)                            0,
 template <std::size_t Length> constexpr std::size_t sum(const int (&ones)[Length])
 {
     std::size_t all = 0;
@@ -58,9 +59,9 @@ template <std::size_t Length> constexpr std::size_t sum(const int (&ones)[Length
     return all;
 }
 enum Column : std::size_t {
-    TRACE_COLUMNS(COLUMN, COLUMN) NAMED_COLUMNS,
+    TRACE_COLUMNS(COLUMN, COLUMN, COLUMN) NAMED_COLUMNS,
     COLUMNS = NAMED_COLUMNS + sum({DRIVE_SIGNALS_TABLE(TRACED, TRACED, TRACED, TRACED, TRACED)}) -
-              sum({TRACE_COLUMNS(IS_OF_DRIVE, IS_TRUE)})
+              sum({TRACE_COLUMNS(IS_OF_DRIVE, IS_TRUE, IS_OF_DRIVE)})
 };
 #undef TRACED
 #undef COLUMN

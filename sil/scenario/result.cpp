@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "sil/scenario/hold_yield.h"
 #include "sil/scenario/image_run.h"
 
 namespace scenario
@@ -196,6 +197,7 @@ Result execute(const Scenario &scenario, const firmware_image &image, std::uint6
     if (creeps_below(run.blind_speed_rad_s, record)) {
         result.blind_below_rad_s = run.blind_speed_rad_s;
     }
+    result.hold_yield_rad = hold_yield_rad(scenario, record);
     result.trace_hash = record.hash();
     result.drive_hash = run.drive_hash;
     result.simulated_s =

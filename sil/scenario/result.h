@@ -40,6 +40,7 @@ struct Result {
     std::vector<Incident> incidents; /* by time, each judged */
     /* Of a run whose reference creeps where the drive is blind: the speed below which it is. */
     std::optional<double> blind_below_rad_s;
+    std::optional<double> hold_yield_rad;            /* by how much its hold yields at most */
     std::string serial;                              /* transcript of the serial line */
     std::optional<virtual_board::BoardReport> board; /* of an image on the virtual board */
 

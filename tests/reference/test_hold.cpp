@@ -58,14 +58,14 @@ MatrixXd rotor_step(const Hold &hold)
 }
 
 /* From just behind the answer of S(k) to just behind that of S(k+1). */
-VectorXd period(const Hold &hold, const VectorXd &x)
+VectorXd period(const Hold &hold, const VectorXd &x, double load_Nm = 0)
 {
     const motor_params &m = hold.motor;
     const invariant_ekf_gains &k = hold.gains;
     const MatrixXd step = rotor_step(hold);
     VectorXd next(STATES);
     VectorXd truth(6), model(6);
-    truth << x(I), x(W), x(THETA), x(VOLTAGE), 0, 0;
+    truth << x(I), x(W), x(THETA), x(VOLTAGE), load_Nm, 0;
     model << x(I_EST), x(W_EST), x(THETA_EST), x(VOLTAGE), x(LOAD_EST), x(OFFSET_EST);
     const Eigen::Vector3d now = step * truth;
     const Eigen::Vector3d predicted = step * model;
@@ -245,6 +245,36 @@ static void the_default_hold_of_every_motor_is_damped(void)
     TEST_ASSERT_TRUE_MESSAGE(damped == motors, said.c_str());
 }
 
+/* The drive notices a step by what its estimate shows of it: two thirds of the bare load, and less.
+ */
+static void what_a_quiet_hold_shows_of_a_load_step_is_what_the_whole_loop_does(void)
+{
+    double least = 1;
+    double most = 0;
+    for (std::uint64_t number = 0; number < 100; number++) {
+        Hold hold{};
+        if (!default_hold(drawn_motor(number), NAN, hold, quiet_hold)) {
+            continue;
+        }
+        const double load_Nm = 0.1 * hold.motor.torque_constant_Nm_A * hold.current_A;
+        VectorXd x = VectorXd::Zero(STATES + 1);
+        double shown = 0;
+        for (int k = 0; k < 8 / (hold_frequency(&hold.motor, hold.current_A) * period_s); k++) {
+            x = period(hold, x, load_Nm);
+            shown = std::max(shown, x(LOAD_EST) / load_Nm);
+        }
+        const hold_task task = {&hold.motor, period_s, hold.current_A, NAN,
+                                hold.current_bandwidth_rad_s};
+        const double computed = hold_step_shown(&task, &hold.gains);
+        TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(0.01, shown, computed,
+                                          ("motor " + std::to_string(number)).c_str());
+        least = std::min(least, computed);
+        most = std::max(most, computed);
+    }
+    TEST_MESSAGE((std::to_string(least) + " to " + std::to_string(most)).c_str());
+    TEST_ASSERT_TRUE(least > 0.3 && most < 1);
+}
+
 /* Undamped, as it is at first: what damps is slower than the swing. */
 static void a_load_step_of_the_share_stated_is_borne_and_one_beyond_is_not(void)
 {
@@ -312,6 +342,7 @@ int main()
     RUN_TEST(the_check_says_what_the_whole_loop_does);
     RUN_TEST(the_default_hold_of_every_motor_is_damped);
     RUN_TEST(a_load_too_heavy_for_what_the_drop_leaves_of_the_back_emf_is_refused);
+    RUN_TEST(what_a_quiet_hold_shows_of_a_load_step_is_what_the_whole_loop_does);
     RUN_TEST(a_load_step_of_the_share_stated_is_borne_and_one_beyond_is_not);
     return UNITY_END();
 }

@@ -140,7 +140,7 @@ def what_the_drive_bears_is_said(folder):
                     f"{motor['id']}: Km x hold current is {torque}")
         CHECKS.that(abs(motor["hold_load_step_Nm"] / torque - 0.7246) < 1e-4,
                     f"{motor['id']}: an undamped rotor bears 0.72 of it at once")
-        CHECKS.that(0.0318 < motor["hold_noticed_step_Nm"] / rated < 0.0531,
+        CHECKS.that(0.033 < motor["hold_noticed_step_Nm"] / rated < 0.092,
                     f"{motor['id']}: notices {motor['hold_noticed_step_Nm'] / rated:.3f} of its torque")
         CHECKS.that(0 < motor["load_step_angle_error_deg"] <= 20, f"{motor['id']}: in motion")
         w_h = math.sqrt(motor["rotor_teeth"] * torque / motor["inertia_kgm2"])

@@ -9,7 +9,7 @@ from program import SMALL, Checks, run, scratch
 CHECKS = Checks()
 
 COLUMNS = """time_s theta_ref_rad theta_rad theta_est_rad omega_rad_s omega_est_rad_s load_torque_Nm
-load_torque_est_Nm i_a_A i_b_A u_a_V u_b_V state i_d_A i_q_A i_d_ref_A i_q_ref_A u_d_V u_q_V
+load_torque_est_Nm i_a_A i_b_A u_a_V u_b_V drive_state i_d_A i_q_A i_d_ref_A i_q_ref_A u_d_V u_q_V
 omega_ref_rad_s resistance_est_ohm""".split()
 
 METRICS = """position_error_max_rad position_error_rms_rad position_error_final_rad
@@ -64,7 +64,7 @@ def trace_is_complete(folder):
     CHECKS.that(len(rows) == 501, f"0...0.05 s at 10 kHz are 501 rows, got {len(rows)}")
     times = [row[0] for row in rows]
     CHECKS.that(times == [n / 10000 for n in range(501)], "times are the nearest to the decimals")
-    state = head.index("state")
+    state = head.index("drive_state")
     CHECKS.that({row[state] for row in rows} == {4.0}, "the drive is ready from time zero on")
 
 

@@ -173,6 +173,19 @@ static void test_at_rest_nothing_is_learned_from_a_load(void)
     }
 }
 
+/* A quarter of the rated torque in mid-turn, by which the rotor stops soon: none of the detent's.
+ */
+static void test_a_load_step_in_motion_is_not_learned(void)
+{
+    detent_compensation_set(&detent, &params, &base, truth);
+    run(2.0, 2.3);
+    load_Nm += 0.25 * HOLDING_Nm;
+    run(2.0, 0.6);
+    for (int i = 0; i < DETENT_COEFFICIENTS; i++) {
+        TEST_ASSERT_DOUBLE_WITHIN(0.012 * HOLDING_Nm, truth[i], learned(i));
+    }
+}
+
 static void test_the_torque_is_that_of_the_angle(void)
 {
     detent_compensation_set(&detent, &params, &base, truth);
@@ -215,6 +228,7 @@ int main(void)
     RUN_TEST(test_what_was_learned_slowly_stands_at_every_speed);
     RUN_TEST(test_from_nothing_no_speed_makes_it_worse_than_the_detent);
     RUN_TEST(test_at_rest_nothing_is_learned_from_a_load);
+    RUN_TEST(test_a_load_step_in_motion_is_not_learned);
     RUN_TEST(test_the_torque_is_that_of_the_angle);
     RUN_TEST(test_at_speed_it_is_left_to_the_inertia);
     RUN_TEST(test_no_coefficient_passes_its_bound);

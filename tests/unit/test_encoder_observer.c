@@ -1,5 +1,8 @@
 /* The model observer on an encoder, against the simulated bench motor. */
 #include "firmware/estimator/encoder_observer.h"
+
+#include <string.h>
+
 #include "tests/unit/bench.h"
 #include "tests/unit/num_assert.h"
 
@@ -189,6 +192,26 @@ static void test_what_the_encoder_or_the_period_cannot_bear_is_refused(void)
         "encoder counts per turn 0 : must be at least 200 , four per rotor tooth", error);
 }
 
+/* As far as one count shows as a speed behind the triple pole: 0.8 w_o of it. */
+static void test_counts_that_feign_half_the_top_speed_are_refused(void)
+{
+    const double top_rad_s = bench_params.supply_V / bench_params.torque_constant_Nm_A;
+
+    task.counts_per_turn = 400;
+    for (double factor = 0.99; factor < 1.02; factor += 0.02) {
+        struct per_unit slow = *task.base;
+
+        task.bandwidth_rad_s = 2000.0;
+        slow.speed_rad_s = 0.8 * 2000.0 * TWO_PI / 400.0 / 0.45 / factor;
+        TEST_ASSERT_TRUE(slow.speed_rad_s < top_rad_s);
+        task.base = &slow;
+        TEST_ASSERT_EQUAL(factor < 1.0, encoder_observer_design(&params, &model, &task, error));
+        task.base = &base;
+    }
+    TEST_ASSERT_NOT_NULL(strstr(error, "encoder_count_speed 25.13 rad/s: must be at most"));
+    TEST_ASSERT_NOT_NULL(strstr(error, "more counts"));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -199,6 +222,7 @@ int main(void)
     RUN_TEST(test_the_load_that_is_told_is_where_it_begins);
     RUN_TEST(test_placing_moves_the_estimate_and_what_follows_from_it);
     RUN_TEST(test_a_rotor_that_is_placed_bears_what_its_current_holds);
+    RUN_TEST(test_counts_that_feign_half_the_top_speed_are_refused);
     RUN_TEST(test_what_the_encoder_or_the_period_cannot_bear_is_refused);
     return UNITY_END();
 }

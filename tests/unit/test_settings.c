@@ -206,6 +206,32 @@ static void test_defaults_fit_a_longer_period(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 1400.0, settings.observer_bandwidth_rad_s);
 }
 
+/* The rotor alone: in the hold of half the rated current, and against a winding of little L. */
+static void test_an_observer_follows_a_light_rotor(void)
+{
+    struct motor_params *motor = &settings.motor;
+
+    motor->inertia_kgm2 /= 49.0;
+    settings.feedback = DRIVE_FEEDBACK_ENCODER;
+    for (double much = 10.0; much > 0.09; much /= 100.0) {
+        struct drive_settings given = settings;
+
+        given.motor.inductance_H *= much;
+        const double winding_rad_s =
+            motor->torque_constant_Nm_A / sqrt(motor->inertia_kgm2 * given.motor.inductance_H);
+
+        default_settings_apply(&given, 1e-4, 0u);
+        TEST_ASSERT_DOUBLE_WITHIN(1.0, much > 1.0 ? 1.15 * 7.0 * 274.6 : 5000.0,
+                                  given.observer_bandwidth_rad_s);
+        TEST_ASSERT_EQUAL(much<1.0, 0.8 * winding_rad_s> 5000.0);
+    }
+    motor->inductance_H /= 2.0;
+    default_settings_apply(&settings, 1e-4, 0u);
+    TEST_ASSERT_DOUBLE_WITHIN(
+        1e-6, 0.8 * motor->torque_constant_Nm_A / sqrt(motor->inertia_kgm2 * motor->inductance_H),
+        settings.observer_bandwidth_rad_s);
+}
+
 /* A heavy rotor on a slow winding; eight times the counts bear twice the bandwidth. */
 static void test_an_observer_does_not_chase_counts(void)
 {
@@ -346,6 +372,7 @@ int main(void)
     RUN_TEST(test_a_light_rotor_gets_a_wider_and_sooner_hold);
     RUN_TEST(test_what_is_given_stays);
     RUN_TEST(test_defaults_fit_a_longer_period);
+    RUN_TEST(test_an_observer_follows_a_light_rotor);
     RUN_TEST(test_an_observer_does_not_chase_counts);
     RUN_TEST(test_every_setting_is_refused_beyond_its_range_by_name_bound_and_unit);
     RUN_TEST(test_a_setting_that_is_not_finite_is_refused);
