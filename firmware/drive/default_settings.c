@@ -115,13 +115,12 @@ static double count_bandwidth_max(const struct motor_params *motor, double perio
  * frequency with which half the rated current holds it.
  */
 #define WINDING_SWING_SHARE 0.8
-#define DETENT_SWING_SHARE  1.15
 
 static double swing_bandwidth(const struct motor_params *motor)
 {
     const double hold_current_A = HOLD_CURRENT_SHARE * motor->rated_current_A;
     const double winding = WINDING_SWING_SHARE * electromechanical_frequency(motor);
-    const double detent = DETENT_SWING_SHARE * hold_frequency(motor, hold_current_A);
+    const double detent = hold_frequency(motor, hold_current_A);
 
     return winding > detent ? winding : detent;
 }

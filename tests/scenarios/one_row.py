@@ -13,7 +13,7 @@ ROOT, CC, CXX = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3]
 # A row behind the line that begins so; the command's act is the only other edit.
 ROWS = [
     ("settings_table.h", "#define DRIVE_SETTINGS(",
-     'REAL(0x2ff0, proof_V, "V", FIXED(0.0), FIXED(9.0), FIXED(2.5), "setting of the proof")'),
+     'REAL(0x2ff0, proof_V, "V", FIXED(0.0), FIXED(9.0), FIXED(2.5), AT_ENABLE, "setting of the proof")'),
     ("commands_table.h", "#define DRIVE_COMMANDS_TABLE(",
      'COMMAND(200, PROOF, "prove", WITH(speed_rad_s), 0, ANY_STATE, AT_ONCE, "act of the proof")'),
     ("signals_table.h", "#define DRIVE_SIGNALS_TABLE(",

@@ -221,7 +221,7 @@ static void test_an_observer_follows_a_light_rotor(void)
             motor->torque_constant_Nm_A / sqrt(motor->inertia_kgm2 * given.motor.inductance_H);
 
         default_settings_apply(&given, 1e-4, 0u);
-        TEST_ASSERT_DOUBLE_WITHIN(1.0, much > 1.0 ? 1.15 * 7.0 * 274.6 : 5000.0,
+        TEST_ASSERT_DOUBLE_WITHIN(1.0, much > 1.0 ? 7.0 * 274.6 : 5000.0,
                                   given.observer_bandwidth_rad_s);
         TEST_ASSERT_EQUAL(much<1.0, 0.8 * winding_rad_s> 5000.0);
     }
