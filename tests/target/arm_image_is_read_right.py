@@ -189,7 +189,7 @@ def check_variables(compiler):
         told = refusal(lambda: variables.place(expression))
         wrong += check(f"{expression}: {told}", text in told, True)
     told = refusal(lambda: image_map.signals(elf))
-    return wrong + check(f"signals: {told}", "no member `gains_hash`" in told, True)
+    return wrong + check(f"signals: {told}", "no member `drive`" in told, True)
 
 
 def check_map(compiler, m4f):
