@@ -2,6 +2,7 @@
 #include "firmware/design/refusal.h"
 #include "firmware/drive/board_limits.h"
 #include "firmware/drive/drive.h"
+#include "firmware/drive/interrupt_view.h"
 
 /* Ranges of the reference, electrical turns per period^n: profile.c */
 #define SPEED_MAX_TURNS        0.45
@@ -92,6 +93,15 @@ static bool request_velocity(const struct drive *drive, const struct drive_comma
            limits_of(drive, command, &request->limits, error);
 }
 
+/* Of a reference that may be in motion: its position is longer than a word. */
+__attribute__((noinline)) static double reference_rad(const struct drive *drive)
+{
+    struct reference now;
+
+    (void)interrupt_view_reference(drive, &now);
+    return position_to_rad(now.next.position, drive->settings.motor.rotor_teeth);
+}
+
 static bool request_retarget(const struct drive *drive, const struct drive_command *command,
                              struct motion_request *request, char error[DRIVE_ERROR_TEXT])
 {
@@ -105,8 +115,7 @@ static bool request_retarget(const struct drive *drive, const struct drive_comma
         return false;
     }
     request->target = position_from_rad(command->position_rad, drive->settings.motor.rotor_teeth);
-    distance = command->position_rad -
-               position_to_rad(drive->reference.next.position, drive->settings.motor.rotor_teeth);
+    distance = command->position_rad - reference_rad(drive);
     distance = distance < 0.0 ? -distance : distance;
     if (!design_require_within(error, "speed", command->speed_rad_s,
                                distance / (DURATION_MAX * units.period_s), 1e9, "rad/s",

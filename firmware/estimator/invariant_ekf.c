@@ -212,7 +212,7 @@ void invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_pa
     const struct predicted predicted = predict(ekf, params, driving);
     const struct dq innovation = correct(ekf, params, gain, &predicted, current, holding);
 
-    ekf->innovation_sum += innovation.d;
+    ekf->innovation_sum = num_add_around(ekf->innovation_sum, innovation.d);
     if (!holding) {
         settle(ekf);
     } else if (!*hold.leads) { /* a led rotor's lag behind its frame shows in nu_d, too */

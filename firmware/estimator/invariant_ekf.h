@@ -66,7 +66,8 @@ struct invariant_ekf_params {
 struct invariant_ekf {
     struct estimate estimate;
     struct phases bias;         /* offset of the measured voltage */
-    num_t innovation_sum;       /* of nu_d since the synchronism monitor has taken it */
+    num_t innovation_sum;       /* of nu_d since the synchronism monitor has taken it; runs on
+                                   without one */
     num_t settled_load;         /* torque that a hold returns to */
     num_t led_change;           /* twice the mean of the load's change, where the hold leads */
     uint32_t following_periods; /* left of the gains that follow a load step, and of their rest */

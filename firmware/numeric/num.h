@@ -134,6 +134,12 @@ static inline num_t num_half(num_t a)
     return a >> 1;
 }
 
+/* A sum that may run on and on while nobody asks for it: beyond the range it goes round. */
+static inline num_t num_add_around(num_t a, num_t b)
+{
+    return (num_t)((uint32_t)a + (uint32_t)b);
+}
+
 /* A raw converter code (less than 2^21 in magnitude) times a gain. */
 static inline num_t num_from_code(int32_t code, coef_t k)
 {
@@ -224,6 +230,11 @@ static inline num_t num_from_unit(unit_t u)
 static inline num_t num_half(num_t a)
 {
     return a * NUM(0.5);
+}
+
+static inline num_t num_add_around(num_t a, num_t b)
+{
+    return a + b;
 }
 
 static inline num_t num_from_code(int32_t code, coef_t k)

@@ -183,6 +183,8 @@ static void test_halves_and_ratios_are_floors(void)
     TEST_ASSERT_EQUAL_INT32(-1, num_half(-1));
     TEST_ASSERT_EQUAL_INT32(0, num_half(1));
     TEST_ASSERT_EQUAL_INT32(INT32_MIN / 2, num_half(INT32_MIN));
+    TEST_ASSERT_EQUAL_INT32(INT32_MIN + 4, num_add_around(INT32_MAX, 5));
+    TEST_ASSERT_EQUAL_INT32(INT32_MAX - 4, num_add_around(INT32_MIN, -5));
     TEST_ASSERT_EQUAL_INT32(-1, unit_from_num(-1));
     TEST_ASSERT_EQUAL_INT32(UNIT(1.0), unit_from_num(NUM(1.0)));
 }
