@@ -9,12 +9,15 @@ import os
 import subprocess
 from collections import Counter
 
-MACHINE = {"m4f": "mps2-an386", "m0plus": "microbit"}
+MACHINE = {
+    "m4f": ["mps2-an386"],
+    "m0plus": ["microbit", "-global", "nrf51-soc.flash-size=524288"],  # as tools/cmake has it
+}
 
 
 def qemu_command(core, elf):
     return [
-        "qemu-system-arm", "-M", MACHINE[core], "-nodefaults", "-display", "none",
+        "qemu-system-arm", "-M", *MACHINE[core], "-nodefaults", "-display", "none",
         "-chardev", "stdio,id=text",
         "-semihosting-config", "enable=on,target=native,chardev=text", "-kernel", str(elf),
     ]  # fmt: skip

@@ -14,7 +14,8 @@ if(STEADYSTEP_CORE STREQUAL "m4f")
 elseif(STEADYSTEP_CORE STREQUAL "m0plus")
   # QEMU has no Cortex-M0+; its Cortex-M0 machine executes the same instruction set, ARMv6-M.
   set(core_flags "-mcpu=cortex-m0plus -mthumb -mfloat-abi=soft")
-  set(machine microbit)
+  # Without optimisation the whole firmware and a recording are larger than the machine's flash.
+  set(machine microbit -global nrf51-soc.flash-size=524288)
 else()
   message(FATAL_ERROR "STEADYSTEP_CORE is '${STEADYSTEP_CORE}'; expected m4f or m0plus")
 endif()
