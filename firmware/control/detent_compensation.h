@@ -25,8 +25,7 @@
  *   them, until they turn the spring of the position law around.
  * - Every coefficient is bounded to 15 % of the holding torque. A change of the load by more than
  *   that is not the detent torque's: m goes with it until the observer has it, and nothing is
- *   learned of it. What is learned wrongly turns the spring of the position law around, with a
- * light rotor.
+ *   learned of it. A wrong torque turns the spring of a light rotor's position law around.
  */
 #ifndef STEADYSTEP_DETENT_COMPENSATION_H
 #define STEADYSTEP_DETENT_COMPENSATION_H

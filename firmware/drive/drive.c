@@ -1,9 +1,9 @@
-#include "firmware/design/text.h"
 #include "firmware/drive/drive.h"
 
 #include <stddef.h>
 
 #include "firmware/design/mechanical_control_design.h"
+#include "firmware/design/text.h"
 #include "firmware/drive/board_limits.h"
 #include "firmware/drive/default_settings.h"
 #include "firmware/drive/encoder_aligning.h"
