@@ -21,7 +21,8 @@ void drive_reset_blocks(struct drive *drive)
         .encoder_position = initial_position(drive, params->enabling.encoder_zero),
         .load_torque = params->enabling.initial_load_torque,
         .resistance = drive->estimator.estimate.winding.resistance,
-        .unloaded_periods = params->enabling.hold_on_enable_periods,
+        .unloaded_periods =
+            params->enabling.hold_on_enable_periods + params->enabling.balance_periods,
         .encoder_count = drive->encoder_count,
     };
 

@@ -9,6 +9,7 @@
 #include "firmware/drive/encoder_aligning.h"
 #include "firmware/drive/interrupt_view.h"
 #include "firmware/drive/law_design.h"
+#include "firmware/drive/phase_balancing.h"
 #include "firmware/drive/synchronism.h"
 #include "firmware/interface/simulation_only.h"
 
@@ -407,6 +408,7 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
         num_from_double(settings->initial_load_torque_Nm / drive->base.torque_Nm);
     params->enabling.hold_on_enable_periods =
         settings->hold_on_enable ? (uint32_t)(settings->hold_on_enable_s / period_s + 0.5) : 0u;
+    params->enabling.balance_periods = phase_balancing_design(drive, settings, period_s);
     modulator_reset(&drive->modulator);
     reference_reset(&drive->reference, params->enabling.initial_position);
     planned_end_init(drive);

@@ -16,6 +16,7 @@
 #include "firmware/drive/measurement.h"
 #include "firmware/drive/offset_calibration.h"
 #include "firmware/drive/parameter_store.h"
+#include "firmware/drive/phase_balance.h"
 #include "firmware/drive/planned_end.h"
 #include "firmware/drive/planner.h"
 #include "firmware/drive/protection.h"
@@ -54,6 +55,7 @@ struct enabling_params {
     struct position encoder_zero_assumed; /* with initial_angle_error_rad */
     num_t initial_load_torque;
     uint32_t hold_on_enable_periods;
+    uint32_t balance_periods; /* behind the hold, at most; 0: the phases are not balanced */
     bool calibrates_offsets;
     bool detects_position;
     bool encoder_zero_known;
@@ -120,6 +122,8 @@ struct enabling {
     struct offset_calibration_params calibration_params;
     struct initial_position detection;
     struct initial_position_params detection_params;
+    struct phase_balance balance;
+    struct phase_balance_params balance_params;
     struct encoder_alignment alignment;
     struct encoder_alignment_params alignment_params;
 };

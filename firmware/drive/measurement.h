@@ -15,6 +15,8 @@ struct measurement_params {
 
 struct measurement {
     struct channels offset; /* of the four channels that are zeroed: offset_calibration.h */
+    coef_t current_a;       /* per code; as the board has them, until the phases are balanced */
+    coef_t current_b;
 };
 
 struct sample_set {
@@ -25,7 +27,19 @@ struct sample_set {
 struct measurement_params measurement_design(const struct hal_facts *facts,
                                              const struct per_unit *base);
 
-void measurement_reset(struct measurement *measurement);
+void measurement_reset(struct measurement *measurement, const struct measurement_params *params);
+
+static inline void measurement_add_voltage_offset(struct measurement *measurement,
+                                                  struct phases more)
+{
+    measurement->offset.voltage.a += more.a;
+    measurement->offset.voltage.b += more.b;
+}
+
+/* The currents, their offsets with them, by 1 + d + d^2 / 2 and 1 - d + d^2 / 2: phase_balance.h.
+ */
+__attribute__((noinline)) void measurement_balance(struct measurement *measurement,
+                                                   num_t imbalance);
 
 static inline void measurement_set_offset(struct measurement *measurement, struct channels offset)
 {
@@ -41,8 +55,8 @@ measurement_step(const struct measurement *measurement, const struct measurement
     const int32_t code_b = samples->current_b - params->current_zero_code;
     struct sample_set now;
 
-    now.winding.current.a = num_from_code(code_a, params->current) - offset->current.a;
-    now.winding.current.b = num_from_code(code_b, params->current) - offset->current.b;
+    now.winding.current.a = num_from_code(code_a, measurement->current_a) - offset->current.a;
+    now.winding.current.b = num_from_code(code_b, measurement->current_b) - offset->current.b;
     now.winding.voltage.a =
         num_from_code(samples->phase_voltage_a, params->phase_voltage) - offset->voltage.a;
     now.winding.voltage.b =

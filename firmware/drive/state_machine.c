@@ -3,6 +3,7 @@
 #include "firmware/drive/block_reset.h"
 #include "firmware/drive/command_rules.h"
 #include "firmware/drive/encoder_aligning.h"
+#include "firmware/drive/phase_balancing.h"
 #include "firmware/drive/prepared_input.h"
 #include "firmware/drive/synchronism.h"
 
@@ -17,6 +18,7 @@ static void end_aligning(struct drive *drive)
     const struct drive_params *params = &drive->params;
 
     drive->supervision.aligns = false;
+    estimator_expect_load(&drive->estimator, &drive->params.estimator);
     standstill_hold_end_aligning(&drive->hold, &params->hold);
     synchronism_start(drive);
     enter(drive, DRIVE_OPERATION_ENABLED);
@@ -33,14 +35,31 @@ static void align_encoder(struct drive *drive)
     }
 }
 
-/* The first hold: without an encoder, and with one whose zero is known, it calibrates. */
-static void align(struct drive *drive)
+static void balance_phases(struct drive *drive, const struct hal_samples *samples)
 {
+    const enum phase_balancing balancing = phase_balancing_step(drive, samples);
+
+    if (balancing == PHASES_ARE_BALANCED) {
+        end_aligning(drive);
+    } else if (balancing == PHASES_DO_NOT_MATCH) {
+        state_machine_fault(drive, DRIVE_FAULT_PHASE_IMBALANCE);
+    }
+}
+
+/* The first hold: without an encoder, and with one whose zero is known, it calibrates. */
+static void align(struct drive *drive, const struct hal_samples *samples)
+{
+    const uint32_t held = drive->supervision.period - drive->supervision.state_since;
+    const uint32_t enough = drive->params.enabling.hold_on_enable_periods + 1u;
+
     if (drive->supervision.aligns) {
         align_encoder(drive);
-    } else if (drive->supervision.period - drive->supervision.state_since >
-               drive->params.enabling.hold_on_enable_periods) {
+    } else if (held >= enough && drive->params.enabling.balance_periods == 0u) {
         end_aligning(drive);
+    } else if (held == enough) {
+        phase_balancing_start(drive);
+    } else if (held > enough) {
+        balance_phases(drive, samples);
     }
 }
 
@@ -87,7 +106,7 @@ static void find_position_or_power_up(struct drive *drive)
 /* Apart: rare. */
 __attribute__((noinline)) static void start_enabling(struct drive *drive)
 {
-    measurement_reset(&drive->measurement);
+    measurement_reset(&drive->measurement, &drive->params.measurement);
     offset_calibration_reset(&drive->enabling.calibration);
     if (drive->params.enabling.calibrates_offsets) {
         enter(drive, DRIVE_CALIBRATING_OFFSETS);
@@ -239,7 +258,7 @@ __attribute__((noinline)) static bool step_outside_operation(struct drive *drive
     if (drive->supervision.state == DRIVE_CALIBRATING_OFFSETS) {
         calibrate_offsets(drive, samples);
     } else if (drive->supervision.state == DRIVE_ALIGNING) {
-        align(drive);
+        align(drive, samples);
     }
     if (drive->supervision.state == DRIVE_FINDING_POSITION) {
         state_machine_fault(drive, protection_check_samples(&drive->params.protection, samples));

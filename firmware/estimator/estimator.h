@@ -88,6 +88,24 @@ static inline void estimator_preset_current(struct estimator *estimator,
 #undef ESTIMATOR_PRESET_CURRENT
 }
 
+/* Only this one tells them from others. */
+static inline void estimator_expect_load(struct estimator *estimator,
+                                         const struct estimator_params *params)
+{
+    if (estimator_is(params, ESTIMATOR_INVARIANT_EKF)) {
+        invariant_ekf_expect_load(&estimator->invariant_ekf);
+    }
+}
+
+/* Only this one has such a bias. */
+static inline void estimator_forget_bias(struct estimator *estimator,
+                                         const struct estimator_params *params)
+{
+    if (estimator_is(params, ESTIMATOR_INVARIANT_EKF)) {
+        invariant_ekf_forget_bias(&estimator->invariant_ekf);
+    }
+}
+
 /* At rest, without an encoder: the rotor is known from elsewhere. */
 static inline void estimator_preset_rotor(struct estimator *estimator,
                                           const struct estimator_params *params,

@@ -179,7 +179,7 @@ hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
     if (ekf->unloaded_periods > 0u) {
         ekf->unloaded_periods--;
         if (ekf->unloaded_periods == ekf->swing_end) { /* the back-EMF was taken for an offset */
-            ekf->bias = (struct phases){NUM(0.0), NUM(0.0)};
+            invariant_ekf_forget_bias(ekf);
         }
         return &params->unloaded;
     }

@@ -123,6 +123,18 @@ static inline void invariant_ekf_preset_current(struct invariant_ekf *ekf,
     estimate_look_ahead(&ekf->estimate, &params->model);
 }
 
+/* The first hold is over: what is left of its unloaded periods is. */
+static inline void invariant_ekf_expect_load(struct invariant_ekf *ekf)
+{
+    ekf->unloaded_periods = 0u;
+}
+
+/* What was taken for an offset of the measured voltage was something else, which is over. */
+static inline void invariant_ekf_forget_bias(struct invariant_ekf *ekf)
+{
+    ekf->bias = (struct phases){NUM(0.0), NUM(0.0)};
+}
+
 static inline void invariant_ekf_preset_rotor(struct invariant_ekf *ekf,
                                               const struct invariant_ekf_params *params,
                                               const struct rotor *rotor)

@@ -226,6 +226,11 @@ struct drive_hold_bearing {
 bool drive_hold_bearing_of(const struct drive_settings *settings, double period_s,
                            struct drive_hold_bearing *bearing, char error[DRIVE_ERROR_TEXT]);
 
+/* With the default law of an encoder of so many counts, as it is designed of settings that need not
+   be complete: its stiffness J w0^2, N m/rad, against what it has not observed yet. */
+double drive_law_stiffness_Nm_rad(const struct drive_settings *settings, double period_s,
+                                  uint32_t counts_per_turn);
+
 /* Name of a state, fault, command, law or estimator as scenarios and the serial line spell it. */
 const char *drive_state_name(enum drive_state state);
 const char *drive_fault_name(enum drive_fault fault);

@@ -91,6 +91,24 @@ static inline num_t num_mul_coef(num_t a, coef_t k)
     return num_shift_left(num_mul_high16(a, k.mantissa), k.left) >> k.right;
 }
 
+/* k (1 + more), for |more| < 1/2 and a gain below 2^14. */
+static inline coef_t coef_more(coef_t k, num_t more)
+{
+    const int32_t factor = (more >> (NUM_FRACTION_BITS - 15)) + (1 << 15);
+    int32_t mantissa = (k.mantissa * factor + (1 << 14)) >> 15;
+
+    if (mantissa > INT16_MAX || mantissa < INT16_MIN) {
+        mantissa = (mantissa + 1) >> 1;
+        if (k.right > 0u) {
+            k.right--;
+        } else {
+            k.left++;
+        }
+    }
+    k.mantissa = (int16_t)mantissa;
+    return k;
+}
+
 static inline num_t num_mul_coef_nearest(num_t a, coef_t k)
 {
     const num_t half = (num_t)((1u << k.right) >> 1);
@@ -205,6 +223,11 @@ static inline num_t num_mul_coef(num_t a, coef_t k)
 static inline num_t num_mul_coef_nearest(num_t a, coef_t k)
 {
     return a * k;
+}
+
+static inline coef_t coef_more(coef_t k, num_t more)
+{
+    return k + k * more;
 }
 
 static inline num_t num_mul(num_t a, num_t b)

@@ -9,6 +9,7 @@ namespace scenario
 namespace
 {
 
+constexpr double two_pi = 6.283185307179586;
 constexpr double followed_swings = 8; /* for so many 1/w_h a load step is followed */
 constexpr double code_parts = 4096;   /* of the leg voltages' +- full scale */
 
@@ -39,16 +40,38 @@ double unnoticed_Nm(const Record &record, double noticed_step_Nm)
     return most;
 }
 
+/* With an encoder. */
+std::optional<double> law_yield_rad(const Scenario &scenario)
+{
+    const plant::ImperfectionConfig &share = scenario.plant.imperfections;
+    const motor_params &motor = scenario.motor.params;
+    const std::uint32_t counts = scenario.plant.sensors.encoder_counts_per_turn;
+    if (scenario.drive.law != POSITION_LAW_FEEDBACK_LINEARISATION || counts == 0) {
+        return {};
+    }
+    const double stiffness_Nm_rad =
+        drive_law_stiffness_Nm_rad(&scenario.drive, scenario.plant.bridge.period_s, counts);
+    const double steepest_Nm_rad =
+        motor.rotor_teeth * scenario.motor.holding_torque_Nm() *
+        (4 * std::fabs(share.detent_4) + 2 * std::fabs(share.detent_2) + std::fabs(share.detent_1));
+    if (!(steepest_Nm_rad > stiffness_Nm_rad)) {
+        return {};
+    }
+    return held_back_Nm(scenario) / stiffness_Nm_rad + two_pi / counts;
+}
+
 } // namespace
 
 std::optional<double> hold_yield_rad(const Scenario &scenario, const Record &record)
 {
+    if (scenario.drive.feedback == DRIVE_FEEDBACK_ENCODER) {
+        return law_yield_rad(scenario);
+    }
     const plant::SensorConfig &sensors = scenario.plant.sensors;
     const motor_params &motor = scenario.motor.params;
     drive_hold_bearing bearing{};
     char refusal[DRIVE_ERROR_TEXT];
-    if (scenario.drive.feedback == DRIVE_FEEDBACK_ENCODER ||
-        !drive_hold_bearing_of(&scenario.drive, scenario.plant.bridge.period_s, &bearing,
+    if (!drive_hold_bearing_of(&scenario.drive, scenario.plant.bridge.period_s, &bearing,
                                refusal)) {
         return {};
     }

@@ -1,4 +1,5 @@
 /* What the campaign of random motors says of a run. */
+#include <cmath>
 #include <string>
 
 #include "sil/scenario/campaign.h"
@@ -61,6 +62,15 @@ class Course
         const motor_params motor = reference::bendjedia_2012();
         scenario_.motor.params = motor;
         drive_settings_default(&scenario_.drive, &motor);
+        return *this;
+    }
+    /* And the default law, of a small motor with steps of 0.9 degrees. */
+    Course &with_encoder(double inertia_kgm2)
+    {
+        motor_params &motor = scenario_.motor.params;
+        motor = {1.55, 1.8e-3, 0.11 / (std::sqrt(2) * 1.5), 4e-5, inertia_kgm2, 1.5, 24.0, 100};
+        drive_settings_default(&scenario_.drive, &motor);
+        drive_settings_select_feedback(&scenario_.drive, DRIVE_FEEDBACK_ENCODER);
         return *this;
     }
     double limit_rad() const
@@ -180,6 +190,24 @@ void loads_that_go_unnoticed_add_up_until_the_next_motion()
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, noticed_rad, loaded(moves, 5 * 0.0318, 1, 0));
 }
 
+/* 900 rad/s of a rotor of 12 g cm^2 are 0.97 N m/rad; the detent torque has 2.2 at its steepest. */
+void detent_torque_steeper_than_the_law_is_stiff_is_a_limit_with_an_encoder()
+{
+    const auto of = [](double inertia_kgm2, bool detent) {
+        Course course(4000);
+        course.with_motor().with_encoder(inertia_kgm2);
+        if (detent) {
+            course.with_detent();
+        }
+        course.outcome();
+        return course.limit_rad();
+    };
+    const double torque_Nm = 0.05 * 0.11;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, torque_Nm / (12e-7 * 900 * 900) + count_rad, of(12e-7, true));
+    TEST_ASSERT_EQUAL_DOUBLE(0, of(12e-7, false));
+    TEST_ASSERT_EQUAL_DOUBLE(0, of(60e-7, true));
+}
+
 /* Three quarters of a count of 4,000 are 3.4 degrees; with 40,000 three degrees are more. */
 void ready_is_wrong_with_a_zero_that_is_off()
 {
@@ -215,6 +243,7 @@ int main()
     RUN_TEST(the_end_is_judged_to_a_sixteenth_of_a_step_and_a_fifth_with_detent);
     RUN_TEST(what_a_hold_is_computed_to_yield_is_told_apart);
     RUN_TEST(loads_that_go_unnoticed_add_up_until_the_next_motion);
+    RUN_TEST(detent_torque_steeper_than_the_law_is_stiff_is_a_limit_with_an_encoder);
     RUN_TEST(ready_is_wrong_with_a_zero_that_is_off);
     return UNITY_END();
 }

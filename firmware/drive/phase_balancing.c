@@ -1,0 +1,75 @@
+#include "firmware/drive/phase_balancing.h"
+
+/* A rotor that is led is known by this estimator alone; and a voltage that is computed from what
+   was commanded knows the phases less well than their difference is. */
+static bool applies(const struct drive *drive, const struct drive_settings *settings)
+{
+    return settings->balance_phases && settings->hold_on_enable &&
+           settings->feedback == DRIVE_FEEDBACK_SENSORLESS &&
+           settings->estimator == DRIVE_ESTIMATOR_INVARIANT_EKF &&
+           !drive->params.path.infers_voltage;
+}
+
+uint32_t phase_balancing_design(struct drive *drive, const struct drive_settings *settings,
+                                double period_s)
+{
+    const struct phase_balance_task task = {
+        .base = &drive->base,
+        .motor = &settings->motor,
+        .period_s = period_s,
+        .hold_current_A = settings->hold_current_A,
+    };
+
+    drive->enabling.balance_params = phase_balance_design(&task);
+    return applies(drive, settings) ? phase_balance_periods(&drive->enabling.balance_params) : 0u;
+}
+
+void phase_balancing_start(struct drive *drive)
+{
+    const struct phases drop_error = offset_calibration_drop_error(
+        &drive->enabling.calibration, &drive->enabling.calibration_params,
+        &drive->params.measurement, drive->estimator.estimate.winding.resistance);
+
+    measurement_add_voltage_offset(&drive->measurement, drop_error);
+    phase_balance_start(&drive->enabling.balance, drive->reference.next.position.fraction);
+}
+
+static void scale_currents(struct drive *drive)
+{
+    const num_t imbalance = drive->enabling.balance.imbalance;
+    const struct phases flows = drive->estimator.estimate.current;
+
+    measurement_balance(&drive->measurement, imbalance);
+    estimator_preset_current(&drive->estimator, &drive->params.estimator,
+                             (struct phases){flows.a + num_mul(flows.a, imbalance),
+                                             flows.b - num_mul(flows.b, imbalance)});
+}
+
+/* Not inlined: with it the caller would be compiled for speed. */
+__attribute__((noinline)) static struct channels winding(const struct drive *drive,
+                                                         const struct hal_samples *samples)
+{
+    return measurement_step(&drive->measurement, &drive->params.measurement, samples).winding;
+}
+
+enum phase_balancing phase_balancing_step(struct drive *drive, const struct hal_samples *samples)
+{
+    struct phase_balance *balance = &drive->enabling.balance;
+    const struct phase_balance_params *params = &drive->enabling.balance_params;
+    const angle_t home = drive->reference.next.position.fraction;
+    const struct channels now = winding(drive, samples);
+    const enum phase_balance_event event = phase_balance_step(balance, params, &now);
+
+    if (balance->periods == 0u) { /* what a rotor that lags was taken for, at another angle */
+        estimator_forget_bias(&drive->estimator, &drive->params.estimator);
+    }
+    if (event == PHASES_TOO_DIFFERENT) {
+        return PHASES_DO_NOT_MATCH;
+    }
+    if (event == PHASES_COMPARED) {
+        scale_currents(drive);
+    }
+    standstill_hold_follow(&drive->hold, home + (angle_t)balance->held.offset,
+                           phase_balance_speed(balance, params), phase_balance_leads(balance));
+    return event == PHASES_AT_HOME ? PHASES_ARE_BALANCED : PHASES_ARE_BEING_BALANCED;
+}
