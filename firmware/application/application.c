@@ -41,6 +41,7 @@ static void prepare(struct application *application, const struct hal *board)
     application->board.facts = &application->facts;
     application->outputs = bridge_off;
     application->cycles = (struct control_cycles){.periods = 0};
+    application->cycle_statistics = (struct control_cycle_statistics){.periods = 0};
     application->stored_refused = false;
     console_init(&application->console);
 }
@@ -143,5 +144,6 @@ CALLED_FROM_OUTSIDE void application_background(struct application *application)
 {
     drive_feed_watchdog(&application->drive);
     drive_background(&application->drive);
+    control_cycles_gather(&application->cycle_statistics, &application->cycles);
     console_background(application);
 }

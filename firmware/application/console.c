@@ -224,8 +224,11 @@ static void report(struct application *application, const struct command_line *l
         break;
     case LINE_CYCLES:
         text_put(answer, "cycles");
+        control_cycles_gather(&application->cycle_statistics, &application->cycles);
         report_cycles(answer, application);
-        application->cycles.restart = line->resets;
+        if (line->resets) {
+            control_cycles_restart(&application->cycle_statistics, &application->cycles);
+        }
         break;
     default:
         confirm(application, line, answer);

@@ -4,6 +4,13 @@ set(STEADYSTEP_MOTOR bendjedia-2012 CACHE STRING
   "Default motor: a file of sil/motors, without .toml, or the path of one of your own")
 set(STEADYSTEP_PIN_MAP ${default_pin_map} CACHE STRING
   "Pin map: a file of the port's pin_maps/, without .h, or the path of one of your own")
+set(STEADYSTEP_CONTROL_kHz 10 CACHE STRING "Control periods per millisecond; of PWM, too")
+if(NOT STEADYSTEP_CONTROL_kHz IN_LIST control_rates_kHz)
+  string(REPLACE ";" ", " known "${control_rates_kHz}")
+  message(FATAL_ERROR "STEADYSTEP_CONTROL_kHz is '${STEADYSTEP_CONTROL_kHz}'; expected, of "
+    "${STEADYSTEP_BOARD}: ${known}${control_rates_reason}")
+endif()
+math(EXPR control_period_us "1000 / ${STEADYSTEP_CONTROL_kHz}")
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 include(Cmsis)
 
@@ -93,7 +100,8 @@ function(board_program target path)
   target_compile_definitions(${target} PRIVATE
     STEADYSTEP_DEVICE="hal/${STEADYSTEP_BOARD}/device.h"
     STEADYSTEP_FAULTS="hal/${STEADYSTEP_BOARD}/faults.h"
-    STEADYSTEP_PIN_MAP="${path}")
+    STEADYSTEP_PIN_MAP="${path}"
+    STEADYSTEP_CONTROL_PERIOD_us=${control_period_us})
   set_target_properties(${target} PROPERTIES SUFFIX .elf)
   target_link_options(${target} PRIVATE
     -T ${CMAKE_CURRENT_SOURCE_DIR}/memory.ld -Wl,--build-id=none)

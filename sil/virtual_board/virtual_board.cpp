@@ -28,7 +28,7 @@ constexpr Ticks short_in_period = ticks_per_s / 1'000'000 * 60;
 constexpr Ticks opening_time = ticks_per_s / 1'000'000;
 
 /* Where in a period a control interrupt is held up: it has read its samples. */
-constexpr Ticks stall_in_period = ticks_per_s / 10'000'000 * 65;
+constexpr Ticks stall_in_period = ticks_per_s / 1'000'000 * 3;
 constexpr Ticks first_stall_end = ticks_per_s / 1'000'000 * 89; /* of one beyond the deadline */
 constexpr Ticks stall_piece = ticks_per_s / 10'000'000;
 

@@ -20,7 +20,7 @@ from arm_image.image import Image  # noqa: E402
 LIMITS_B = {"flash": 120 * 1024, "ccm": 28 * 1024, "ram": 48 * 1024}
 RAM = 0x20000000
 SRAM2 = range(0x20014000, 0x20018000)
-DMA_BUFFERS = ("phase_a", "phase_b", "receive", "transmit")
+DMA_BUFFERS = ("leg_sums", "receive", "transmit")
 VECTORS = 0x10000000  # aligned to more than the table takes
 
 

@@ -61,7 +61,7 @@ CONTROL_CYCLE = {
     "modulate": "modulator",
 }
 
-CYCLE_COUNTS = "application_count_cycles"
+CYCLE_COUNTS = "control_cycles_count"
 
 # Looked through: (file, function) -> block of what is left. Other functions of the files: "other".
 THROUGH = {
