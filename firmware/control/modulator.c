@@ -26,12 +26,11 @@ void modulator_reset(struct modulator *modulator)
  */
 void modulator_track_bus(struct modulator *modulator, num_t bus)
 {
-    num_t product;
+    const num_t reciprocal = modulator->bus_reciprocal;
+    const num_t next = num_mul(reciprocal, NUM(2.0) - num_mul(bus, reciprocal));
 
-    modulator->bus = num_at_least(bus, NUM(0.5));
-    product = num_mul(modulator->bus, modulator->bus_reciprocal);
-    modulator->bus_reciprocal =
-        num_at_least(num_mul(modulator->bus_reciprocal, NUM(2.0) - product), NUM(0.5));
+    modulator->bus = bus;
+    modulator->bus_reciprocal = RARE(next < NUM(0.5)) ? NUM(0.5) : next;
 }
 
 num_t modulator_voltage_limit(const struct modulator *modulator)
@@ -47,9 +46,8 @@ static int32_t leg_swing(const struct modulator *modulator, const struct modulat
     const int32_t swing =
         counts_from_num(num_mul(voltage, modulator->bus_reciprocal), params->counts);
 
-    /* One comparison: what is below -limit wraps to a large number. No two phases are limited in
-     * one period, so the branch is laid out for the other case. */
-    if (__builtin_expect((uint32_t)swing + (uint32_t)limit > 2u * (uint32_t)limit, 0)) {
+    /* One comparison: what is below -limit wraps to a large number. */
+    if (RARE((uint32_t)swing + (uint32_t)limit > 2u * (uint32_t)limit)) {
         return swing < 0 ? -limit : limit;
     }
     return swing;

@@ -40,11 +40,15 @@ struct modulator_params modulator_design(uint32_t half_period_counts);
 
 void modulator_reset(struct modulator *modulator);
 
-/*
- * Takes the bus voltage of S(k), 0.5...1.9 of nominal: beyond it the protection opens the bridge.
- * After any other value it finds back.
- */
+/* Takes the bus voltage of S(k), 0.5...1.9 of nominal: beyond it the protection opens the bridge,
+   and nothing is modulated. It finds back after any jump. */
 void modulator_track_bus(struct modulator *modulator, num_t bus);
+
+/* The same, any value, while nothing is modulated: for show. */
+static inline void modulator_see_bus(struct modulator *modulator, num_t bus)
+{
+    modulator->bus = bus;
+}
 
 /* Largest voltage vector that can be commanded in any direction. */
 num_t modulator_voltage_limit(const struct modulator *modulator);

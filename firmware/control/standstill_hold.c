@@ -68,15 +68,6 @@ void standstill_hold_follow(struct standstill_hold *hold, angle_t reference, num
     hold->leads = goes_on;
 }
 
-num_t standstill_hold_step(struct standstill_hold *hold,
-                           const struct standstill_hold_params *params)
-{
-    const num_t target = hold->active ? hold->current : params->motion_current;
-
-    hold->i_d += num_limit(target - hold->i_d, params->current_ramp);
-    return hold->i_d;
-}
-
 void standstill_hold_leave(struct standstill_hold *hold, uint32_t slow_periods, bool moving)
 {
     hold->active = hold->active && slow_periods > 0u;
