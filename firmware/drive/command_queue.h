@@ -6,8 +6,8 @@
  * The interrupt can pre-empt the background between any two instructions, never the other way
  * round, and there is one core: the order in which the background writes is all that counts. What
  * an entry holds is written before the flag or counter that shows it; a signal fence keeps the
- * compiler to that order. Whoever posts makes the queue due at once, by a period that has passed; the
- * interrupt then looks at all that waits and puts off what is not to act yet.
+ * compiler to that order. Whoever posts makes the queue due at once, by a period that has passed;
+ * the interrupt then looks at all that waits and puts off what is not to act yet.
  */
 #ifndef STEADYSTEP_COMMAND_QUEUE_H
 #define STEADYSTEP_COMMAND_QUEUE_H
@@ -69,8 +69,8 @@ struct command_queue {
     struct queued_command entry[COMMAND_QUEUE_LENGTH];
     volatile uint32_t written;
     volatile uint32_t read;
-    volatile uint32_t due; /* first period in which there may be something to do: all that the
-                              interrupt asks */
+    volatile uint32_t due;    /* first period in which there may be something to do: all that the
+                                 interrupt asks */
     volatile uint32_t looked; /* period in which all that waits was last looked at */
     struct urgent_command disable;
     struct urgent_command stop;

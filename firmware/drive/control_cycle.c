@@ -101,8 +101,7 @@ IN_PLACE struct frame current_frame(const struct drive *drive, const struct pred
     if (RARE(drive->hold.active)) {
         return (struct frame){drive->hold.frame, drive->hold.frame, drive->hold.speed};
     }
-    return (struct frame){next->frame, sincos_add(next->frame, next->half_turn),
-                          next->rotor.speed};
+    return (struct frame){next->frame, sincos_add(next->frame, next->half_turn), next->rotor.speed};
 }
 
 /* Hold or current law, then current control. */
@@ -385,9 +384,8 @@ static void control_with_all(struct drive *drive, const struct estimate *estimat
  * has: no delay, no loss compensation. Kept out of the interrupt's body, so that the registers and
  * the stack of the heaviest law cost the default path nothing.
  */
-__attribute__((noinline)) static void control_general(struct drive *drive,
-                                                      const struct hal_samples *samples,
-                                                      struct hal_outputs *outputs)
+__attribute__((noinline)) static void
+control_general(struct drive *drive, const struct hal_samples *samples, struct hal_outputs *outputs)
 {
     const struct sample_set now =
         measurement_step(&drive->measurement, &drive->params.measurement, samples);

@@ -7,9 +7,9 @@ struct phases prepared_input_voltage(struct drive *drive, struct phases current)
     const struct phases before = drive->input.past_current;
 
     drive->input.past_current = current;
-    return bridge_loss_voltage(&drive->params.bridge_loss, actuation_commanded(&drive->actuation), before,
-                               current,
-                               drive->modulator.bus, drive->modulator.bus_reciprocal);
+    return bridge_loss_voltage(&drive->params.bridge_loss, actuation_commanded(&drive->actuation),
+                               before, current, drive->modulator.bus,
+                               drive->modulator.bus_reciprocal);
 }
 
 void prepared_input_make(struct drive *drive, struct channels *winding)

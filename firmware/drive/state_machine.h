@@ -22,9 +22,9 @@ static inline bool state_machine_powered(const struct drive *drive)
 }
 
 /*
- * One period, first of all in a control interrupt: counts it, takes due commands, the steps of enabling and the faults seen in the samples. true:
- * the bridge was on before and stays on. The period that powers up only resets the blocks, so that
- * no interrupt pays for both.
+ * One period, first of all in a control interrupt: counts it, takes due commands, the steps of
+ * enabling and the faults seen in the samples. true: the bridge was on before and stays on. The
+ * period that powers up only resets the blocks, so that no interrupt pays for both.
  */
 bool state_machine_step(struct drive *drive, const struct hal_samples *samples);
 

@@ -111,9 +111,8 @@ static num_t speed_of_current(const struct estimate *x, const struct motor_model
     return num_mul_coef(num_half(park(error, x->next.frame).q), model->speed_per_torque);
 }
 
-static void correct(struct encoder_observer *observer,
-                    const struct encoder_observer_params *params, struct phases current,
-                    int32_t count)
+static void correct(struct encoder_observer *observer, const struct encoder_observer_params *params,
+                    struct phases current, int32_t count)
 {
     struct estimate *x = &observer->estimate;
     const struct position measured = encoder_step(&observer->encoder, &params->encoder, count);

@@ -73,7 +73,7 @@ static inline void estimator_preset_current(struct estimator *estimator,
 {
 #define ESTIMATOR_PRESET_CURRENT(constant, name)                                                   \
     if (estimator_is(params, ESTIMATOR_##constant)) {                                              \
-        name##_preset_current(&estimator->name, current);                           \
+        name##_preset_current(&estimator->name, current);                                          \
     } else
     SENSORLESS_ESTIMATORS(ESTIMATOR_PRESET_CURRENT)
     {
@@ -88,7 +88,7 @@ static inline void estimator_preset_rotor(struct estimator *estimator,
 {
 #define ESTIMATOR_PRESET_ROTOR(constant, name)                                                     \
     if (estimator_is(params, ESTIMATOR_##constant)) {                                              \
-        name##_preset_rotor(&estimator->name, rotor);                               \
+        name##_preset_rotor(&estimator->name, rotor);                                              \
     } else
     SENSORLESS_ESTIMATORS(ESTIMATOR_PRESET_ROTOR)
     {
@@ -103,7 +103,7 @@ static inline void estimator_place(struct estimator *estimator,
 {
 #define ESTIMATOR_PLACE(constant, name)                                                            \
     if (estimator_is(params, ESTIMATOR_##constant)) {                                              \
-        name##_place(&estimator->name, position, count);                            \
+        name##_place(&estimator->name, position, count);                                           \
     } else
     ENCODER_ESTIMATORS(ESTIMATOR_PLACE)
     {

@@ -134,8 +134,7 @@ struct passage high_gain_observer_predict(struct high_gain_observer *observer,
 
 struct passage high_gain_observer_step(struct high_gain_observer *observer,
                                        const struct high_gain_observer_params *params,
-                                       struct phases current, struct phases in_force,
-                                       int32_t count)
+                                       struct phases current, struct phases in_force, int32_t count)
 {
     struct estimate *x = &observer->estimate;
 

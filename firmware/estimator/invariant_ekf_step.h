@@ -26,22 +26,25 @@ struct invariant_ekf_correction {
     num_t load_torque;
 };
 
-static inline struct invariant_ekf_correction invariant_ekf_correct_in_motion(const struct invariant_ekf_params *params, num_t speed,
-                                           struct dq innovation)
+static inline struct invariant_ekf_correction
+invariant_ekf_correct_in_motion(const struct invariant_ekf_params *params, num_t speed,
+                                struct dq innovation)
 {
     const struct invariant_ekf_gain_set *gain = &params->moving;
     const num_t full = params->odd_gain_speed;
     const num_t direction = num_clamp(speed, -full, full);
     const num_t odd = num_mul(innovation.d, num_mul_coef(direction, gain->angle_d));
 
-    return (struct invariant_ekf_correction){.turns = odd + num_mul_coef(innovation.q, gain->angle_q),
-                               .bias_q = num_mul_coef_nearest(odd, gain->bias_per_turn),
-                               .load_torque = num_mul_coef(innovation.q, gain->load_q)};
+    return (struct invariant_ekf_correction){
+        .turns = odd + num_mul_coef(innovation.q, gain->angle_q),
+        .bias_q = num_mul_coef_nearest(odd, gain->bias_per_turn),
+        .load_torque = num_mul_coef(innovation.q, gain->load_q)};
 }
 
 /* `away`: of the load from the one settled at. */
-static inline struct invariant_ekf_correction invariant_ekf_correct_in_hold(const struct invariant_ekf_gain_set *gain,
-                                         struct dq innovation, num_t away)
+static inline struct invariant_ekf_correction
+invariant_ekf_correct_in_hold(const struct invariant_ekf_gain_set *gain, struct dq innovation,
+                              num_t away)
 {
     return (struct invariant_ekf_correction){
         .turns = num_mul_coef(innovation.q, gain->angle_q) + num_mul_coef(away, gain->angle_return),
@@ -57,9 +60,11 @@ static inline num_t invariant_ekf_away_from_settled_load(const struct invariant_
 }
 
 /* Returns the innovation in the estimated rotor frame. */
-static inline struct dq invariant_ekf_correct(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                         const struct invariant_ekf_gain_set *gain, struct phases measured,
-                         struct phases surprise, bool holding)
+static inline struct dq invariant_ekf_correct(struct invariant_ekf *ekf,
+                                              const struct invariant_ekf_params *params,
+                                              const struct invariant_ekf_gain_set *gain,
+                                              struct phases measured, struct phases surprise,
+                                              bool holding)
 {
     struct estimate *x = &ekf->estimate;
     const struct outlook *expected = &x->next;
@@ -68,8 +73,9 @@ static inline struct dq invariant_ekf_correct(struct invariant_ekf *ekf, const s
     const struct phases error = {measured.a - current.a, measured.b - current.b};
     const struct dq innovation = park(error, frame);
     const struct invariant_ekf_correction by =
-        RARE(holding) ? invariant_ekf_correct_in_hold(gain, innovation, invariant_ekf_away_from_settled_load(ekf))
-                : invariant_ekf_correct_in_motion(params, expected->speed, innovation);
+        RARE(holding) ? invariant_ekf_correct_in_hold(gain, innovation,
+                                                      invariant_ekf_away_from_settled_load(ekf))
+                      : invariant_ekf_correct_in_motion(params, expected->speed, innovation);
 
     x->current.a = current.a + num_mul_coef(error.a, gain->current);
     x->current.b = current.b + num_mul_coef(error.b, gain->current);
@@ -81,8 +87,10 @@ static inline struct dq invariant_ekf_correct(struct invariant_ekf *ekf, const s
     return innovation;
 }
 
-static inline void invariant_ekf_adapt_resistance(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                             const struct invariant_ekf_gain_set *gain, num_t innovation_d)
+static inline void invariant_ekf_adapt_resistance(struct invariant_ekf *ekf,
+                                                  const struct invariant_ekf_params *params,
+                                                  const struct invariant_ekf_gain_set *gain,
+                                                  num_t innovation_d)
 {
     struct estimate *x = &ekf->estimate;
     const num_t i_d = park(x->current, x->next.frame).d;
@@ -93,8 +101,9 @@ static inline void invariant_ekf_adapt_resistance(struct invariant_ekf *ekf, con
 
 /* By how much the change of the load is more than twice what it has been of late: a rotor that is
    led passes its detent torque. */
-static inline num_t invariant_ekf_beyond_detent(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                           num_t change)
+static inline num_t invariant_ekf_beyond_detent(struct invariant_ekf *ekf,
+                                                const struct invariant_ekf_params *params,
+                                                num_t change)
 {
     const num_t beyond = change - ekf->led_change;
 
@@ -104,7 +113,8 @@ static inline num_t invariant_ekf_beyond_detent(struct invariant_ekf *ekf, const
 
 /* Which of the sets of gains serves this period of the hold. */
 static inline const struct invariant_ekf_gain_set *
-invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_params *params, bool leads)
+invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
+                         bool leads)
 {
     if (ekf->unloaded_periods > 0u) {
         ekf->unloaded_periods--;
@@ -115,7 +125,8 @@ invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_p
     }
 
     const num_t away = invariant_ekf_away_from_settled_load(ekf);
-    const num_t change = leads ? invariant_ekf_beyond_detent(ekf, params, num_abs(away)) : num_abs(away);
+    const num_t change =
+        leads ? invariant_ekf_beyond_detent(ekf, params, num_abs(away)) : num_abs(away);
 
     if (change > params->load_step &&
         (ekf->following_periods == 0u || num_half(change) > params->load_step)) {
@@ -152,13 +163,14 @@ invariant_ekf_look_ahead(struct invariant_ekf *ekf, const struct invariant_ekf_p
  */
 __attribute__((always_inline)) static inline struct passage
 invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                        struct phases current, struct phases surprise, struct phases in_force,
-                        struct rotor_hold hold)
+                   struct phases current, struct phases surprise, struct phases in_force,
+                   struct rotor_hold hold)
 {
     const bool holding = hold.active;
     const struct invariant_ekf_gain_set *gain =
         RARE(holding) ? invariant_ekf_hold_gains(ekf, params, *hold.leads) : &params->moving;
-    const struct dq innovation = invariant_ekf_correct(ekf, params, gain, current, surprise, holding);
+    const struct dq innovation =
+        invariant_ekf_correct(ekf, params, gain, current, surprise, holding);
 
     ekf->innovation_sum = num_add_around(ekf->innovation_sum, innovation.d);
     if (!RARE(holding)) {

@@ -69,10 +69,10 @@ static inline struct phases predict_current(const struct motor_model_params *par
 {
     const num_t droop = num_mul_coef(num_mul(speed, speed), params->emf_droop);
     const num_t emf = speed - num_mul(droop, speed);
-    const num_t across_a = voltage.a - num_mul(current.a, winding->resistance) +
-                           num_mul_unit(emf, mid_period.sin);
-    const num_t across_b = voltage.b - num_mul(current.b, winding->resistance) -
-                           num_mul_unit(emf, mid_period.cos);
+    const num_t across_a =
+        voltage.a - num_mul(current.a, winding->resistance) + num_mul_unit(emf, mid_period.sin);
+    const num_t across_b =
+        voltage.b - num_mul(current.b, winding->resistance) - num_mul_unit(emf, mid_period.cos);
     const struct phases next = {current.a + num_mul(across_a, winding->admittance),
                                 current.b + num_mul(across_b, winding->admittance)};
     return next;

@@ -92,9 +92,9 @@ struct sincos sincos_of_small(num_t turns)
     const int32_t x2 = (x * x) >> 15;
     const int32_t s = EIGHTHS(SMALL_S3, 3) + ((x2 * EIGHTHS(SMALL_S5, 5)) >> 15);
     const int32_t c = EIGHTHS(SMALL_C4, 4) + ((x2 * EIGHTHS(SMALL_C6, 6)) >> 15);
-    const struct sincos to = {
-        UNIT(1.0) + ((x2 * (EIGHTHS(SMALL_C2, 2) + ((x2 * c) >> 15)) + half) >> 15),
-        (x * (EIGHTHS(S1, 1) + ((x2 * s) >> 15)) + half) >> 15};
+    const struct sincos to = {UNIT(1.0) +
+                                  ((x2 * (EIGHTHS(SMALL_C2, 2) + ((x2 * c) >> 15)) + half) >> 15),
+                              (x * (EIGHTHS(S1, 1) + ((x2 * s) >> 15)) + half) >> 15};
 
     return to;
 }
@@ -117,9 +117,9 @@ struct sincos sincos_of_small(num_t turns)
 {
     const num_t x = turns;
     const num_t x2 = x * x;
-    const struct sincos to = {
-        UNIT(1.0) + x2 * (NUM(SMALL_C2) + x2 * (NUM(SMALL_C4) + x2 * NUM(SMALL_C6))),
-        x * (NUM(S1) + x2 * (NUM(SMALL_S3) + x2 * NUM(SMALL_S5)))};
+    const struct sincos to = {UNIT(1.0) +
+                                  x2 * (NUM(SMALL_C2) + x2 * (NUM(SMALL_C4) + x2 * NUM(SMALL_C6))),
+                              x * (NUM(S1) + x2 * (NUM(SMALL_S3) + x2 * NUM(SMALL_S5)))};
 
     return to;
 }

@@ -164,7 +164,8 @@ static struct state corrected(struct state x, struct state y, const struct invar
     y.load += k->k_load_q_Nm_A * nu.b - k->load_return * away;
     y.bias_a += bias.a;
     y.bias_b += bias.b;
-    y.resistance += k->k_resistance_ohm_A2 * bench_to_rotor(y.i_a, y.i_b, 50.0 * x.angle + h).a * nu.a;
+    y.resistance +=
+        k->k_resistance_ohm_A2 * bench_to_rotor(y.i_a, y.i_b, 50.0 * x.angle + h).a * nu.a;
     return y;
 }
 
@@ -243,8 +244,8 @@ static void test_a_voltage_that_was_another_than_expected_is_made_up_for(void)
     set(start);
     (void)invariant_ekf_predict(&ekf, &params,
                                 bench_phases(expected.a, expected.b, base.voltage_V));
-    correct(current,
-            bench_phases(voltage.a - expected.a, voltage.b - expected.b, base.voltage_V), false);
+    correct(current, bench_phases(voltage.a - expected.a, voltage.b - expected.b, base.voltage_V),
+            false);
     TEST_ASSERT_NUM_WITHIN(4.0 * NUM_ROUNDING + COEF_ROUNDING, num_to_double(right.a),
                            x->current.a);
     TEST_ASSERT_NUM_WITHIN(4.0 * NUM_ROUNDING + COEF_ROUNDING, num_to_double(right.b),

@@ -211,7 +211,8 @@ static void test_the_rotor_turns_half_its_way_by_the_middle_of_the_period(void)
     struct rotor rotor = {.position = {3, 0x80000000u},
                           .speed = num_from_double(45.0 / base.speed_rad_s)};
     const angle_t begin = rotor.position.fraction;
-    const angle_t middle = begin + (angle_t)angle_from_turns(half_period_turns(&model, rotor.speed));
+    const angle_t middle =
+        begin + (angle_t)angle_from_turns(half_period_turns(&model, rotor.speed));
     const num_t friction = num_mul_coef(rotor.speed, model.friction);
 
     predict_rotor(&model, &rotor, friction);

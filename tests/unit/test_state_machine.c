@@ -302,7 +302,7 @@ static void test_enabling_begins_with_all_blocks_at_rest(void)
     settings.law_bandwidth_rad_s = 150.0;
     enable();
     samples.current_a = 2048 + 300;
-    samples.phase_voltage_a = 100;
+    samples.phase_voltage_a = 21; /* what the resistance takes */
     must_post(move_to(0.003));
     run(MOVE_AND_REST);
     post_kind(DRIVE_COMMAND_HOLD);
