@@ -58,7 +58,7 @@ IN_PLACE struct position_law_input law_input(const struct drive *drive,
                                              const struct prediction *next)
 {
     const struct reference_sample *reference = next->reference;
-    const bool feed_forward = drive->params.path.feed_forward;
+    const bool feed_forward = !RARE(!drive->params.path.feed_forward);
 
     return (struct position_law_input){
         .position_error = position_difference(reference->position, next->rotor.position),
@@ -306,8 +306,8 @@ IN_PLACE struct passage observe_sensorless(struct drive *drive, const struct sam
 }
 
 /* Begins a phase or a stop; nothing else that can wait is done in this period, and what has waited
-   for the reference to rest is looked at in the next. Apart: rare. */
-__attribute__((noinline)) static void turn_reference(struct drive *drive)
+   for the reference to rest is looked at in the next. */
+IN_PLACE void turn_reference(struct drive *drive)
 {
     reference_turn(&drive->reference, &drive->params.reference);
     synchronism_wait(drive);
@@ -332,7 +332,7 @@ __attribute__((noinline)) static void stop_in_fault(struct drive *drive, enum dr
 }
 
 /* Last of all, as nothing is kept for it: a step of the monitor. Apart: rare. */
-__attribute__((noinline)) static void watch_synchronism(struct drive *drive,
+IN_PLACE void watch_synchronism(struct drive *drive,
                                                         struct hal_outputs *outputs)
 {
     const enum drive_fault fault = synchronism_watch(drive);

@@ -148,8 +148,8 @@ static void take_over(struct drive *drive, const struct motion_plan *plan)
     }
 }
 
-/* One command a period: short worst case. Apart: rare. */
-__attribute__((noinline)) static void take_commands(struct drive *drive)
+/* One command a period: short worst case. */
+static inline __attribute__((always_inline)) void take_commands(struct drive *drive)
 {
     struct command_queue *queue = &drive->commands;
     const uint32_t period = drive->supervision.period;
@@ -256,9 +256,9 @@ __attribute__((noinline)) static bool samples_are_good(struct drive *drive,
     return fault == DRIVE_FAULT_NONE;
 }
 
-/* A command may be due, or the state is another than operation. Apart: rare. */
-__attribute__((noinline)) static bool step_with_commands(struct drive *drive,
-                                                         const struct hal_samples *samples)
+/* A command may be due, or the state is another than operation. */
+static inline __attribute__((always_inline)) bool
+step_with_commands(struct drive *drive, const struct hal_samples *samples)
 {
     const bool was_powered = state_machine_powered(drive);
 

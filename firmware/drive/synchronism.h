@@ -24,7 +24,7 @@ void synchronism_start(struct drive *drive);
  */
 static inline bool synchronism_is_due(const struct drive *drive)
 {
-    return (int32_t)(drive->supervision.period - drive->synchronism.due) >= 0 &&
+    return RARE((int32_t)(drive->supervision.period - drive->synchronism.due) >= 0) &&
            (!drive->hold.active || !drive->hold.leads ||
             !standstill_hold_leads_in(drive->supervision.period));
 }

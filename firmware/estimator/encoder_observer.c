@@ -108,7 +108,7 @@ static num_t speed_of_current(const struct estimate *x, const struct motor_model
 {
     const struct phases error = {current.a - x->next.current.a, current.b - x->next.current.b};
 
-    return num_mul_coef(num_half(park(error, x->next.frame).q), model->speed_per_torque);
+    return num_mul_coef_nearest(num_half(park(error, x->next.frame).q), model->speed_per_torque);
 }
 
 static void correct(struct encoder_observer *observer, const struct encoder_observer_params *params,

@@ -267,9 +267,7 @@ void reference_turn(struct reference *r, const struct reference_params *params)
     if (r->periods_left > 0u) {
         reference_advance_with_jerk(r);
     }
-    if (r->phase == REFERENCE_QUEUED) {
-        r->phase = REFERENCE_LOADED;
-    } else if (r->periods_left == 0u) {
+    if (r->periods_left == 0u) {
         begin_next_phase(r);
     } else { /* a stop has been asked for */
         cut_short(r);

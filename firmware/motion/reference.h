@@ -159,9 +159,8 @@ static inline void reference_count_as_slow(struct reference *reference)
     reference->slow_periods = UINT32_MAX;
 }
 
-/* The rest of a step that begins a phase or a stop. Apart: rare. */
-__attribute__((noinline)) void reference_turn(struct reference *reference,
-                                              const struct reference_params *params);
+/* The rest of a step that begins a phase or a stop. */
+void reference_turn(struct reference *reference, const struct reference_params *params);
 
 static inline void reference_travel(struct reference *r, int64_t travel)
 {
@@ -231,6 +230,16 @@ static inline void reference_count_slow(struct reference *r, const struct refere
     }
 }
 
+/* Not in the middle of a phase. A profile that has been loaded rests for a period more. */
+static inline bool reference_begins(struct reference *r)
+{
+    if (r->phase == REFERENCE_QUEUED) {
+        r->phase = REFERENCE_LOADED;
+        return false;
+    }
+    return r->phase != REFERENCE_REST;
+}
+
 /* One control period on; `held`: the rotor is, and stays so while the reference creeps. true: a
    phase or a stop begins, reference_turn is to follow. */
 static inline bool reference_step(struct reference *r, const struct reference_params *params,
@@ -242,11 +251,8 @@ static inline bool reference_step(struct reference *r, const struct reference_pa
     r->now.speed = r->next.speed;
     r->now.acceleration = r->next.acceleration;
     r->now.moving = r->next.moving;
-    if (r->phase == REFERENCE_REST) {
-        return false;
-    }
     if (RARE(r->periods_left <= 1u || r->stop_requested)) {
-        return true;
+        return reference_begins(r);
     }
     if (RARE(r->jerks)) {
         reference_advance_with_jerk(r);
