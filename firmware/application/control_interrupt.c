@@ -5,6 +5,6 @@
 CALLED_FROM_OUTSIDE const struct hal_outputs *
 application_control_interrupt(struct application *application, const struct hal_samples *samples)
 {
-    application->outputs = drive_control_cycle(&application->drive, samples);
+    drive_control_cycle(&application->drive, samples, &application->outputs);
     return &application->outputs;
 }

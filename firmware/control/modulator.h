@@ -40,17 +40,80 @@ struct modulator_params modulator_design(uint32_t half_period_counts);
 
 void modulator_reset(struct modulator *modulator);
 
+/* Any bus voltage, while nothing is modulated: for show. */
+static inline void modulator_see_bus(struct modulator *modulator, num_t bus)
+{
+    modulator->bus = bus;
+}
+
 /*
- * Takes the bus voltage of S(k), 0.5...1.9 of nominal: beyond it the protection opens the bridge.
- * After any other value it finds back.
+ * Takes the bus voltage of S(k), 0.5...1.9 of nominal: beyond it the protection opens the bridge,
+ * and nothing is modulated. It finds back after any jump:
+ *
+ * r <- r (2 - v r) squares the error at each step as long as 0 < v r < 2; kept from falling below
+ * its range, r comes back into that even if the bus jumps by more than twofold. It never exceeds
+ * 1/v, the maximum of the parabola, so the least bus bounds it.
  */
-void modulator_track_bus(struct modulator *modulator, num_t bus);
+static inline void modulator_track_bus(struct modulator *modulator, num_t bus)
+{
+    const num_t reciprocal = modulator->bus_reciprocal;
+    const num_t next = num_mul(reciprocal, NUM(2.0) - num_mul(bus, reciprocal));
+
+    modulator->bus = bus;
+    modulator->bus_reciprocal = RARE(next < NUM(0.5)) ? NUM(0.5) : next;
+}
 
 /* Largest voltage vector that can be commanded in any direction. */
-num_t modulator_voltage_limit(const struct modulator *modulator);
+static inline num_t modulator_voltage_limit(const struct modulator *modulator)
+{
+    return num_mul_unit(modulator->bus, UNIT(MODULATION_MAX));
+}
+
+/* By how many counts the two legs leave their middle, the one up and the other down. */
+static inline int32_t modulator_swing(const struct modulator *modulator,
+                                      const struct modulator_params *params, num_t voltage)
+{
+    const int32_t limit = params->swing_counts;
+    const int32_t swing =
+        counts_from_num(num_mul(voltage, modulator->bus_reciprocal), params->counts);
+
+    /* One comparison: what is below -limit wraps to a large number. */
+    if (RARE((uint32_t)swing + (uint32_t)limit > 2u * (uint32_t)limit)) {
+        return swing < 0 ? -limit : limit;
+    }
+    return swing;
+}
+
+static inline struct leg_pair modulator_legs(const struct modulator_params *params, int32_t swing)
+{
+    const int32_t plus = params->middle_counts + swing;
+    const struct leg_pair legs = {(uint16_t)plus, (uint16_t)(params->half_period_counts - plus)};
+
+    return legs;
+}
+
+static inline num_t modulator_voltage(const struct modulator *modulator,
+                                      const struct modulator_params *params, int32_t swing)
+{
+    const num_t m = num_from_code(swing, params->voltage_per_count);
+
+    return num_mul(m, modulator->bus);
+}
 
 /* `voltage` of at most a few times the bus. */
-struct modulation modulator_step(const struct modulator *modulator,
-                                 const struct modulator_params *params, struct phases voltage);
+__attribute__((always_inline)) static inline struct modulation
+modulator_step(const struct modulator *modulator, const struct modulator_params *params,
+               struct phases voltage)
+{
+    const int32_t swing_a = modulator_swing(modulator, params, voltage.a);
+    const int32_t swing_b = modulator_swing(modulator, params, voltage.b);
+    const struct modulation out = {
+        .a = modulator_legs(params, swing_a),
+        .b = modulator_legs(params, swing_b),
+        .voltage = {modulator_voltage(modulator, params, swing_a),
+                    modulator_voltage(modulator, params, swing_b)},
+    };
+    return out;
+}
 
 #endif

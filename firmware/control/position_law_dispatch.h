@@ -86,7 +86,7 @@ static inline num_t position_law_current(enum position_law law, union position_l
                                          const struct position_law_input *input)
 {
 #define POSITION_LAW_CURRENT(constant, function, text)                                             \
-    if (law == POSITION_LAW_##constant) {                                                          \
+    if (!RARE(law != POSITION_LAW_##constant)) {                                                   \
         const struct position_law_input own = *input;                                              \
         return function##_law_step(&state->function, &params->function, &own);                     \
     }

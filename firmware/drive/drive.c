@@ -396,7 +396,9 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
                            settings->bridge_loss_compensation ? facts->dead_time_s : 0.0);
     params->path.general = position_law_gives_voltage(settings->law) || settings->detent_learning ||
                            settings->standstill_pulses || params->path.infers_voltage ||
-                           params->path.zero_delay || !settings->bridge_loss_compensation;
+                           params->path.zero_delay || !settings->bridge_loss_compensation ||
+                           settings->feedback == DRIVE_FEEDBACK_ENCODER ||
+                           settings->estimator != DRIVE_ESTIMATOR_INVARIANT_EKF;
     params->enabling.encoder_zero_known =
         settings->feedback == DRIVE_FEEDBACK_ENCODER && settings->encoder_zero_known;
     params->enabling.encoder_zero =

@@ -35,7 +35,8 @@
 struct path_params {
     bool feed_forward;
     bool zero_delay; /* the answer acts from S(k) on, without a period of delay */
-    bool general;    /* more is in use than a current law with delay and loss compensation */
+    bool general;    /* more is in use than a current law on the invariant EKF, with delay and loss
+                        compensation */
     bool bridge_loss_compensation;
     bool infers_voltage; /* the phase voltages are not measured */
     bool detent_learning;
@@ -103,7 +104,6 @@ struct synchronism_supervision {
 
 /* What the estimator gets instead of samples: prepared_input.h. */
 struct prepared_input {
-    struct channels winding;    /* of this S(k) */
     struct phases past_current; /* of S(k-1), where the phase voltages are inferred from it */
 };
 
@@ -148,7 +148,6 @@ struct drive {
     struct dq current;
     struct dq current_reference;
     struct dq voltage_command;
-    num_t bus;
 
     /* the blocks that the default does without */
     union position_law_state law;
@@ -203,8 +202,9 @@ bool drive_learned(const struct drive *drive, struct learned_parameters *learned
 void drive_put_learned(struct drive *drive, const struct learned_parameters *learned);
 
 /* The control interrupt: from the samples of S(k) to the duties of S(k+1)...S(k+2). */
-__attribute__((noinline)) struct hal_outputs drive_control_cycle(struct drive *drive,
-                                                                 const struct hal_samples *samples);
+__attribute__((noinline)) void drive_control_cycle(struct drive *drive,
+                                                   const struct hal_samples *samples,
+                                                   struct hal_outputs *outputs);
 
 /* Background: judges a command by command_rules.h, plans and posts it. false: refused, reason in
    error. */

@@ -22,6 +22,7 @@ struct measurement {
 struct sample_set {
     struct channels winding;
     num_t bus;
+    int32_t encoder_count;
 };
 
 struct measurement_params measurement_design(const struct hal_facts *facts,
@@ -46,6 +47,12 @@ static inline void measurement_set_offset(struct measurement *measurement, struc
     measurement->offset = offset;
 }
 
+static inline num_t measurement_bus(const struct measurement_params *params,
+                                    const struct hal_samples *samples)
+{
+    return num_from_code(samples->bus_voltage, params->bus_voltage);
+}
+
 static inline __attribute__((always_inline)) struct sample_set
 measurement_step(const struct measurement *measurement, const struct measurement_params *params,
                  const struct hal_samples *samples)
@@ -61,7 +68,8 @@ measurement_step(const struct measurement *measurement, const struct measurement
         num_from_code(samples->phase_voltage_a, params->phase_voltage) - offset->voltage.a;
     now.winding.voltage.b =
         num_from_code(samples->phase_voltage_b, params->phase_voltage) - offset->voltage.b;
-    now.bus = num_from_code(samples->bus_voltage, params->bus_voltage);
+    now.bus = measurement_bus(params, samples);
+    now.encoder_count = samples->encoder_count;
     return now;
 }
 

@@ -37,12 +37,9 @@ void phase_balancing_start(struct drive *drive)
 static void scale_currents(struct drive *drive)
 {
     const num_t imbalance = drive->enabling.balance.imbalance;
-    const struct phases flows = drive->estimator.estimate.current;
 
     measurement_balance(&drive->measurement, imbalance);
-    estimator_preset_current(&drive->estimator, &drive->params.estimator,
-                             (struct phases){flows.a + num_mul(flows.a, imbalance),
-                                             flows.b - num_mul(flows.b, imbalance)});
+    estimate_balance_currents(&drive->estimator.estimate, imbalance);
 }
 
 /* Not inlined: with it the caller would be compiled for speed. */

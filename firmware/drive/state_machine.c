@@ -168,7 +168,7 @@ static void take_over(struct drive *drive, const struct motion_plan *plan)
 }
 
 /* One command a period: short worst case. */
-static void take_commands(struct drive *drive)
+static inline __attribute__((always_inline)) void take_commands(struct drive *drive)
 {
     struct command_queue *queue = &drive->commands;
     const uint32_t period = drive->supervision.period;
@@ -197,8 +197,7 @@ static void take_commands(struct drive *drive)
     if (plan != NULL) {
         take_over(drive, plan);
     } else {
-        command_queue_rest(queue, period, wait,
-                           command != NULL && command->at_period != period + 1u);
+        command_queue_rest(queue, period, wait);
     }
 }
 
@@ -266,20 +265,47 @@ __attribute__((noinline)) static bool step_outside_operation(struct drive *drive
     return state_machine_powered(drive);
 }
 
-bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
+/* Enters the fault that the samples show, if any; true: they show none. Apart: rare. */
+__attribute__((noinline)) static bool samples_are_good(struct drive *drive,
+                                                       const struct hal_samples *samples)
+{
+    const enum drive_fault fault = protection_check_samples(&drive->params.protection, samples);
+
+    state_machine_fault(drive, fault);
+    return fault == DRIVE_FAULT_NONE;
+}
+
+/* A command may be due, or the state is another than operation. */
+static inline __attribute__((always_inline)) bool
+step_with_commands(struct drive *drive, const struct hal_samples *samples)
 {
     const bool was_powered = state_machine_powered(drive);
 
-    if (command_queue_is_pending(&drive->commands, drive->supervision.period,
-                                 !reference_busy(&drive->reference))) {
+    drive->encoder_count = samples->encoder_count;
+    if (command_queue_is_due(&drive->commands, drive->supervision.period)) {
         take_commands(drive);
     }
     if (drive->supervision.state != DRIVE_OPERATION_ENABLED &&
         !step_outside_operation(drive, samples)) {
         return false;
     }
-    const enum drive_fault fault = protection_check_samples(&drive->params.protection, samples);
+    if (!was_powered) { /* it has only been reset; and a fault is entered at once */
+        (void)samples_are_good(drive, samples);
+    }
+    return was_powered;
+}
 
-    state_machine_fault(drive, fault);
-    return was_powered && fault == DRIVE_FAULT_NONE;
+bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
+{
+    const uint32_t period = drive->supervision.period + 1u;
+
+    drive->supervision.period = period;
+    if (RARE(drive->supervision.state != DRIVE_OPERATION_ENABLED ||
+             command_queue_is_due(&drive->commands, period))) {
+        if (!step_with_commands(drive, samples)) {
+            return false;
+        }
+    }
+    return protection_passes(&drive->params.protection, samples) ||
+           samples_are_good(drive, samples);
 }

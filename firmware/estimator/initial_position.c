@@ -320,10 +320,8 @@ static struct initial_position_output give_impulse(struct initial_position *find
     if (period <= begin) {
         finding->expected = nothing;
     } else if (period <= end) {
-        finding->expected = forced_current(
-            &finding->winding,
-            free_current(&params->model, &finding->winding, finding->expected, NUM(0.0), no_turn),
-            voltage);
+        finding->expected = predict_current(&params->model, &finding->winding, finding->expected,
+                                            NUM(0.0), no_turn, voltage);
     }
     if (period == end) {
         take_peak(finding, impulse, current);

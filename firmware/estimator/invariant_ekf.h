@@ -7,7 +7,8 @@
  * d current only, so that one constant gain serves every speed. The gain from nu_d to the angle
  * changes sign with the direction of rotation and is therefore multiplied by sat(w / w_s).
  *
- *   predict with the voltage measured over the past period (motor_model.h), then correct:
+ *   predict with the voltage that is expected over the period (motor_model.h); at its end correct,
+ *   with i_hat moved by what the voltage was another than expected:
  *   i_hat += k_i (i - i_hat)          w_hat  += k_w nu_q
  *   theta += k_td sat(w/w_s) nu_d + k_tq nu_q
  *   T_L   += k_T nu_q
@@ -97,9 +98,16 @@ static inline num_t invariant_ekf_take_innovation_sum(struct invariant_ekf *ekf)
     return sum;
 }
 
-/* From S(k-1) to S(k). `voltage`: mean over that period; `current`: sampled at S(k). */
-void invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                        struct phases current, struct phases voltage, struct rotor_hold hold);
+/* At S(k): corrects what was predicted for it, and predicts S(k+1). The default path does not come
+   here: invariant_ekf_step.h. */
+__attribute__((noinline)) struct passage
+invariant_ekf_observe(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
+                      const struct estimator_input *input);
+
+/* Predicts S(k+1) once more, under this mean voltage. Apart: rare. */
+__attribute__((noinline)) struct passage
+invariant_ekf_predict(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
+                      struct phases voltage);
 
 static inline void invariant_ekf_begin(struct invariant_ekf *ekf,
                                        const struct invariant_ekf_params *params,
@@ -108,19 +116,9 @@ static inline void invariant_ekf_begin(struct invariant_ekf *ekf,
     invariant_ekf_reset(ekf, params, start->position, start->resistance, start->unloaded_periods);
 }
 
-static inline void invariant_ekf_observe(struct invariant_ekf *ekf,
-                                         const struct invariant_ekf_params *params,
-                                         const struct estimator_input *input)
-{
-    invariant_ekf_step(ekf, params, input->winding->current, input->winding->voltage, input->hold);
-}
-
-static inline void invariant_ekf_preset_current(struct invariant_ekf *ekf,
-                                                const struct invariant_ekf_params *params,
-                                                struct phases current)
+static inline void invariant_ekf_preset_current(struct invariant_ekf *ekf, struct phases current)
 {
     ekf->estimate.current = current;
-    estimate_look_ahead(&ekf->estimate, &params->model);
 }
 
 /* The first hold is over: what is left of its unloaded periods is. */
@@ -135,13 +133,10 @@ static inline void invariant_ekf_forget_bias(struct invariant_ekf *ekf)
     ekf->bias = (struct phases){NUM(0.0), NUM(0.0)};
 }
 
-static inline void invariant_ekf_preset_rotor(struct invariant_ekf *ekf,
-                                              const struct invariant_ekf_params *params,
-                                              const struct rotor *rotor)
+static inline void invariant_ekf_preset_rotor(struct invariant_ekf *ekf, const struct rotor *rotor)
 {
     ekf->estimate.rotor = *rotor;
     ekf->settled_load = rotor->load_torque;
-    estimate_look_ahead(&ekf->estimate, &params->model);
 }
 
 /*

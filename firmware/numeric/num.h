@@ -22,6 +22,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/rare.h"
+
 #define NUM_FLOAT  1
 #define NUM_FIXED  2
 #define NUM_DOUBLE 3
@@ -372,10 +374,10 @@ static inline num_t num_clamp(num_t a, num_t low, num_t high)
 /* -limit...limit, for a limit above zero; a NaN becomes the lower bound. */
 static inline num_t num_limit(num_t a, num_t limit)
 {
-    if (num_abs(a) < limit) {
-        return a;
+    if (RARE(!(num_abs(a) < limit))) {
+        return a > NUM(0.0) ? limit : -limit;
     }
-    return a > NUM(0.0) ? limit : -limit;
+    return a;
 }
 
 /* A gain that 16 bits are too coarse for: k and what it leaves over. */

@@ -81,7 +81,9 @@ static double phase_voltage(const uint16_t high_counts[2], double current_A)
 static void period(void)
 {
     const struct hal_samples samples = sample();
-    const struct hal_outputs next = drive_control_cycle(&drive, &samples);
+    struct hal_outputs next;
+
+    drive_control_cycle(&drive, &samples, &next);
 
     if (bridge.in_force.bridge_on) {
         bridge.mean_V.a = phase_voltage(&bridge.in_force.high_counts[HAL_LEG_A_PLUS], motor.i_a);

@@ -46,7 +46,9 @@ static double magnitude(double x)
 
 static void step(void)
 {
-    reference_step(&reference, &params, false);
+    if (reference_step(&reference, &params, false)) {
+        reference_turn(&reference, &params);
+    }
 }
 
 /* Where the reference is, as an exact 96-bit difference turned to turns. */
