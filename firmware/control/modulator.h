@@ -70,8 +70,8 @@ static inline num_t modulator_voltage_limit(const struct modulator *modulator)
 }
 
 /* By how many counts the two legs leave their middle, the one up and the other down. */
-static inline int32_t modulator_swing(const struct modulator *modulator, const struct modulator_params *params,
-                         num_t voltage)
+static inline int32_t modulator_swing(const struct modulator *modulator,
+                                      const struct modulator_params *params, num_t voltage)
 {
     const int32_t limit = params->swing_counts;
     const int32_t swing =
@@ -92,8 +92,8 @@ static inline struct leg_pair modulator_legs(const struct modulator_params *para
     return legs;
 }
 
-static inline num_t modulator_voltage(const struct modulator *modulator, const struct modulator_params *params,
-                        int32_t swing)
+static inline num_t modulator_voltage(const struct modulator *modulator,
+                                      const struct modulator_params *params, int32_t swing)
 {
     const num_t m = num_from_code(swing, params->voltage_per_count);
 
@@ -102,15 +102,16 @@ static inline num_t modulator_voltage(const struct modulator *modulator, const s
 
 /* `voltage` of at most a few times the bus. */
 __attribute__((always_inline)) static inline struct modulation
-modulator_step(const struct modulator *modulator,
-                                 const struct modulator_params *params, struct phases voltage)
+modulator_step(const struct modulator *modulator, const struct modulator_params *params,
+               struct phases voltage)
 {
     const int32_t swing_a = modulator_swing(modulator, params, voltage.a);
     const int32_t swing_b = modulator_swing(modulator, params, voltage.b);
     const struct modulation out = {
         .a = modulator_legs(params, swing_a),
         .b = modulator_legs(params, swing_b),
-        .voltage = {modulator_voltage(modulator, params, swing_a), modulator_voltage(modulator, params, swing_b)},
+        .voltage = {modulator_voltage(modulator, params, swing_a),
+                    modulator_voltage(modulator, params, swing_b)},
     };
     return out;
 }

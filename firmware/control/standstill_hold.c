@@ -78,8 +78,8 @@ void standstill_hold_consider(struct standstill_hold *hold,
                               const struct standstill_hold_params *params, angle_t reference,
                               uint32_t slow_periods, num_t position_error, num_t speed)
 {
-    if (RARE(slow_periods > params->delay_periods) && num_abs(position_error) < params->error_limit &&
-        num_abs(speed) < params->speed_limit) {
+    if (RARE(slow_periods > params->delay_periods) &&
+        num_abs(position_error) < params->error_limit && num_abs(speed) < params->speed_limit) {
         standstill_hold_enter(hold, reference);
     }
 }

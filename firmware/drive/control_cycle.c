@@ -189,7 +189,7 @@ static void remember_demand(struct drive *drive, const struct estimate *estimate
 /* Without a delay the command is in force at once, and the estimator did not know of it. */
 static void act_at_once(struct drive *drive)
 {
-    estimator_predict(&drive->estimator, &drive->params.estimator,
+    estimator_predict(&drive->estimator, &drive->params.estimator, &drive->params.model,
                       actuation_act(&drive->actuation));
 }
 
@@ -332,8 +332,7 @@ __attribute__((noinline)) static void stop_in_fault(struct drive *drive, enum dr
 }
 
 /* Last of all, as nothing is kept for it: a step of the monitor. Apart: rare. */
-IN_PLACE void watch_synchronism(struct drive *drive,
-                                                        struct hal_outputs *outputs)
+IN_PLACE void watch_synchronism(struct drive *drive, struct hal_outputs *outputs)
 {
     const enum drive_fault fault = synchronism_watch(drive);
 

@@ -60,11 +60,10 @@ static inline num_t invariant_ekf_away_from_settled_load(const struct invariant_
 }
 
 /* Returns the innovation in the estimated rotor frame. */
-__attribute__((always_inline)) static inline struct dq invariant_ekf_correct(struct invariant_ekf *ekf,
-                                              const struct invariant_ekf_params *params,
-                                              const struct invariant_ekf_gain_set *gain,
-                                              struct phases measured, struct phases surprise,
-                                              bool holding)
+__attribute__((always_inline)) static inline struct dq
+invariant_ekf_correct(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
+                      const struct invariant_ekf_gain_set *gain, struct phases measured,
+                      struct phases surprise, bool holding)
 {
     struct estimate *x = &ekf->estimate;
     const struct outlook *expected = &x->next;
