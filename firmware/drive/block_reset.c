@@ -13,7 +13,17 @@ static struct position initial_position(const struct drive *drive, struct positi
                : drive->enabling.start;
 }
 
-void drive_reset_blocks(struct drive *drive)
+void drive_reset_control(struct drive *drive)
+{
+    standstill_hold_reset(&drive->hold, &drive->params.hold);
+    position_law_reset(&drive->law);
+    detent_compensation_reset(&drive->detent);
+    current_control_reset(&drive->current_control);
+    synchronism_reset(drive);
+    expectation_reset(&drive->expectation);
+}
+
+void drive_reset_motion(struct drive *drive)
 {
     const struct drive_params *params = &drive->params;
     const struct estimator_start start = {
@@ -28,10 +38,4 @@ void drive_reset_blocks(struct drive *drive)
 
     estimator_begin(&drive->estimator, &params->estimator, &start);
     reference_reset(&drive->reference, start.position);
-    standstill_hold_reset(&drive->hold, &params->hold);
-    position_law_reset(&drive->law);
-    detent_compensation_reset(&drive->detent);
-    current_control_reset(&drive->current_control);
-    synchronism_reset(drive);
-    expectation_reset(&drive->expectation);
 }

@@ -189,7 +189,7 @@ static void remember_demand(struct drive *drive, const struct estimate *estimate
 /* Without a delay the command is in force at once, and the estimator did not know of it. */
 static void act_at_once(struct drive *drive)
 {
-    estimator_predict(&drive->estimator, &drive->params.estimator,
+    estimator_predict(&drive->estimator, &drive->params.estimator, &drive->params.model,
                       actuation_act(&drive->actuation));
 }
 

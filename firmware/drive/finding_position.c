@@ -36,7 +36,8 @@ static void go_on(struct drive *drive, const struct sample_set *now)
         standstill_hold_preset(&drive->hold, finding->current_reference);
         current_control_preset(&drive->current_control, (struct dq){finding->voltage, NUM(0.0)});
         estimator_preset_current(&drive->estimator, &drive->params.estimator, now->winding.current);
-        estimator_predict(&drive->estimator, &drive->params.estimator, drive->actuation.in_force);
+        estimator_predict(&drive->estimator, &drive->params.estimator, &drive->params.model,
+                          drive->actuation.in_force);
     }
 }
 

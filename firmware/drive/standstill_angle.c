@@ -29,7 +29,8 @@ static void preset_estimator(struct drive *drive, const struct standstill_angle 
         invariant_ekf_preset_bias_along(&drive->estimator.invariant_ekf,
                                         drive->standstill.bias_of_motion, drive->hold.frame);
     }
-    estimator_predict(&drive->estimator, &drive->params.estimator, drive->actuation.in_force);
+    estimator_predict(&drive->estimator, &drive->params.estimator, &drive->params.model,
+                      drive->actuation.in_force);
 }
 
 /* Of this S(k), had this voltage acted since S(k-1). Apart: compiled once. */

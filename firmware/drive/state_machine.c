@@ -65,7 +65,7 @@ static void align(struct drive *drive, const struct hal_samples *samples)
 
 static void power_up(struct drive *drive)
 {
-    drive_reset_blocks(drive);
+    drive_reset_motion(drive);
     if (drive->params.enabling.hold_on_enable_periods > 0u) {
         drive->supervision.aligns = estimator_has_encoder(&drive->params.estimator) &&
                                     !drive->params.enabling.encoder_zero_known;
@@ -94,7 +94,7 @@ static void find_position_or_power_up(struct drive *drive)
     actuation_reset(&drive->actuation);
     prepared_input_reset(drive);
     if (drive->params.enabling.detects_position) {
-        drive_reset_blocks(drive);
+        drive_reset_motion(drive);
         initial_position_start(&drive->enabling.detection, &drive->enabling.detection_params,
                                drive->enabling.start.fraction);
         enter(drive, DRIVE_FINDING_POSITION);
@@ -106,6 +106,7 @@ static void find_position_or_power_up(struct drive *drive)
 /* Apart: rare. */
 __attribute__((noinline)) static void start_enabling(struct drive *drive)
 {
+    drive_reset_control(drive);
     measurement_reset(&drive->measurement, &drive->params.measurement);
     offset_calibration_reset(&drive->enabling.calibration);
     if (drive->params.enabling.calibrates_offsets) {
@@ -185,12 +186,14 @@ static inline __attribute__((always_inline)) void take_commands(struct drive *dr
     if (command_queue_take_urgent(queue, &queue->stop, period, &wait)) {
         reference_stop(&drive->reference);
         command_queue_stop_acted(queue, period);
+        command_queue_rest_if_empty(queue, period);
         return;
     }
     /* A move is loaded a period ahead: it begins with the period it is addressed to. */
     command = command_queue_due(queue, period + 1u, &wait);
     if (command != NULL && obey(drive, command)) {
         command_queue_drop(queue);
+        command_queue_rest_if_empty(queue, period);
         return;
     }
     plan = command_queue_take_over(queue, period, &wait);

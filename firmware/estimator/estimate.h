@@ -97,6 +97,22 @@ static inline void estimate_balance_currents(struct estimate *x, num_t imbalance
     x->next.current.b -= num_mul(x->next.current.b, imbalance);
 }
 
+/*
+ * Mean of i_q over the period from its two ends, each in the rotor's frame of its own instant: h
+ * before and after the middle of the period, so it takes the q part of their sum and the d part of
+ * their difference. (The mean of the phase currents is the chord of the arc that they run through,
+ * short by h^2/2: 0.8 % at 50 rad/s, 10 kHz and 50 teeth.)
+ */
+static inline num_t estimate_mean_of_ends(const struct estimate *x, struct passage passage)
+{
+    const struct phases sum = {x->current.a + x->next.current.a, x->current.b + x->next.current.b};
+    const struct phases difference = {x->current.a - x->next.current.a,
+                                      x->current.b - x->next.current.b};
+
+    return num_half(num_mul_unit(park(sum, passage.mid_period).q, passage.half_turn.cos) +
+                    num_mul_unit(park(difference, passage.mid_period).d, passage.half_turn.sin));
+}
+
 /* At rest at a known position, no voltage, no current and no load. */
 static inline void estimate_reset(struct estimate *x, const struct motor_model_params *model,
                                   struct position position, num_t resistance)

@@ -13,12 +13,22 @@ struct passage estimator_observe(struct estimator *estimator, const struct estim
 }
 
 void estimator_predict(struct estimator *estimator, const struct estimator_params *params,
-                       struct phases voltage)
+                       const struct motor_model_params *model, struct phases voltage)
 {
-#define ESTIMATOR_PREDICT(constant, name)                                                          \
-    if (estimator_is(params, ESTIMATOR_##constant)) {                                              \
-        (void)name##_predict(&estimator->name, &params->name, voltage);                            \
+    struct estimate *x = &estimator->estimate;
+    struct phases driving = voltage;
+    num_t known_torque = NUM(0.0);
+    struct passage passage;
+
+    if (estimator_is(params, ESTIMATOR_INVARIANT_EKF)) {
+        driving.a -= estimator->invariant_ekf.bias.a;
+        driving.b -= estimator->invariant_ekf.bias.b;
+    } else if (estimator_is(params, ESTIMATOR_ENCODER_OBSERVER)) {
+        known_torque = estimator->encoder_observer.known_torque;
     }
-    ESTIMATORS(ESTIMATOR_PREDICT)
-#undef ESTIMATOR_PREDICT
+    passage = estimate_predict_current(x, model, driving);
+    if (estimator_is(params, ESTIMATOR_STEADY_STATE_EKF)) {
+        estimator->steady_state_ekf.mid_period = passage.mid_period;
+    }
+    estimate_predict_rotor(x, model, estimate_mean_of_ends(x, passage) - known_torque);
 }

@@ -64,6 +64,7 @@ struct passage estimator_observe(struct estimator *estimator, const struct estim
 /* From S(k) to S(k+1) once more, under this mean voltage. Apart: rare. */
 __attribute__((noinline)) void estimator_predict(struct estimator *estimator,
                                                  const struct estimator_params *params,
+                                                 const struct motor_model_params *model,
                                                  struct phases voltage);
 
 /* Without an encoder, behind estimator_begin: this current flows already. */

@@ -8,13 +8,12 @@
  *   <estimator>_begin           when the bridge is switched on, from a struct estimator_start
  *   <estimator>_observe         one period, from a struct estimator_input: corrects what was
  *                               predicted for S(k), and predicts
- *   <estimator>_predict         from S(k) to S(k+1) under a mean voltage; again, where something
- *                               has been preset or the voltage is another than was expected
  *
  * and, without an encoder,
  *
- *   <estimator>_preset_current  behind begin: this current flows already; predict is to follow
- *   <estimator>_preset_rotor    at rest: the rotor is known from elsewhere; predict is to follow
+ *   <estimator>_preset_current  behind begin: this current flows already; estimator_predict is to
+ * follow <estimator>_preset_rotor    at rest: the rotor is known from elsewhere; estimator_predict
+ * is to follow
  *
  * or, with one,
  *

@@ -61,13 +61,6 @@ void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_p
     invariant_ekf_settle(ekf);
 }
 
-struct passage invariant_ekf_predict(struct invariant_ekf *ekf,
-                                     const struct invariant_ekf_params *params,
-                                     struct phases voltage)
-{
-    return invariant_ekf_look_ahead(ekf, params, voltage);
-}
-
 struct passage invariant_ekf_observe(struct invariant_ekf *ekf,
                                      const struct invariant_ekf_params *params,
                                      const struct estimator_input *input)

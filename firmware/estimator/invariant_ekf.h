@@ -104,11 +104,6 @@ __attribute__((noinline)) struct passage
 invariant_ekf_observe(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
                       const struct estimator_input *input);
 
-/* Predicts S(k+1) once more, under this mean voltage. Apart: rare. */
-__attribute__((noinline)) struct passage
-invariant_ekf_predict(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                      struct phases voltage);
-
 static inline void invariant_ekf_begin(struct invariant_ekf *ekf,
                                        const struct invariant_ekf_params *params,
                                        const struct estimator_start *start)

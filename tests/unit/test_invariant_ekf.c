@@ -1,5 +1,5 @@
 /* The default estimator on the simulated motor: no noise, what remains is the estimator's own. */
-#include "firmware/estimator/invariant_ekf.h"
+#include "firmware/estimator/invariant_ekf_step.h"
 #include "tests/unit/bench.h"
 #include "tests/unit/emulated.h"
 #include "tests/unit/num_assert.h"
@@ -88,7 +88,8 @@ static void step(struct bench_vector voltage, struct bench_vector current, bool 
 {
     static const struct phases none = {NUM(0.0), NUM(0.0)};
 
-    (void)invariant_ekf_predict(&ekf, &params, bench_phases(voltage.a, voltage.b, base.voltage_V));
+    (void)invariant_ekf_look_ahead(&ekf, &params,
+                                   bench_phases(voltage.a, voltage.b, base.voltage_V));
     correct(current, none, in_hold);
 }
 
@@ -242,8 +243,8 @@ static void test_a_voltage_that_was_another_than_expected_is_made_up_for(void)
     step(voltage, current, false);
     right = x->current;
     set(start);
-    (void)invariant_ekf_predict(&ekf, &params,
-                                bench_phases(expected.a, expected.b, base.voltage_V));
+    (void)invariant_ekf_look_ahead(&ekf, &params,
+                                   bench_phases(expected.a, expected.b, base.voltage_V));
     correct(current, bench_phases(voltage.a - expected.a, voltage.b - expected.b, base.voltage_V),
             false);
     TEST_ASSERT_NUM_WITHIN(4.0 * NUM_ROUNDING + COEF_ROUNDING, num_to_double(right.a),

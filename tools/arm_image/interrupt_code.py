@@ -10,8 +10,16 @@ from . import call_graph
 
 INTERRUPTS = ["control_interrupt", "deadline_guard_interrupt"]
 # And what they alone call.
-ENABLING = {"encoder_aligning_step", "offset_calibration_step",
-            "phase_balancing_start", "phase_balancing_step"}
+ENABLING = {
+    "encoder_aligning_step",
+    "find_position_or_power_up",
+    "finding_position_cycle",
+    "offset_calibration_step",
+    "phase_balancing_start",
+    "phase_balancing_step",
+    "power_up",
+    "start_enabling",
+}
 CCM = range(0x10000000, 0x10008000)
 FLASH = range(0x08000000, 0x08080000)
 VENEER = re.compile(r"__(.+)_veneer")
