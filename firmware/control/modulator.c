@@ -1,12 +1,13 @@
 #include "firmware/control/modulator.h"
 
-struct modulator_params modulator_design(uint32_t half_period_counts)
+struct modulator_params modulator_design(uint32_t half_period_counts, double max)
 {
     const double half = (double)half_period_counts / 2.0;
     const struct modulator_params params = {
         .half_period_counts = (int32_t)half_period_counts,
         .middle_counts = (int32_t)half,
-        .swing_counts = (int32_t)(half * MODULATION_MAX),
+        .swing_counts = (int32_t)(half * max),
+        .max = UNIT(max),
         .counts = coef_from_double(half * NUM_COUNT_SCALE),
         .voltage_per_count = coef_from_double(NUM_CODE_SCALE / half),
     };
@@ -34,9 +35,10 @@ void modulator_track_bus(struct modulator *modulator, num_t bus)
         num_at_least(num_mul(modulator->bus_reciprocal, NUM(2.0) - product), NUM(0.5));
 }
 
-num_t modulator_voltage_limit(const struct modulator *modulator)
+num_t modulator_voltage_limit(const struct modulator *modulator,
+                              const struct modulator_params *params)
 {
-    return num_mul_unit(modulator->bus, UNIT(MODULATION_MAX));
+    return num_mul_unit(modulator->bus, params->max);
 }
 
 /* By how many counts the two legs leave their middle, the one up and the other down. */

@@ -1,13 +1,5 @@
 #include "firmware/estimator/invariant_ekf.h"
 
-/* Behind the gains that follow a load step the hold returns to the load found, for a while, unless
-   the load changes by twice a step: a hold that followed each drift at once would follow its own
-   compensation around. */
-#define REST_PERIODS 100u
-
-/* A rotor that is drawn into place from where it was told not to be comes to rest within 50 ms. */
-#define SWING_PERIODS 500u
-
 static struct invariant_ekf_gain_set scale(const struct per_unit *base,
                                            const struct invariant_ekf_gains *k)
 {
@@ -48,6 +40,8 @@ struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params 
         .following = scale(base, &hold->following),
         .odd_gain_speed = num_from_double(moving->angle_d_full_speed_rad_s / base->speed_rad_s),
         .following_periods = hold->following_periods,
+        .rest_periods = hold->rest_periods,
+        .swing_periods = hold->swing_periods,
         .load_step = num_from_double(hold->load_step_Nm / base->torque_Nm),
         .led_memory = coef_from_double(hold->led_load_memory),
     };
@@ -69,7 +63,8 @@ void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_p
     ekf->innovation_sum = NUM(0.0);
     ekf->led_change = NUM(0.0);
     ekf->unloaded_periods = unloaded_periods;
-    ekf->swing_end = unloaded_periods > SWING_PERIODS ? unloaded_periods - SWING_PERIODS : 0u;
+    ekf->swing_end =
+        unloaded_periods > params->swing_periods ? unloaded_periods - params->swing_periods : 0u;
     settle(ekf);
 }
 
@@ -189,13 +184,13 @@ hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
 
     if (change > params->load_step &&
         (ekf->following_periods == 0u || num_half(change) > params->load_step)) {
-        ekf->following_periods = params->following_periods + REST_PERIODS;
+        ekf->following_periods = params->following_periods + params->rest_periods;
     }
     if (ekf->following_periods == 0u) {
         return &params->holding;
     }
     ekf->following_periods--;
-    if (ekf->following_periods < REST_PERIODS) {
+    if (ekf->following_periods < params->rest_periods) {
         return &params->holding;
     }
     ekf->settled_load += num_mul_coef(away, params->following.load_settle);

@@ -9,7 +9,12 @@ import re
 from . import call_graph
 
 INTERRUPTS = ["control_interrupt", "deadline_guard_interrupt"]
-ENABLING = {"encoder_aligning_step", "offset_calibration_step"}  # and what they alone call
+ENABLING = {  # and what they alone call
+    "drive_reset_blocks",
+    "encoder_aligning_step",
+    "finding_position_cycle",
+    "offset_calibration_step",
+}
 CCM = range(0x10000000, 0x10008000)
 FLASH = range(0x08000000, 0x08080000)
 VENEER = re.compile(r"__(.+)_veneer")
