@@ -127,7 +127,7 @@ static bool prepare_enable(struct application *application, uint32_t *at_period,
     const uint32_t period = interrupt_view_period(drive);
 
     if ((int32_t)(*at_period - period) <= 0) {
-        *at_period = period + DRIVE_TYPED_DELAY_PERIODS;
+        *at_period = period + drive_typed_delay_periods(application->facts.control_period_s);
     }
     return true;
 }

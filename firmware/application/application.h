@@ -63,7 +63,7 @@ bool application_init_with(struct application *application, const struct hal *bo
  * Background: drive_command_asked_in, for whoever commands a drive that has a console. What was set
  * since the drive was designed is put in force before an enable: it is designed anew, with its
  * bridge off, which takes as long as drive_init. If the period to act in has passed by then, the
- * command acts, and its at_period is, DRIVE_TYPED_DELAY_PERIODS after the end of the design. false:
+ * command acts, and its at_period is, DRIVE_TYPED_DELAY_s after the end of the design. false:
  * refused, reason in error; a set-up that the drive refuses leaves the one before in force.
  */
 bool application_command(struct application *application, struct drive_command *command,

@@ -1,20 +1,21 @@
 /*
  * Pulse-width modulation of two H-bridges: phase voltages to the times high of four legs.
  *
- * The legs of a phase switch at (1 + m)/2 and (1 - m)/2 with m = u / bus, |m| <= 0.92, which
- * leaves a 4 us window around the counter peak in which all four low sides conduct. The
- * reciprocal of the measured bus voltage is tracked by one Newton step a period, without division.
+ * The legs of a phase switch at (1 + m)/2 and (1 - m)/2 with m = u / bus, within a limit that
+ * leaves a window around the counter peak in which all four low sides conduct (modulation_limit.h).
+ * The reciprocal of the measured bus voltage is tracked by one Newton step a period, without
+ * division.
  */
 #ifndef STEADYSTEP_MODULATOR_H
 #define STEADYSTEP_MODULATOR_H
 
-#include "firmware/control/modulation_limit.h"
 #include "firmware/motor/park.h"
 
 struct modulator_params {
     int32_t half_period_counts;
     int32_t middle_counts;    /* of a leg, at no voltage */
-    int32_t swing_counts;     /* about the middle, at MODULATION_MAX */
+    int32_t swing_counts;     /* about the middle, at the largest modulation */
+    unit_t max;               /* the largest modulation */
     coef_t counts;            /* modulation to counts of one leg */
     coef_t voltage_per_count; /* at nominal bus */
 };
@@ -36,7 +37,7 @@ struct modulation {
     struct phases voltage; /* what the legs command at the present bus voltage */
 };
 
-struct modulator_params modulator_design(uint32_t half_period_counts);
+struct modulator_params modulator_design(uint32_t half_period_counts, double max);
 
 void modulator_reset(struct modulator *modulator);
 
@@ -64,9 +65,10 @@ static inline void modulator_track_bus(struct modulator *modulator, num_t bus)
 }
 
 /* Largest voltage vector that can be commanded in any direction. */
-static inline num_t modulator_voltage_limit(const struct modulator *modulator)
+static inline num_t modulator_voltage_limit(const struct modulator *modulator,
+                                            const struct modulator_params *params)
 {
-    return num_mul_unit(modulator->bus, UNIT(MODULATION_MAX));
+    return num_mul_unit(modulator->bus, params->max);
 }
 
 /* By how many counts the two legs leave their middle, the one up and the other down. */

@@ -115,7 +115,7 @@ IN_PLACE struct phases regulate_current(struct drive *drive, const struct predic
     drive->voltage_command = current_control_step(
         &drive->current_control, &drive->params.current_control, drive->current_reference,
         drive->current, (struct rotation){frame.speed, next->rotor.speed},
-        modulator_voltage_limit(&drive->modulator));
+        modulator_voltage_limit(&drive->modulator, &drive->params.modulator));
     return inverse_park(drive->voltage_command, frame.middle);
 }
 
@@ -135,7 +135,7 @@ static struct phases regulate_voltage(struct drive *drive, const struct estimate
                               : NUM(0.0),
         .load_torque_change = next->load_torque_change,
         .resistance = estimate->winding.resistance,
-        .voltage_limit = modulator_voltage_limit(&drive->modulator),
+        .voltage_limit = modulator_voltage_limit(&drive->modulator, &drive->params.modulator),
         .angle = next->rotor.position.fraction,
         .reference_angle = next->reference->position.fraction,
     };

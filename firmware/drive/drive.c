@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "firmware/control/modulation_limit.h"
 #include "firmware/design/mechanical_control_design.h"
 #include "firmware/design/text.h"
 #include "firmware/drive/board_limits.h"
@@ -321,6 +322,24 @@ static bool check_simulation(const struct drive_settings *settings, const struct
     return false;
 }
 
+bool drive_carries_law(enum position_law law)
+{
+    return position_law_is_carried(law);
+}
+
+static bool check_law(const struct drive_settings *settings, char error[DRIVE_ERROR_TEXT])
+{
+    struct text refusal = text_in(error, DRIVE_ERROR_TEXT);
+
+    if (position_law_is_carried(settings->law)) {
+        return true;
+    }
+    text_put(&refusal, "law = ");
+    text_put(&refusal, drive_law_name(settings->law));
+    text_put(&refusal, ": this image does not carry it; get law lists those that it does");
+    return false;
+}
+
 bool drive_init(struct drive *drive, const struct hal *board, const struct drive_settings *settings,
                 char error[DRIVE_ERROR_TEXT])
 {
@@ -344,7 +363,8 @@ static bool settle_settings(struct drive *drive, const struct drive_settings *gi
     struct drive_settings *settings = &drive->settings;
     struct default_settings_search search = {.refused = 0};
 
-    if (!drive_settings_check(given, error) || !check_simulation(given, facts, error)) {
+    if (!drive_settings_check(given, error) || !check_simulation(given, facts, error) ||
+        !check_law(given, error)) {
         return false;
     }
     *settings = *given;
@@ -381,7 +401,8 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
     params->reference = reference_design(&drive->base, period_s, creep_limits(settings));
     params->current_control = current_control_design(&settings->motor, &drive->base, period_s,
                                                      settings->current_bandwidth_rad_s);
-    params->modulator = modulator_design(facts->pwm_half_period_counts);
+    params->modulator = modulator_design(facts->pwm_half_period_counts,
+                                         modulation_max(facts->low_state_s, period_s));
     params->protection = protection_design(&drive->base, facts, &drive->settings);
     params->enabling.calibrates_offsets = settings->calibrate_offsets;
     drive->enabling.calibration_params =

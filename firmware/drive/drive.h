@@ -191,6 +191,9 @@ __attribute__((noinline)) bool drive_init(struct drive *drive, const struct hal 
 __attribute__((noinline)) bool drive_design(struct drive *drive, const struct drive_settings *given,
                                             char error[DRIVE_ERROR_TEXT]);
 
+/* Whether this image has the law; one that it has not is refused. */
+bool drive_carries_law(enum position_law law);
+
 /* Background: feeds the board's watchdog, if a control interrupt has come since it was fed: a board
    where none comes any more is to be reset. */
 void drive_feed_watchdog(struct drive *drive);

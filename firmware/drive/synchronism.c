@@ -58,7 +58,8 @@ void synchronism_start(struct drive *drive)
 {
     if (drive->synchronism.monitored) {
         drive->synchronism.step = TAKE;
-        drive->synchronism.due = drive->supervision.period + SYNCHRONISM_BLOCK_PERIODS;
+        drive->synchronism.due =
+            drive->supervision.period + drive->synchronism.params.block_periods;
         (void)invariant_ekf_take_innovation_sum(&drive->estimator.invariant_ekf);
     }
 }
@@ -69,8 +70,10 @@ static enum synchronism doubt(struct drive *drive)
         synchronism_monitor_doubt(&drive->synchronism.monitor, &drive->synchronism.params);
 
     drive->synchronism.step = TAKE;
-    if (drive->supervision.period - drive->synchronism.block_began < SYNCHRONISM_BLOCK_PERIODS) {
-        drive->synchronism.due = drive->synchronism.block_began + SYNCHRONISM_BLOCK_PERIODS;
+    if (drive->supervision.period - drive->synchronism.block_began <
+        drive->synchronism.params.block_periods) {
+        drive->synchronism.due =
+            drive->synchronism.block_began + drive->synchronism.params.block_periods;
     }
     if (verdict == SYNCHRONISM_SURE && drive->synchronism.shown != DRIVE_SYNCHRONISM_LOST) {
         drive->synchronism.shown = DRIVE_SYNCHRONISM_SURE;

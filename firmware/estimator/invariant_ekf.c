@@ -1,8 +1,5 @@
 #include "firmware/estimator/invariant_ekf_step.h"
 
-/* A rotor that is drawn into place from where it was told not to be comes to rest within 50 ms. */
-#define SWING_PERIODS 500u
-
 static struct invariant_ekf_gain_set scale(const struct per_unit *base,
                                            const struct invariant_ekf_gains *k)
 {
@@ -43,6 +40,8 @@ struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params 
         .following = scale(base, &hold->following),
         .odd_gain_speed = num_from_double(moving->angle_d_full_speed_rad_s / base->speed_rad_s),
         .following_periods = hold->following_periods,
+        .rest_periods = hold->rest_periods,
+        .swing_periods = hold->swing_periods,
         .load_step = num_from_double(hold->load_step_Nm / base->torque_Nm),
         .led_memory = coef_from_double(hold->led_load_memory),
     };
@@ -57,7 +56,8 @@ void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_p
     ekf->innovation_sum = NUM(0.0);
     ekf->led_change = NUM(0.0);
     ekf->unloaded_periods = unloaded_periods;
-    ekf->swing_end = unloaded_periods > SWING_PERIODS ? unloaded_periods - SWING_PERIODS : 0u;
+    ekf->swing_end =
+        unloaded_periods > params->swing_periods ? unloaded_periods - params->swing_periods : 0u;
     invariant_ekf_settle(ekf);
 }
 

@@ -60,6 +60,8 @@ struct invariant_ekf_params {
     struct invariant_ekf_gain_set following; /* holding, after a load step */
     num_t odd_gain_speed;                    /* w_s */
     uint32_t following_periods;              /* how long a load step is followed */
+    uint32_t rest_periods;                   /* behind that, in which none is */
+    uint32_t swing_periods;                  /* in which a rotor swings into place */
     num_t load_step;                         /* what a quiet hold takes for a step of the load */
     coef_t led_memory; /* share per period of led_change's way to the change */
 };

@@ -7,11 +7,6 @@
 
 #include "firmware/estimator/invariant_ekf.h"
 
-/* Behind the gains that follow a load step the hold returns to the load found, for a while, unless
-   the load changes by twice a step: a hold that followed each drift at once would follow its own
-   compensation around. */
-#define REST_PERIODS 100u
-
 /* The load a hold begins with is the one that was estimated in motion. */
 static inline void invariant_ekf_settle(struct invariant_ekf *ekf)
 {
@@ -129,13 +124,13 @@ invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_p
 
     if (change > params->load_step &&
         (ekf->following_periods == 0u || num_half(change) > params->load_step)) {
-        ekf->following_periods = params->following_periods + REST_PERIODS;
+        ekf->following_periods = params->following_periods + params->rest_periods;
     }
     if (ekf->following_periods == 0u) {
         return &params->holding;
     }
     ekf->following_periods--;
-    if (ekf->following_periods < REST_PERIODS) {
+    if (ekf->following_periods < params->rest_periods) {
         return &params->holding;
     }
     ekf->settled_load += num_mul_coef(away, params->following.load_settle);

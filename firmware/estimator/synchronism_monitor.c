@@ -60,21 +60,29 @@ static const double torn_s = 3.2e-3;
 static const double doubt_s = 5e-3;
 static const double doubtful_s = 20e-3;
 
+static uint32_t block_periods(double period_s)
+{
+    const double count = SYNCHRONISM_BLOCK_S / period_s;
+
+    return count > SYNCHRONISM_STEPS ? (uint32_t)(count + 0.5) : SYNCHRONISM_STEPS;
+}
+
 static uint32_t blocks(double time_s, double period_s)
 {
-    const double count = time_s / (period_s * SYNCHRONISM_BLOCK_PERIODS);
+    const double count = time_s / (period_s * block_periods(period_s));
 
     return count > 1.0 ? (uint32_t)(count + 0.5) : 1u;
 }
 
-/* c / 16 for a share k_i of the innovation that is corrected each period. */
-static coef_t voltage_per_sum(const struct motor_model_params *model, double current_gain)
+/* c over the periods of a block, for a share k_i of the innovation that is corrected in each. */
+static coef_t voltage_per_sum(const struct motor_model_params *model, double current_gain,
+                              double period_s)
 {
     const double admittance = num_to_double(model->nominal_admittance);
     const double left = 1.0 - admittance * num_to_double(model->nominal_resistance); /* a */
 
     return coef_from_double((1.0 - (1.0 - current_gain) * left) / admittance /
-                            SYNCHRONISM_BLOCK_PERIODS);
+                            block_periods(period_s));
 }
 
 struct synchronism_monitor_params
@@ -95,8 +103,11 @@ synchronism_monitor_design(const struct synchronism_monitor_task *task)
                                           task->current_limit_A / motor->torque_constant_Nm_A;
 
     return (struct synchronism_monitor_params){
-        .voltage_per_sum_moving = voltage_per_sum(task->model, task->current_gain_moving),
-        .voltage_per_sum_holding = voltage_per_sum(task->model, task->current_gain_holding),
+        .block_periods = block_periods(task->period_s),
+        .voltage_per_sum_moving =
+            voltage_per_sum(task->model, task->current_gain_moving, task->period_s),
+        .voltage_per_sum_holding =
+            voltage_per_sum(task->model, task->current_gain_holding, task->period_s),
         .voltage_per_current =
             coef_from_double(resistance * (task->resistance_adapted ? resistance_error_known
                                                                     : resistance_error_unknown)),

@@ -123,7 +123,7 @@ Json interrupt_json(const Result &result)
     Json json;
     json["image"] = result.scenario->given.image;
     json["interrupts"] = interrupt.interrupts;
-    json["budget_cycles"] = virtual_board::control_interrupt_budget;
+    json["budget_cycles"] = result.board->budget_cycles;
     json["total_cycles"] = figures_json(interrupt.total);
     for (std::size_t i = 0; i < interrupt.stages.size(); ++i) {
         json["stage_cycles"][interrupt.stage_names[i]] = figures_json(interrupt.stages[i]);

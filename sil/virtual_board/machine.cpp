@@ -75,7 +75,8 @@ void Machine::load(const ElfImage &image)
     stack_limit_ = image.symbol("stack_bottom");
     stack_top_ = image.symbol("stack_top");
     enabling_.clear();
-    for (const char *name : {"encoder_aligning_step", "offset_calibration_step"}) {
+    for (const char *name : {"drive_reset_blocks", "encoder_aligning_step",
+                             "finding_position_cycle", "offset_calibration_step"}) {
         if (const auto step = image.symbol(name)) {
             enabling_.push_back(*step & ~1u); /* tests/board/interrupt_in_ccm.py */
         }

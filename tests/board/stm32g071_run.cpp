@@ -42,6 +42,7 @@ hal_facts board_facts()
     facts.pwm_half_period_counts = 3200;
     facts.dead_time_s = 5e-9;
     facts.leg_delay_s = 20e-9;
+    facts.low_state_s = 4e-6;
     facts.converter_codes = 4096;
     facts.current_A_per_code = 12.0 / 4096.0;
     facts.current_zero_code = 2048;
