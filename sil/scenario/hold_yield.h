@@ -23,7 +23,21 @@ namespace scenario
  * of a torque that saturation diminishes; and what u, half a code of the leg voltages, feigns while
  * a step is followed. No value: with an encoder, and of a motor that the drive refuses.
  */
-std::optional<double> hold_yield_rad(const Scenario &scenario, const Record &record);
+class HoldYield : public RowReader
+{
+  public:
+    explicit HoldYield(const Scenario &scenario);
+
+    void read(const Record &record, const Row &row) override;
+    std::optional<double> yield_rad() const; /* of the rows read */
+
+  private:
+    const Scenario &scenario_;
+    std::optional<drive_hold_bearing> bearing_;
+    bool first_ = true;
+    double load_Nm_ = 0; /* of the row before */
+    double unnoticed_Nm_ = 0, most_unnoticed_Nm_ = 0;
+};
 
 } // namespace scenario
 
