@@ -29,7 +29,21 @@ namespace scenario
  *
  *   (T_detent + T_friction) / (J w0^2)  +  a count
  */
-std::optional<double> hold_yield_rad(const Scenario &scenario, const Record &record);
+class HoldYield : public RowReader
+{
+  public:
+    explicit HoldYield(const Scenario &scenario);
+
+    void read(const Record &record, const Row &row) override;
+    std::optional<double> yield_rad() const; /* of the rows read */
+
+  private:
+    const Scenario &scenario_;
+    std::optional<drive_hold_bearing> bearing_;
+    bool first_ = true;
+    double load_Nm_ = 0; /* of the row before */
+    double unnoticed_Nm_ = 0, most_unnoticed_Nm_ = 0;
+};
 
 } // namespace scenario
 

@@ -39,11 +39,12 @@ void check_image(const Scenario &scenario, const std::string &numeric)
     }
 }
 
-ImageRun run_image(const Scenario &scenario, const std::string &numeric, std::uint64_t seed)
+ImageRun run_image(const Scenario &scenario, const std::string &numeric, std::uint64_t seed,
+                   Record &record)
 {
     virtual_board::VirtualBoard board(plant_of(scenario, seed), scenario.given.image, numeric,
                                       scenario.drive);
-    ImageRun result{run_typed(scenario, board), board.report()};
+    ImageRun result{run_typed(scenario, board, record), board.report()};
     /* From S(k), as hal.h counts the deadline. */
     const virtual_board::InterruptAccount::Summary &interrupt = result.board.interrupt;
     const std::uint64_t worst = interrupt.latency.worst + interrupt.total.worst.worst;

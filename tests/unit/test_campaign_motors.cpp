@@ -23,7 +23,7 @@ constexpr std::size_t settled = rows - 2500;
 class Course
 {
   public:
-    explicit Course(int encoder_counts = 0) : record_(1e-4)
+    explicit Course(int encoder_counts = 0)
     {
         scenario_.motor.params.rotor_teeth = 50;
         scenario_.plant.sensors.encoder_counts_per_turn = encoder_counts;
@@ -75,17 +75,25 @@ class Course
     }
     double limit_rad() const
     {
-        return hold_yield_rad(scenario_, record_).value_or(0);
+        return result_.hold_yield_rad ? *result_.hold_yield_rad
+                                      : HoldYield(scenario_).yield_rad().value_or(0);
     }
 
     CampaignOutcome outcome()
     {
-        record_.append(Row{}); /* of the enabling */
-        record_.start_time_here();
+        Record record(1e-4);
+        const std::unique_ptr<CampaignWatch> watch = motors_campaign.watch(scenario_);
+        HoldYield yield(scenario_);
+        record.add_reader(*watch);
+        record.add_reader(yield);
+        record.append(Row{}); /* of the enabling */
+        record.start_time_here();
         for (const Row &row : course_) {
-            record_.append(row);
+            record.append(row);
         }
-        return motors_campaign.judge(result_, record_);
+        record.end();
+        result_.hold_yield_rad = yield.yield_rad();
+        return watch->judge(result_);
     }
     std::string verdict()
     {
@@ -96,7 +104,6 @@ class Course
     Scenario scenario_;
     Result result_;
     std::vector<Row> course_ = std::vector<Row>(rows);
-    Record record_;
 };
 
 void expect(const char *verdict, Course &course)

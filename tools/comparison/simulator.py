@@ -62,7 +62,7 @@ class Simulator:
         command += (["--seed", seeds[0]] if seeds[0] == seeds[1] else
                     ["--seeds", f"{seeds[0]}-{seeds[1]}"])
         if out:
-            command += ["--out", out]
+            command += ["--out", out, "--trace", "npy"]
         return json.loads(self._call(command, files=files))
 
     def run_each(self, scenarios, **how):
