@@ -40,7 +40,7 @@
 typedef int32_t num_t;
 typedef int32_t unit_t;
 typedef struct {
-    int16_t mantissa; /* value = mantissa 2^(left - right - 16) */
+    _Alignas(4) int16_t mantissa; /* value = mantissa 2^(left - right - 16) */
     uint8_t left;
     uint8_t right;
 } coef_t;
@@ -88,9 +88,42 @@ static inline num_t num_mul_unit_nearest(num_t a, unit_t u)
 #endif
 }
 
+/*
+ * In Arm code a gain is one word, loaded at once; a shift takes its count from the lowest byte of a
+ * register, whatever stands above it.
+ */
 static inline num_t num_mul_coef(num_t a, coef_t k)
 {
+#if defined(__ARM_ARCH_6M__)
+    const union {
+        coef_t coef;
+        uint32_t word;
+    } gain = {k};
+    int32_t product = a >> 16;
+    int32_t mantissa = (int16_t)gain.word;
+    int32_t low = a & 0xffff;
+    uint32_t count = gain.word >> 16;
+
+    product = product * mantissa + ((low * mantissa) >> 16);
+    __asm__(".syntax unified\n\tlsls %0, %0, %1\n\tlsrs %1, %1, #8\n\tasrs %0, %0, %1"
+            : "+l"(product), "+l"(count)
+            :
+            : "cc");
+    return product;
+#elif defined(__ARM_FEATURE_DSP)
+    const union {
+        coef_t coef;
+        uint32_t word;
+    } gain = {k};
+    int32_t product;
+    uint32_t count = gain.word >> 16;
+
+    __asm__("smulwb %0, %1, %2" : "=r"(product) : "r"(a), "r"(gain.word));
+    __asm__("lsl %0, %0, %1\n\tlsr %1, %1, #8\n\tasr %0, %0, %1" : "+r"(product), "+r"(count));
+    return product;
+#else
     return num_shift_left(num_mul_high16(a, k.mantissa), k.left) >> k.right;
+#endif
 }
 
 /* k (1 + more), for |more| < 1/2 and a gain below 2^14. */
