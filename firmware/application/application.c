@@ -8,6 +8,11 @@
 
 static const struct hal_outputs bridge_off = {.bridge_on = false};
 
+__attribute__((noinline)) uint32_t application_typed_delay(const struct application *application)
+{
+    return drive_typed_delay_periods(application->facts.control_period_s);
+}
+
 /* By `settings`, which are in force then. */
 static bool design(struct application *application, const struct drive_settings *settings,
                    bool starts, char error[DRIVE_ERROR_TEXT])
@@ -127,7 +132,7 @@ static bool prepare_enable(struct application *application, uint32_t *at_period,
     const uint32_t period = interrupt_view_period(drive);
 
     if ((int32_t)(*at_period - period) <= 0) {
-        *at_period = period + drive_typed_delay_periods(application->facts.control_period_s);
+        *at_period = period + application_typed_delay(application);
     }
     return true;
 }

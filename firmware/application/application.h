@@ -69,6 +69,9 @@ bool application_init_with(struct application *application, const struct hal *bo
 bool application_command(struct application *application, struct drive_command *command,
                          uint32_t asked_in, char error[DRIVE_ERROR_TEXT]);
 
+/* DRIVE_TYPED_DELAY_s in control periods. */
+uint32_t application_typed_delay(const struct application *application);
+
 /* Background: by this period the bridge is off, and no enable waits: what is set waits for one. */
 bool application_settings_wait(const struct application *application, uint32_t at_period);
 

@@ -130,8 +130,7 @@ static bool address(const struct application *application, struct command_line *
     const uint32_t lead = drive_command_is(line->command.kind, DRIVE_AHEAD)
                               ? planner_lead_periods(&application->drive)
                               : 0u;
-    const uint32_t earliest =
-        line_period + drive_typed_delay_periods(application->facts.control_period_s) + lead;
+    const uint32_t earliest = line_period + application_typed_delay(application) + lead;
 
     line->command.at_period = line->at_given ? line->at_period : earliest;
     if ((int32_t)(line->command.at_period - earliest) >= 0) {

@@ -271,8 +271,7 @@ static bool waits(const struct application *application)
 {
     const uint32_t period = interrupt_view_period(&application->drive);
 
-    return application_settings_wait(
-        application, period + drive_typed_delay_periods(application->facts.control_period_s));
+    return application_settings_wait(application, period + application_typed_delay(application));
 }
 
 /* Puts `changed` in force, at the next enable or at once. */

@@ -78,7 +78,12 @@ static inline void actuate(const struct hal_outputs *outputs)
         __enable_irq();
     }
     control.wanted = on;
+}
+
+static inline void have_actuated(uint32_t peak)
+{
     deadline_guard_met();
+    control_cycles_count(&application.cycles, deadline_guard_now() - peak);
 }
 
 IN_CCM(control_interrupt)
@@ -90,5 +95,5 @@ void control_interrupt(void)
     const uint32_t peak = deadline_guard_sampling_instant();
 
     actuate(application_control_interrupt(&application, &control.samples));
-    control_cycles_count(&application.cycles, deadline_guard_now() - peak);
+    have_actuated(peak);
 }
