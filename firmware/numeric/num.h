@@ -149,6 +149,19 @@ static inline num_t num_mul(num_t a, num_t b)
 #endif
 }
 
+/* The same to nearest. */
+static inline num_t num_mul_nearest(num_t a, num_t b)
+{
+    const int32_t factor = b >> (NUM_FRACTION_BITS - 14);
+
+#if defined(__ARM_ARCH_6M__)
+    return num_shift_left((a >> 16) * factor, 2) +
+           ((int32_t)(((uint32_t)a & 0xffffu) * (uint32_t)factor + 0x2000u) >> 14);
+#else
+    return (num_t)(((int64_t)a * factor + 0x2000) >> 14);
+#endif
+}
+
 static inline unit_t unit_mul(unit_t a, unit_t b)
 {
     return (a * b) >> 15;
@@ -243,6 +256,11 @@ static inline num_t num_mul_coef_nearest(num_t a, coef_t k)
 }
 
 static inline num_t num_mul(num_t a, num_t b)
+{
+    return a * b;
+}
+
+static inline num_t num_mul_nearest(num_t a, num_t b)
 {
     return a * b;
 }
