@@ -331,8 +331,10 @@ __attribute__((noinline)) static void stop_in_fault(struct drive *drive, enum dr
     *outputs = (struct hal_outputs){.bridge_on = false};
 }
 
-/* Last of all, as nothing is kept for it: a step of the monitor. Apart: rare. */
-IN_PLACE void watch_synchronism(struct drive *drive, struct hal_outputs *outputs)
+/* Last of all, as nothing is kept for it: a step of the monitor. Apart: its switch would be a table
+   of addresses in the interrupt's body. */
+__attribute__((noinline)) static void watch_synchronism(struct drive *drive,
+                                                        struct hal_outputs *outputs)
 {
     const enum drive_fault fault = synchronism_watch(drive);
 

@@ -102,7 +102,8 @@ static void adapt_resistance(struct estimate *x, const struct encoder_observer_p
                            x->winding.resistance - num_mul_coef(along, params->gain_resistance));
 }
 
-/* By how much the rotor is faster than predicted, as the current is another. */
+/* By how much the rotor is faster than predicted, as the current is another. To nearest, as are its
+   turns: what a floor left would be taken for a speed. */
 static num_t speed_of_current(const struct estimate *x, const struct motor_model_params *model,
                               struct phases current)
 {
@@ -117,7 +118,7 @@ static void correct(struct encoder_observer *observer, const struct encoder_obse
     struct estimate *x = &observer->estimate;
     const struct position measured = encoder_step(&observer->encoder, &params->encoder, count);
     const num_t more_speed = speed_of_current(x, &params->model, current);
-    const num_t more_turns = half_period_turns(&params->model, more_speed);
+    const num_t more_turns = num_mul_coef_nearest(more_speed, params->model.half_turns_per_speed);
     const num_t innovation =
         num_limit(position_difference(measured, x->next.position) - more_turns, NUM(0.25));
 

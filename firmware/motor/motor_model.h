@@ -78,12 +78,13 @@ static inline struct phases predict_current(const struct motor_model_params *par
     return next;
 }
 
-/* The same under a voltage that differs by `more` over the period. */
+/* The same under a voltage that differs by `more` over the period. To nearest: little else corrects
+   what a floor would leave of each small difference. */
 static inline struct phases forced_current(const struct winding *winding, struct phases predicted,
                                            struct phases more)
 {
-    const struct phases next = {predicted.a + num_mul(more.a, winding->admittance),
-                                predicted.b + num_mul(more.b, winding->admittance)};
+    const struct phases next = {predicted.a + num_mul_nearest(more.a, winding->admittance),
+                                predicted.b + num_mul_nearest(more.b, winding->admittance)};
     return next;
 }
 

@@ -105,11 +105,15 @@ static inline num_t num_mul_coef(num_t a, coef_t k)
     uint32_t count = gain.word >> 16;
 
     product = product * mantissa + ((low * mantissa) >> 16);
+#if defined(__arm__)
     __asm__(".syntax unified\n\tlsls %0, %0, %1\n\tlsrs %1, %1, #8\n\tasrs %0, %0, %1"
             : "+l"(product), "+l"(count)
             :
             : "cc");
     return product;
+#else /* the product is tested on the host, too */
+    return num_shift_left(product, count & 0xffu) >> (count >> 8);
+#endif
 #elif defined(__ARM_FEATURE_DSP)
     const union {
         coef_t coef;
@@ -164,6 +168,19 @@ static inline num_t num_mul(num_t a, num_t b)
            ((int32_t)(((uint32_t)a & 0xffffu) * (uint32_t)factor) >> 14);
 #else
     return (num_t)(((int64_t)a * factor) >> 14);
+#endif
+}
+
+/* The same to nearest. */
+static inline num_t num_mul_nearest(num_t a, num_t b)
+{
+    const int32_t factor = b >> (NUM_FRACTION_BITS - 14);
+
+#if defined(__ARM_ARCH_6M__)
+    return num_shift_left((a >> 16) * factor, 2) +
+           ((int32_t)(((uint32_t)a & 0xffffu) * (uint32_t)factor + 0x2000u) >> 14);
+#else
+    return (num_t)(((int64_t)a * factor + 0x2000) >> 14);
 #endif
 }
 
@@ -266,6 +283,11 @@ static inline coef_t coef_more(coef_t k, num_t more)
 }
 
 static inline num_t num_mul(num_t a, num_t b)
+{
+    return a * b;
+}
+
+static inline num_t num_mul_nearest(num_t a, num_t b)
 {
     return a * b;
 }
