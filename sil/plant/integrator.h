@@ -16,13 +16,10 @@ namespace integrator
 
 /*
  * A series of order P over a step h leaves out about (rate h)^(P+1) / (P+1)! of what happens in
- * the step. Dead times are so short that the low order does; elsewhere the high order, in steps of
- * at most longest_step / rate.
+ * the step: the lowest order that a segment's length allows, the highest in as many steps as it
+ * takes. These are the greatest rate x step of each; they leave out at most 1.4e-9.
  */
-constexpr int low_order = 3;
-constexpr int high_order = MotorCoefficients::highest_order;
-constexpr double low_order_step = 1.0 / 100.0;
-constexpr double longest_step = 0.1;
+constexpr double reach_3 = 0.01, reach_4 = 0.04, reach_5 = 0.1;
 constexpr double least_progress = 1e-9; /* of a step to an event, however rounding falls */
 
 /* The unknowns as power series in the time since the start of the step. The speed stands in both
@@ -262,22 +259,31 @@ template <int order, bool track_energy>
     return h;
 }
 
+/* To the end of a stretch of constant switches, in steps of at most longest_s. */
+template <int order, bool track_energy>
+[[gnu::always_inline]] inline void cross(const Course &course, const Segment &segment,
+                                         double longest_s)
+{
+    double left_s = segment.duration_s;
+    while (left_s > 0.0) {
+        const double h = left_s < longest_s ? left_s : longest_s;
+        left_s -= step<order, track_energy>(course, segment, h);
+    }
+}
+
 /* Through a timetable; rate: how fast the solution can change, 1/s. */
 template <bool track_energy>
 void follow(const Course &course, const Timetable &timetable, double rate)
 {
     for (const Segment &segment : timetable) {
-        double left_s = segment.duration_s;
-        if (rate * left_s < low_order_step) {
-            while (left_s > 0.0) {
-                left_s -= step<low_order, track_energy>(course, segment, left_s);
-            }
+        const double duration_s = segment.duration_s;
+        const double extent = rate * duration_s;
+        if (extent < reach_3) {
+            cross<3, track_energy>(course, segment, duration_s);
+        } else if (extent < reach_4) {
+            cross<4, track_energy>(course, segment, duration_s);
         } else {
-            const double longest_s = longest_step / rate;
-            while (left_s > 0.0) {
-                const double h = left_s < longest_s ? left_s : longest_s;
-                left_s -= step<high_order, track_energy>(course, segment, h);
-            }
+            cross<5, track_energy>(course, segment, reach_5 / rate);
         }
     }
 }

@@ -23,6 +23,7 @@
 #include "sil/scenario/batch.h"
 #include "sil/scenario/campaign.h"
 #include "sil/scenario/image_run.h"
+#include "sil/scenario/interruption.h"
 #include "sil/scenario/motor_plausibility.h"
 #include "sil/scenario/motor_report.h"
 #include "sil/scenario/output.h"
@@ -565,8 +566,12 @@ void require_standard_output()
 int main(int argc, char **argv)
 {
     try {
+        note_signals();
         require_standard_output();
         return run_program(argc, argv);
+    } catch (const Interrupted &interrupted) {
+        std::fprintf(stderr, "steadystep-sil: interrupted: %s\n", interrupted.what());
+        end_by_signal();
     } catch (const std::exception &error) { /* InputError, and what the machine refuses */
         std::fprintf(stderr, "steadystep-sil: %s\n", in_one_line(error.what()).c_str());
         return bad_input;

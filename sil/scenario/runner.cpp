@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sil/board/typed_line.h"
+#include "sil/scenario/interruption.h"
 #include "sil/scenario/serial_line.h"
 #include "sil/scenario/tape.h"
 #include "sil/scenario/text.h"
@@ -112,6 +113,7 @@ class Runner
   private:
     void control()
     {
+        throw_if_interrupted();
         board_.control();
         line_.listen();
     }

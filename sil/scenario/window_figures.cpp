@@ -121,22 +121,25 @@ bool Cruise::mean(double &position_error, double &lag_s) const
 
 Ripple::Ripple(double period_s)
     : half_(static_cast<std::size_t>(std::floor(ripple_time_s / 2 / period_s + 0.5))),
-      sums_(2 * half_ + 2, 0.0)
+      sums_(2 * half_ + 2, 0.0), middle_(half_ + 2)
 {
 }
 
 void Ripple::add(double value)
 {
     const std::size_t around = 2 * half_ + 1;
-    const double sum = sum_before(rows_) + value;
+    const double sum = sums_[latest_] + value;
+    const std::size_t before_middle = middle_;
+    latest_ = next(latest_);
+    middle_ = next(middle_);
+    sums_[latest_] = sum;
     ++rows_;
-    sums_[rows_ % sums_.size()] = sum;
     if (rows_ < around || half_ == 0) {
         return;
     }
-    const std::size_t row = rows_ - half_ - 1;
-    const double mean = (sum - sum_before(rows_ - around)) / static_cast<double>(around);
-    const double ripple = sum_before(row + 1) - sum_before(row) - mean;
+    const double before_all = sums_[next(latest_)];
+    const double mean = (sum - before_all) / static_cast<double>(around);
+    const double ripple = sums_[middle_] - sums_[before_middle] - mean;
     squares_ += ripple * ripple;
     ++count_;
 }

@@ -89,13 +89,15 @@ class Ripple
     double rms() const; /* NaN: the window is too short */
 
   private:
-    double sum_before(std::size_t rows) const
+    std::size_t next(std::size_t place) const
     {
-        return sums_[rows % sums_.size()];
+        return place + 1 < sums_.size() ? place + 1 : 0;
     }
 
     std::size_t half_;         /* rows on either side */
-    std::vector<double> sums_; /* of the first n rows of the window, for the latest n */
+    std::vector<double> sums_; /* of the first n rows of the window, for the latest n, in a ring */
+    std::size_t latest_ = 0;   /* place of that of all rows, */
+    std::size_t middle_;       /* and of that of all but the latest half */
     std::size_t rows_ = 0, count_ = 0;
     double squares_ = 0;
 };
