@@ -306,8 +306,8 @@ IN_PLACE struct passage observe_sensorless(struct drive *drive, const struct sam
 }
 
 /* Begins a phase or a stop; nothing else that can wait is done in this period, and what has waited
-   for the reference to rest is looked at in the next. */
-IN_PLACE void turn_reference(struct drive *drive)
+   for the reference to rest is looked at in the next. Apart: rare. */
+__attribute__((noinline)) static void turn_reference(struct drive *drive)
 {
     reference_turn(&drive->reference, &drive->params.reference);
     synchronism_wait(drive);
