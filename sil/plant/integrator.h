@@ -192,7 +192,11 @@ Event first_event(const Series<order> &x, const MotorCoefficients &motor, const 
                   const Terminals &terminals, double h)
 {
     Event first = {h};
+    const Phases along = terminals.direction * value<order>(x.current, in_both_lanes(h));
     for (int phase = 0; phase < 2; phase++) {
+        if (terminals.conducting[phase] != 0.0 && !(along[phase] < 0.0)) {
+            continue; /* its current goes on */
+        }
         const Margin<order> margin = margin_of(phase, x, motor, segment, terminals, h);
         const double at_end = value<order>(margin.coefficient, h);
         if (at_end < 0.0) {
