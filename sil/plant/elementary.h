@@ -68,7 +68,7 @@ class Decay
     }
 
   private:
-    static constexpr int kept_bits = 4;
+    static constexpr int kept_bits = 6;
 
     Span decay(double time_s) const;
 

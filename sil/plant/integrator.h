@@ -17,9 +17,10 @@ namespace integrator
 /*
  * A series of order P over a step h leaves out about (rate h)^(P+1) / (P+1)! of what happens in
  * the step: the lowest order that a segment's length allows, the highest in as many steps as it
- * takes. These are the greatest rate x step of each; they leave out at most 1.4e-9.
+ * takes. These are the greatest rate x step of each; they leave out at most 1.4e-9. The second
+ * order serves dead times alone, so that it adds up over a small part of the time.
  */
-constexpr double reach_3 = 0.01, reach_4 = 0.04, reach_5 = 0.1;
+constexpr double reach_2 = 0.0012, reach_3 = 0.01, reach_4 = 0.04, reach_5 = 0.1;
 constexpr double least_progress = 1e-9; /* of a step to an event, however rounding falls */
 
 /* The unknowns as power series in the time since the start of the step. The speed stands in both
@@ -192,7 +193,11 @@ Event first_event(const Series<order> &x, const MotorCoefficients &motor, const 
                   const Terminals &terminals, double h)
 {
     Event first = {h};
+    const Phases along = terminals.direction * value<order>(x.current, in_both_lanes(h));
     for (int phase = 0; phase < 2; phase++) {
+        if (terminals.conducting[phase] != 0.0 && !(along[phase] < 0.0)) {
+            continue; /* its current goes on */
+        }
         const Margin<order> margin = margin_of(phase, x, motor, segment, terminals, h);
         const double at_end = value<order>(margin.coefficient, h);
         if (at_end < 0.0) {
@@ -278,7 +283,9 @@ void follow(const Course &course, const Timetable &timetable, double rate)
     for (const Segment &segment : timetable) {
         const double duration_s = segment.duration_s;
         const double extent = rate * duration_s;
-        if (extent < reach_3) {
+        if (segment.dead_time && extent < reach_2) {
+            cross<2, track_energy>(course, segment, duration_s);
+        } else if (extent < reach_3) {
             cross<3, track_energy>(course, segment, duration_s);
         } else if (extent < reach_4) {
             cross<4, track_energy>(course, segment, duration_s);

@@ -557,6 +557,13 @@ Margin<order> margin_of_bus(const Series<order> &x, double threshold_V, bool bel
     return margin;
 }
 
+/* By far more than rounding, so that no margin need be asked. */
+inline bool clear_of(double bus_V, double threshold_V, bool below)
+{
+    const double distance_V = below ? threshold_V - bus_V : bus_V - threshold_V;
+    return distance_V > 1e-9 * threshold_V;
+}
+
 /* The first end of a mode within a step. */
 enum class End {
     of_step,
@@ -595,8 +602,11 @@ Event first_event(const Series<order> &x, const RealCoefficients &motor,
                   const RealMotorState &state, const Segment &segment, const Mode &mode, double h)
 {
     Event first = {h};
+    const Phases span_s = in_both_lanes(h);
+    const Phases along = mode.direction * value<order>(x.current, span_s);
     for (int phase = 0; phase < 2; phase++) {
-        if (segment.diode_V[phase] != 0.0 && !state.open[phase]) {
+        const bool goes_on = mode.conducting[phase] != 0.0 && !(along[phase] < 0.0);
+        if (segment.diode_V[phase] != 0.0 && !state.open[phase] && !goes_on) {
             const End current = phase == 0 ? End::of_current_a : End::of_current_b;
             consider(first, mode.conducting[phase] != 0.0 ? current : End::of_floating,
                      margin_of_phase(phase, x, motor, segment, mode, h), h);
@@ -607,14 +617,13 @@ Event first_event(const Series<order> &x, const RealCoefficients &motor,
                  margin_of_friction(x, motor, mode, h), h);
     }
     const Supply &supply = motor.supply;
-    if (!supply.stiff()) {
+    const double bus_V = value<order>(x.bus, span_s)[0];
+    if (!supply.stiff() && !clear_of(bus_V, supply.source_V, mode.source_conducts)) {
         consider(first, End::of_source, margin_of_bus(x, supply.source_V, mode.source_conducts), h);
     }
-    if (supply.brake_rate > 0.0) {
-        consider(first, End::of_brake,
-                 margin_of_bus(x, state.braking ? supply.brake_off_V : supply.brake_on_V,
-                               !state.braking),
-                 h);
+    const double brake_V = state.braking ? supply.brake_off_V : supply.brake_on_V;
+    if (supply.brake_rate > 0.0 && !clear_of(bus_V, brake_V, !state.braking)) {
+        consider(first, End::of_brake, margin_of_bus(x, brake_V, !state.braking), h);
     }
     return first;
 }
