@@ -22,8 +22,8 @@ struct sample_set {
     num_t bus;
 };
 
-struct measurement_params measurement_design(const struct hal_facts *facts,
-                                             const struct per_unit *base);
+__attribute__((cold)) struct measurement_params measurement_design(const struct hal_facts *facts,
+                                                                   const struct per_unit *base);
 
 void measurement_reset(struct measurement *measurement);
 

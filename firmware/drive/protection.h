@@ -19,9 +19,9 @@ struct protection_params {
     num_t load_torque_limit;
 };
 
-struct protection_params protection_design(const struct per_unit *base,
-                                           const struct hal_facts *facts,
-                                           const struct drive_settings *settings);
+__attribute__((cold)) struct protection_params
+protection_design(const struct per_unit *base, const struct hal_facts *facts,
+                  const struct drive_settings *settings);
 
 /* Before the control: raw samples and the board's own flags. */
 enum drive_fault protection_check_samples(const struct protection_params *params,

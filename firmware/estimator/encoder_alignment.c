@@ -1,5 +1,6 @@
 #include "firmware/estimator/encoder_alignment.h"
 
+#include "firmware/design/elementary.h"
 #include "firmware/design/hold_frequency.h"
 
 /* On each way: seven angles at which the rotor is read, and one beside them where it turns. */
@@ -39,7 +40,7 @@ static double design_swing(const struct encoder_alignment_task *task, double cur
 {
     const double swing = two_pi / (hold_frequency(task->motor, current_A) * task->period_s);
 
-    return swing < swing_min ? swing_min : swing < swing_max ? swing : swing_max;
+    return larger(smaller(swing, swing_max), swing_min);
 }
 
 static struct alignment_hold design_held(const struct encoder_alignment_task *task,
@@ -77,8 +78,7 @@ struct encoder_alignment_params encoder_alignment_design(const struct encoder_al
     const double teeth = (double)task->motor->rotor_teeth;
     const double count_turns = teeth / (double)task->counts_per_turn;
     const double rest_counts = rest_turns / count_turns;
-    const double bound =
-        error_turns > error_counts * count_turns ? error_turns : error_counts * count_turns;
+    const double bound = larger(error_turns, error_counts * count_turns);
     struct encoder_alignment_params params = {
         .encoder = encoder_design(task->motor->rotor_teeth, task->counts_per_turn),
         .hold = {[ALIGNMENT_WEAK] = design_held(task, 0.5 * task->current_A),

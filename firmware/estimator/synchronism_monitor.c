@@ -60,7 +60,7 @@ static const double torn_s = 3.2e-3;
 static const double doubt_s = 5e-3;
 static const double doubtful_s = 20e-3;
 
-static uint32_t blocks(double time_s, double period_s)
+__attribute__((noinline)) static uint32_t blocks(double time_s, double period_s)
 {
     const double count = time_s / (period_s * SYNCHRONISM_BLOCK_PERIODS);
 
@@ -68,7 +68,8 @@ static uint32_t blocks(double time_s, double period_s)
 }
 
 /* c / 16 for a share k_i of the innovation that is corrected each period. */
-static coef_t voltage_per_sum(const struct motor_model_params *model, double current_gain)
+__attribute__((noinline)) static coef_t voltage_per_sum(const struct motor_model_params *model,
+                                                        double current_gain)
 {
     const double admittance = num_to_double(model->nominal_admittance);
     const double left = 1.0 - admittance * num_to_double(model->nominal_resistance); /* a */
