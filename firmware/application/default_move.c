@@ -1,17 +1,8 @@
 #include "firmware/application/default_move.h"
 
+#include "firmware/design/elementary.h"
 static const double periods_max = 1073741824.0; /* 2^30, the longest move */
 static const double ramp_min_s = 10e-3;
-
-static double smaller(double a, double b)
-{
-    return a < b ? a : b;
-}
-
-static double larger(double a, double b)
-{
-    return a > b ? a : b;
-}
 
 /* Down to a whole number of periods, 0...2^30; NaN to 0. */
 static double down(double x)
@@ -28,7 +19,7 @@ static double up(double x)
 }
 
 /* Newton's iteration from above, until it no longer falls. */
-static double square_root(double x)
+static double root_of(double x)
 {
     double root = larger(x, 1.0);
 
@@ -47,7 +38,7 @@ void default_move_times(struct drive_command *command, const struct default_move
     const struct drive_settings *settings = task->settings;
     const struct motor_params *motor = &settings->motor;
     const double T = task->period_s;
-    const double distance = task->distance_rad < 0.0 ? -task->distance_rad : task->distance_rad;
+    const double distance = magnitude(task->distance_rad);
     const double speed =
         0.25 * smaller(motor->supply_V / motor->torque_constant_Nm_A, settings->speed_limit_rad_s);
     const double acceleration = 0.25 * settings->current_limit_A * motor->torque_constant_Nm_A /
@@ -57,7 +48,7 @@ void default_move_times(struct drive_command *command, const struct default_move
     if (!task->ramp_given) {
         ramp = task->duration_given
                    ? 0.25 * command->duration_s / T
-                   : larger(smaller(speed / acceleration, square_root(distance / acceleration)),
+                   : larger(smaller(speed / acceleration, root_of(distance / acceleration)),
                             ramp_min_s) /
                          T;
         ramp = up(ramp);

@@ -41,9 +41,9 @@ struct current_control {
     struct dq integral; /* z */
 };
 
-struct current_control_params current_control_design(const struct motor_params *motor,
-                                                     const struct per_unit *base, double period_s,
-                                                     double bandwidth_rad_s);
+__attribute__((cold)) struct current_control_params
+current_control_design(const struct motor_params *motor, const struct per_unit *base,
+                       double period_s, double bandwidth_rad_s);
 
 void current_control_reset(struct current_control *control);
 

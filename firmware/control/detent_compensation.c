@@ -1,5 +1,6 @@
 #include "firmware/control/detent_compensation.h"
 
+#include "firmware/design/elementary.h"
 #include <stddef.h>
 
 /* k per electrical turn: nine tenths are learned in four turns, 1/12 turn of the shaft. */
@@ -67,7 +68,7 @@ detent_compensation_design(const struct detent_compensation_task *task)
                                                      : 0.0;
 
     return (struct detent_compensation_params){
-        .play = angle_from_turns(num_from_double(counts > play_min ? counts : play_min)),
+        .play = angle_from_turns(num_from_double(larger(counts, play_min))),
         .lag = coef_from_double(lag_periods * base->turns_per_period),
         .learning = fade_out(learning_share * bandwidth / electrical_rad_s),
         .playing = fade_out(playing_rad_per_period / (electrical_rad_s * task->period_s)),

@@ -72,16 +72,17 @@ struct detent_compensation_task {
     uint32_t counts_per_turn;        /* of the encoder; 0: there is none */
 };
 
-struct detent_compensation_params
+__attribute__((cold)) struct detent_compensation_params
 detent_compensation_design(const struct detent_compensation_task *task);
 
 /* Start-up and background: the coefficients in N m, limited to what they are bounded to. */
-void detent_compensation_set(struct detent_compensation *detent,
-                             const struct detent_compensation_params *params,
-                             const struct per_unit *base,
-                             const double torque_Nm[DETENT_COEFFICIENTS]);
-void detent_compensation_get(const struct detent_compensation *detent, const struct per_unit *base,
-                             double torque_Nm[DETENT_COEFFICIENTS]);
+__attribute__((cold)) void detent_compensation_set(struct detent_compensation *detent,
+                                                   const struct detent_compensation_params *params,
+                                                   const struct per_unit *base,
+                                                   const double torque_Nm[DETENT_COEFFICIENTS]);
+__attribute__((cold)) void detent_compensation_get(const struct detent_compensation *detent,
+                                                   const struct per_unit *base,
+                                                   double torque_Nm[DETENT_COEFFICIENTS]);
 
 /* The bridge is switched on: what was learned is kept, nothing is known of the load. */
 void detent_compensation_reset(struct detent_compensation *detent);

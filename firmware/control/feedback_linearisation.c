@@ -29,11 +29,6 @@ static const double braking_share = 0.6;
 /* Electrical turns; times twice the largest position error it stays inside the number range. */
 #define BRAKING_ERROR_MAX 1.0
 
-static double smaller(double a, double b)
-{
-    return a < b ? a : b;
-}
-
 static unit_t ratio(double x)
 {
     return unit_from_num(num_from_double(x));

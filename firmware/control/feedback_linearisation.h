@@ -52,9 +52,10 @@ struct feedback_linearisation_law_state {
 extern const struct law_gain_list feedback_linearisation_law_gains;
 
 /* false: the period cannot bear the bandwidths, the limit in error. */
-bool feedback_linearisation_law_design(struct feedback_linearisation_law_params *params,
-                                       const struct position_law_task *task,
-                                       char error[DESIGN_ERROR_TEXT]);
+__attribute__((cold)) bool
+feedback_linearisation_law_design(struct feedback_linearisation_law_params *params,
+                                  const struct position_law_task *task,
+                                  char error[DESIGN_ERROR_TEXT]);
 
 struct voltage_demand
 feedback_linearisation_law_step(struct feedback_linearisation_law_state *state,

@@ -37,7 +37,8 @@ struct modulation {
     struct phases voltage; /* what the legs command at the present bus voltage */
 };
 
-struct modulator_params modulator_design(uint32_t half_period_counts, double max);
+__attribute__((cold)) struct modulator_params modulator_design(uint32_t half_period_counts,
+                                                               double max);
 
 void modulator_reset(struct modulator *modulator);
 

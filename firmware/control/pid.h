@@ -22,8 +22,9 @@ struct pid_law_state {
 extern const struct law_gain_list pid_law_gains;
 
 /* false: the loops cannot bear the bandwidth, the limit in error. */
-bool pid_law_design(struct pid_law_params *params, const struct position_law_task *task,
-                    char error[DESIGN_ERROR_TEXT]);
+__attribute__((cold)) bool pid_law_design(struct pid_law_params *params,
+                                          const struct position_law_task *task,
+                                          char error[DESIGN_ERROR_TEXT]);
 
 /* The q current, within +-current_limit. */
 num_t pid_law_step(struct pid_law_state *state, const struct pid_law_params *params,

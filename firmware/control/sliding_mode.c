@@ -3,7 +3,7 @@
 /* Per-unit bound of a term of the surface: two of these and an acceleration stay in range. */
 static const double term_limit = 10.0;
 
-static num_t error_limit(double gain)
+__attribute__((noinline)) static num_t error_limit(double gain)
 {
     const double most = POSITION_DIFFERENCE_MAX;
 
@@ -40,7 +40,7 @@ struct sliding_surface_params sliding_surface_design(const struct position_law_t
 }
 
 /* mu_pu: of a current or an acceleration in per-unit. */
-static struct boundary_layer_params boundary_layer_design(double mu_pu)
+__attribute__((noinline)) static struct boundary_layer_params boundary_layer_design(double mu_pu)
 {
     return (struct boundary_layer_params){
         .levels = coef_from_double(1.0 / mu_pu),

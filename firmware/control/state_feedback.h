@@ -22,8 +22,9 @@ struct state_feedback_law_state {
 extern const struct law_gain_list state_feedback_law_gains;
 
 /* false: the loops cannot bear the bandwidth, the limit in error. */
-bool state_feedback_law_design(struct state_feedback_law_params *params,
-                               const struct position_law_task *task, char error[DESIGN_ERROR_TEXT]);
+__attribute__((cold)) bool state_feedback_law_design(struct state_feedback_law_params *params,
+                                                     const struct position_law_task *task,
+                                                     char error[DESIGN_ERROR_TEXT]);
 
 /* The q current, within +-current_limit. */
 num_t state_feedback_law_step(struct state_feedback_law_state *state,

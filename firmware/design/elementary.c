@@ -36,8 +36,7 @@ double exponential(double x)
     const double ln2_low = 1.90821492927058770002e-10;
     const double log2_e = 1.44269504088896338700;
 
-    x = x < EXPONENT_MAX ? x : EXPONENT_MAX;
-    x = x > -EXPONENT_MAX ? x : -EXPONENT_MAX;
+    x = larger(smaller(x, EXPONENT_MAX), -EXPONENT_MAX);
     int k = (int)(x * log2_e + (x < 0.0 ? -0.5 : 0.5));
     double remainder = (x - k * ln2_high) - k * ln2_low; /* |remainder| <= ln(2) / 2 */
     return factorial_series(remainder, 0, 14) * power_of_two(k);
@@ -75,6 +74,31 @@ double square_root(double x)
         root.value = 0.5 * (root.value + x / root.value);
     }
     return root.value;
+}
+
+double alternating_series(double y, int n, int terms)
+{
+    double sum = 1.0;
+
+    for (int k = n + 2 * (terms - 1); k >= n; k -= 2) {
+        sum = 1.0 - y / (double)(k * (k + 1)) * sum;
+    }
+    return sum;
+}
+
+double smaller(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+double magnitude(double x)
+{
+    return x < 0.0 ? -x : x;
 }
 
 bool is_finite(double x)

@@ -8,9 +8,7 @@
 /* 1 - cos x of y = x^2 < 1, without cancellation; the next term is below 1e-13 of it. */
 static double one_minus_cosine(double y)
 {
-    return 0.5 * y *
-           (1.0 -
-            y / 12.0 * (1.0 - y / 30.0 * (1.0 - y / 56.0 * (1.0 - y / 90.0 * (1.0 - y / 132.0)))));
+    return 0.5 * y * alternating_series(y, 3, 5);
 }
 
 /* 1 - e^-x */

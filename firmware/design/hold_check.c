@@ -29,19 +29,17 @@ double hold_bandwidth(const struct motor_params *motor, double hold_current_A,
                       double current_bandwidth_rad_s)
 {
     const double wanted = bandwidth_share * hold_frequency(motor, hold_current_A);
-    const double least = wanted > bandwidth_min ? wanted : bandwidth_min;
-    const double most = current_bandwidth_rad_s / CURRENT_OVER_POSITION_BANDWIDTH_MIN;
 
-    return least < most ? least : most;
+    return smaller(larger(wanted, bandwidth_min),
+                   current_bandwidth_rad_s / CURRENT_OVER_POSITION_BANDWIDTH_MIN);
 }
 
 double hold_creep_speed(const struct motor_params *motor, double hold_current_A)
 {
     const double below_resonance =
         resonance_share * hold_frequency(motor, hold_current_A) / motor->rotor_teeth;
-    const double blind = creep_back_emf * motor->supply_V / motor->torque_constant_Nm_A;
 
-    return below_resonance < blind ? below_resonance : blind;
+    return smaller(below_resonance, creep_back_emf * motor->supply_V / motor->torque_constant_Nm_A);
 }
 
 double hold_creep_acceleration(const struct motor_params *motor, double hold_current_A)
@@ -183,7 +181,7 @@ double hold_step_shown(const struct hold_task *task, const struct invariant_ekf_
         for (int i = 0; i < states; i++) {
             error[i] = next[i];
         }
-        shown = 1.0 + error[LOAD] > shown ? 1.0 + error[LOAD] : shown;
+        shown = larger(1.0 + error[LOAD], shown);
     }
     return shown;
 }

@@ -250,7 +250,7 @@ double invariant_ekf_thrown_rad(const struct motor_params *motor, double period_
         speed = next_speed - gains->k_speed_q_rad_As * next_current;
         load -= gains->k_load_q_Nm_A * next_current;
         current = (1.0 - k_current) * next_current;
-        peak = angle > peak ? angle : peak;
+        peak = larger(angle, peak);
     }
     return peak * motor->rotor_teeth;
 }

@@ -1,34 +1,12 @@
 #include "firmware/design/modes.h"
 
+#include "firmware/design/complex_number.h"
 #include "firmware/design/elementary.h"
 
 /* Simple roots converge quadratically, in some ten steps from anywhere; pairs of equal real ones
    by half a digit a step, to a distance of 1e-8. */
 enum { ROOT_STEPS = 60 };
 static const double root_tolerance = 1e-24; /* squared, of the largest step */
-
-struct complex_number {
-    double re;
-    double im;
-};
-
-static struct complex_number product(struct complex_number x, struct complex_number y)
-{
-    return (struct complex_number){x.re * y.re - x.im * y.im, x.re * y.im + x.im * y.re};
-}
-
-static struct complex_number quotient(struct complex_number x, struct complex_number y)
-{
-    const double size = y.re * y.re + y.im * y.im;
-
-    return (struct complex_number){(x.re * y.re + x.im * y.im) / size,
-                                   (x.im * y.re - x.re * y.im) / size};
-}
-
-static double square_of_size(struct complex_number x)
-{
-    return x.re * x.re + x.im * x.im;
-}
 
 /* x^n + coefficient[n-1] x^(n-1) + ... + coefficient[0] of a. */
 static void characteristic_polynomial(int n, const struct matrix *a, double coefficient[MATRIX_MAX])
@@ -60,7 +38,7 @@ static struct complex_number value_at(int n, const double coefficient[MATRIX_MAX
     struct complex_number sum = {1.0, 0.0};
 
     for (int i = n - 1; i >= 0; i--) {
-        sum = product(sum, x);
+        sum = complex_product(sum, x);
         sum.re += coefficient[i];
     }
     return sum;
@@ -78,17 +56,17 @@ static double refine(int n, const double coefficient[MATRIX_MAX],
 
         for (int j = 0; j < n; j++) {
             if (j != i) {
-                others = product(others, (struct complex_number){root[i].re - root[j].re,
-                                                                 root[i].im - root[j].im});
+                others = complex_product(others, complex_difference(root[i], root[j]));
             }
         }
-        if (square_of_size(others) > 0.0) {
-            const struct complex_number step = quotient(value_at(n, coefficient, root[i]), others);
+        if (complex_square_of_size(others) > 0.0) {
+            const struct complex_number step =
+                complex_quotient(value_at(n, coefficient, root[i]), others);
 
             root[i].re -= step.re;
             root[i].im -= step.im;
-            if (square_of_size(step) > largest) {
-                largest = square_of_size(step);
+            if (complex_square_of_size(step) > largest) {
+                largest = complex_square_of_size(step);
             }
         }
     }
@@ -103,7 +81,7 @@ static void roots_of(int n, const double coefficient[MATRIX_MAX],
 
     for (int i = 0; i < n; i++) {
         root[i] = guess;
-        guess = product(guess, turn);
+        guess = complex_product(guess, turn);
     }
     for (int step = 0; step < ROOT_STEPS; step++) {
         if (refine(n, coefficient, root) <= root_tolerance) {
@@ -127,8 +105,8 @@ double modes_damping(int n, const struct matrix *a, double period_s, double slow
     roots_of(n, coefficient, root);
     for (int i = 0; i < n; i++) {
         const struct complex_number above = {root[i].re + 2.0, root[i].im};
-        const struct complex_number s = quotient(root[i], above); /* s T/2 */
-        const double size = square_root(square_of_size(s));
+        const struct complex_number s = complex_quotient(root[i], above); /* s T/2 */
+        const double size = square_root(complex_square_of_size(s));
         const double damping = size > 0.5 * slow ? -s.re / size : 1.0;
 
         if (!(damping >= least)) {

@@ -1,43 +1,19 @@
 #include "firmware/design/servocompensator_design.h"
 
+#include "firmware/design/complex_number.h"
 #include "firmware/design/elementary.h"
 
-struct complex_number {
-    double re;
-    double im;
-};
-
-static struct complex_number difference(struct complex_number a, struct complex_number b)
-{
-    return (struct complex_number){a.re - b.re, a.im - b.im};
-}
-
-static struct complex_number product(struct complex_number a, struct complex_number b)
-{
-    return (struct complex_number){a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
-}
-
-static struct complex_number quotient(struct complex_number a, struct complex_number b)
-{
-    const double square = b.re * b.re + b.im * b.im;
-
-    return (struct complex_number){(a.re * b.re + a.im * b.im) / square,
-                                   (a.im * b.re - a.re * b.im) / square};
-}
-
-/* Series for |x| <= 1/2, truncation below 1e-14 of the value. */
+/* |x| <= 1/2: truncation below 1e-14 of the value. */
 static double sine(double x)
 {
-    const double y = x * x;
-
-    return x * (1.0 - y / 6.0 * (1.0 - y / 20.0 * (1.0 - y / 42.0 * (1.0 - y / 72.0))));
+    return x * alternating_series(x * x, 2, 4);
 }
 
 static double one_minus_cosine(double x)
 {
     const double y = x * x;
 
-    return y / 2.0 * (1.0 - y / 12.0 * (1.0 - y / 30.0 * (1.0 - y / 56.0 * (1.0 - y / 90.0))));
+    return 0.5 * y * alternating_series(y, 3, 4);
 }
 
 /* e^(x + jy) - 1: all poles lie about 1, so they are told apart by what they differ from it. */
@@ -56,9 +32,9 @@ static struct complex_number residue(int n, const struct complex_number *p,
     struct complex_number r = {1.0, 0.0};
 
     for (int i = 0; i < n; i++) {
-        r = product(r, difference(q[at], p[i]));
+        r = complex_product(r, complex_difference(q[at], p[i]));
         if (i != at) {
-            r = quotient(r, difference(q[at], q[i]));
+            r = complex_quotient(r, complex_difference(q[at], q[i]));
         }
     }
     return r;

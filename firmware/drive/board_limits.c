@@ -1,15 +1,11 @@
 #include "firmware/drive/board_limits.h"
 
 #include "firmware/control/modulation_limit.h"
+#include "firmware/design/elementary.h"
 #include "firmware/design/refusal.h"
 #include "firmware/design/text.h"
 
 enum { REASON_TEXT = 100, DIGITS = 4 };
-
-static double smaller(double a, double b)
-{
-    return a < b ? a : b;
-}
 
 static double current_range_A(const struct hal_facts *facts)
 {

@@ -1,5 +1,6 @@
 #include "firmware/drive/default_settings.h"
 
+#include "firmware/design/elementary.h"
 #include "firmware/design/feedback_linearisation_design.h"
 #include "firmware/design/loop_bandwidth.h"
 #include "firmware/design/mechanical_control_design.h"
@@ -16,12 +17,7 @@
 #define HOLD_DELAY_MAX_S 0.015
 #define HOLD_DELAY_SWING 4.2 /* 1/w_h */
 
-static double smaller(double a, double b)
-{
-    return a < b ? a : b;
-}
-
-static void put(double *setting, double value)
+__attribute__((noinline)) static void put(double *setting, double value)
 {
     if (*setting != *setting) {
         *setting = value;
@@ -78,7 +74,7 @@ static double current_bandwidth(const struct drive_settings *settings, double pe
     const double swing = 2.0 * hold_frequency(&settings->motor, hold_current_A);
     const double least = fast(settings) ? 2000.0 : 1500.0;
 
-    return smaller(swing > least ? swing : least, CURRENT_BANDWIDTH_PERIOD_MAX / period_s);
+    return smaller(larger(swing, least), CURRENT_BANDWIDTH_PERIOD_MAX / period_s);
 }
 
 /*
@@ -122,7 +118,7 @@ static double swing_bandwidth(const struct motor_params *motor)
     const double winding = WINDING_SWING_SHARE * electromechanical_frequency(motor);
     const double detent = hold_frequency(motor, hold_current_A);
 
-    return winding > detent ? winding : detent;
+    return larger(winding, detent);
 }
 
 static double observer_bandwidth(const struct drive_settings *settings, double period_s,
@@ -130,8 +126,7 @@ static double observer_bandwidth(const struct drive_settings *settings, double p
 {
     const double swing = swing_bandwidth(&settings->motor);
     const double least = fast(settings) ? 1400.0 : 1000.0;
-    const double wanted =
-        smaller(swing > least ? swing : least, ENCODER_OBSERVER_PERIOD_MAX / period_s);
+    const double wanted = smaller(larger(swing, least), ENCODER_OBSERVER_PERIOD_MAX / period_s);
 
     return counts_per_turn == 0u
                ? wanted

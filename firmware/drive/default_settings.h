@@ -35,4 +35,9 @@ struct default_settings_search {
 bool default_settings_step(struct default_settings_search *search, struct drive_settings *settings,
                            double period_s, uint32_t encoder_counts_per_turn);
 
+static inline bool settings_ask_for_hold(const struct drive_settings *settings)
+{
+    return settings->hold_at_rest || settings->hold_on_enable;
+}
+
 #endif

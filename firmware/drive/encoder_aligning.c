@@ -1,5 +1,6 @@
 #include "firmware/drive/encoder_aligning.h"
 
+#include "firmware/design/elementary.h"
 #include "firmware/design/hold_frequency.h"
 
 /* Share of the overcurrent trip that a held rotor's current may reach. */
@@ -16,7 +17,7 @@ double encoder_aligning_current_A(const struct drive_settings *settings, struct 
     if (!hold_damping_design(&hold, &damping_As_rad, ignored)) {
         return settings->hold_current_A; /* which is refused for that */
     }
-    hold.hold_current_A = allowed < trip ? allowed : trip;
+    hold.hold_current_A = smaller(allowed, trip);
     return hold.hold_current_A > settings->hold_current_A &&
                    hold_frequency(hold.motor, hold.hold_current_A) * hold.period_s <=
                        HOLD_FREQUENCY_PERIOD_MAX &&

@@ -25,8 +25,8 @@ struct sample_set {
     int32_t encoder_count;
 };
 
-struct measurement_params measurement_design(const struct hal_facts *facts,
-                                             const struct per_unit *base);
+__attribute__((cold)) struct measurement_params measurement_design(const struct hal_facts *facts,
+                                                                   const struct per_unit *base);
 
 void measurement_reset(struct measurement *measurement, const struct measurement_params *params);
 

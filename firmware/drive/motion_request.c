@@ -1,4 +1,5 @@
 /* From the units of a command to those of the reference: turns and periods. */
+#include "firmware/design/elementary.h"
 #include "firmware/design/refusal.h"
 #include "firmware/drive/board_limits.h"
 #include "firmware/drive/drive.h"
@@ -35,11 +36,6 @@ static struct units units_of(const struct drive *drive)
     const double turn = two_pi / (double)drive->settings.motor.rotor_teeth;
 
     return (struct units){turn, T, turn / T, turn / (T * T), turn / (T * T * T)};
-}
-
-static double smaller(double a, double b)
-{
-    return a < b ? a : b;
 }
 
 /* What the drive can follow, rad/s and rad/s^2. */
@@ -115,8 +111,7 @@ static bool request_retarget(const struct drive *drive, const struct drive_comma
         return false;
     }
     request->target = position_from_rad(command->position_rad, drive->settings.motor.rotor_teeth);
-    distance = command->position_rad - reference_rad(drive);
-    distance = distance < 0.0 ? -distance : distance;
+    distance = magnitude(command->position_rad - reference_rad(drive));
     if (!design_require_within(error, "speed", command->speed_rad_s,
                                distance / (DURATION_MAX * units.period_s), 1e9, "rad/s",
                                "2^30 periods to go") ||
@@ -151,8 +146,7 @@ static bool request_sine(const struct drive *drive, const struct drive_command *
 {
     const struct units units = units_of(drive);
     const double T = units.period_s;
-    const double amplitude =
-        command->amplitude_rad < 0.0 ? -command->amplitude_rad : command->amplitude_rad;
+    const double amplitude = magnitude(command->amplitude_rad);
     const double halves = 2.0 * command->cycles;
     const double stop_s = 0.1;
     const struct speed_limit speed = speed_limit(drive, &units);

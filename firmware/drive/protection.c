@@ -15,7 +15,7 @@ static double estimate_limit(const struct drive_settings *settings, double limit
 }
 
 /* A bound in converter codes; what no code can reach is never reached. */
-static int32_t codes(double value, double per_code)
+__attribute__((noinline)) static int32_t codes(double value, double per_code)
 {
     const double count = value / per_code;
 

@@ -19,9 +19,9 @@ struct protection_params {
     num_t load_torque_limit;
 };
 
-struct protection_params protection_design(const struct per_unit *base,
-                                           const struct hal_facts *facts,
-                                           const struct drive_settings *settings);
+__attribute__((cold)) struct protection_params
+protection_design(const struct per_unit *base, const struct hal_facts *facts,
+                  const struct drive_settings *settings);
 
 /* One comparison: a code below the range wraps to a large number. */
 static inline bool code_is_beyond(struct code_range range, int32_t code)

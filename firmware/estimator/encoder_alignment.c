@@ -1,5 +1,6 @@
 #include "firmware/estimator/encoder_alignment.h"
 
+#include "firmware/design/elementary.h"
 #include "firmware/design/hold_frequency.h"
 
 /* On each way: seven angles at which the rotor is read, and one beside them where it turns. */
@@ -65,8 +66,7 @@ struct encoder_alignment_params encoder_alignment_design(const struct encoder_al
     const double teeth = (double)task->motor->rotor_teeth;
     const double count_turns = teeth / (double)task->counts_per_turn;
     const double rest_counts = rest_turns / count_turns;
-    const double bound =
-        error_turns > error_counts * count_turns ? error_turns : error_counts * count_turns;
+    const double bound = larger(error_turns, error_counts * count_turns);
     struct encoder_alignment_params params = {
         .encoder = encoder_design(task->motor->rotor_teeth, task->counts_per_turn),
         .hold = {[ALIGNMENT_WEAK] = design_held(task, 0.5 * task->current_A),

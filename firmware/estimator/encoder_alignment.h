@@ -125,7 +125,8 @@ struct encoder_alignment_task {
     double settling_s; /* at the final angle, with that current */
 };
 
-struct encoder_alignment_params encoder_alignment_design(const struct encoder_alignment_task *task);
+__attribute__((cold)) struct encoder_alignment_params
+encoder_alignment_design(const struct encoder_alignment_task *task);
 
 /* Before the rotor is held. */
 void encoder_alignment_start(struct encoder_alignment *alignment, int32_t count);

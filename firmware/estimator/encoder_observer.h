@@ -46,10 +46,10 @@ struct encoder_observer_task {
 };
 
 /* false: the bandwidth or the encoder is out of range, the limit in error. */
-bool encoder_observer_design(struct encoder_observer_params *params,
-                             const struct motor_model_params *model,
-                             const struct encoder_observer_task *task,
-                             char error[DESIGN_ERROR_TEXT]);
+__attribute__((cold)) bool encoder_observer_design(struct encoder_observer_params *params,
+                                                   const struct motor_model_params *model,
+                                                   const struct encoder_observer_task *task,
+                                                   char error[DESIGN_ERROR_TEXT]);
 
 /* At rest at a known position with this count, without current. */
 void encoder_observer_reset(struct encoder_observer *observer,

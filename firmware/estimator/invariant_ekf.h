@@ -79,10 +79,10 @@ struct invariant_ekf {
 };
 
 /* Per-unit parameters. */
-struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params *model,
-                                                const struct per_unit *base,
-                                                const struct invariant_ekf_gains *moving,
-                                                const struct invariant_ekf_hold_gains *hold);
+__attribute__((cold)) struct invariant_ekf_params
+invariant_ekf_scale(const struct motor_model_params *model, const struct per_unit *base,
+                    const struct invariant_ekf_gains *moving,
+                    const struct invariant_ekf_hold_gains *hold);
 
 /*
  * At rest at a known position, without current and load. In the first `unloaded_periods` of holding

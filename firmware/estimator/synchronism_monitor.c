@@ -67,7 +67,7 @@ static uint32_t block_periods(double period_s)
     return count > SYNCHRONISM_STEPS ? (uint32_t)(count + 0.5) : SYNCHRONISM_STEPS;
 }
 
-static uint32_t blocks(double time_s, double block_s)
+__attribute__((noinline)) static uint32_t blocks(double time_s, double block_s)
 {
     const double count = time_s / block_s;
 
@@ -75,8 +75,8 @@ static uint32_t blocks(double time_s, double block_s)
 }
 
 /* c over the periods of a block, for a share k_i of the innovation that is corrected in each. */
-static coef_t voltage_per_sum(const struct motor_model_params *model, double current_gain,
-                              double periods)
+__attribute__((noinline)) static coef_t voltage_per_sum(const struct motor_model_params *model,
+                                                        double current_gain, double periods)
 {
     const double admittance = num_to_double(model->nominal_admittance);
     const double left = 1.0 - admittance * num_to_double(model->nominal_resistance); /* a */

@@ -1,5 +1,7 @@
 #include "firmware/motion/motion_plan.h"
 
+#include "firmware/design/elementary.h"
+
 #define ADJUSTMENTS 6
 #define TRIES       7
 #define PERIODS_MAX 4e9 /* what a segment can count; the bounds of a command keep far below */
@@ -116,13 +118,17 @@ void motion_plan_transfer(struct motion_plan *plan, struct motion_state *end,
     append(plan, end, third, (A - n1 * j1 - n2 * j2) / n1);
 }
 
-/* A change of speed: to a peak acceleration in n[0] periods, n[1] periods with it, n[2] to none. */
+/*
+ * A change of speed, from v0 at acceleration a0 to v1: to a peak acceleration in n[0] periods, n[1]
+ * periods with it, n[2] to none.
+ */
 struct speed_change {
+    double v0, a0, v1;
     double n[3];
 };
 
 /* Newton's from a first guess by halving the exponent; 0 for what is not above zero. */
-static double square_root(double x)
+static double root_of(double x)
 {
     union {
         double value;
@@ -140,36 +146,33 @@ static double square_root(double x)
 }
 
 /*
- * Least times to change from speed v0 at acceleration a0 to v1. In the direction of the change,
- * seen from the speed at which a0 alone would fade out, acceleration rises to a peak
- * p = sqrt(j dv + a0^2/2), at most the limit, and falls to zero.
+ * Least times. In the direction of the change, seen from the speed at which a0 alone would fade
+ * out, acceleration rises to a peak p = sqrt(j dv + a0^2/2), at most the limit, and falls to zero.
  */
-static struct speed_change fastest(double v0, double a0, double v1,
-                                   const struct motion_limits *limits)
+static void take_least_times(struct speed_change *change, const struct motion_limits *limits)
 {
     const double j = limits->jerk;
-    const double faded = v0 + a0 * (a0 < 0.0 ? -a0 : a0) / (2.0 * j);
-    const double sign = v1 < faded ? -1.0 : 1.0;
-    const double dv = sign * (v1 - v0);
+    const double a0 = change->a0;
+    const double faded = change->v0 + a0 * magnitude(a0) / (2.0 * j);
+    const double sign = change->v1 < faded ? -1.0 : 1.0;
+    const double dv = sign * (change->v1 - change->v0);
     const double a = sign * a0;
-    const double free_peak = square_root(j * dv + a * a / 2.0);
-    const double peak = free_peak < limits->acceleration ? free_peak : limits->acceleration;
-    struct speed_change change;
+    const double free_peak = root_of(j * dv + a * a / 2.0);
+    const double peak = smaller(free_peak, limits->acceleration);
 
-    change.n[0] = (peak > a ? peak - a : a - peak) / j;
-    change.n[2] = peak / j;
-    change.n[1] = 0.0;
+    change->n[0] = magnitude(peak - a) / j;
+    change->n[2] = peak / j;
+    change->n[1] = 0.0;
     if (free_peak > peak) {
-        change.n[1] = (dv - (a + peak) / 2.0 * change.n[0] - peak / 2.0 * change.n[2]) / peak;
-        change.n[1] = change.n[1] > 0.0 ? change.n[1] : 0.0;
+        change->n[1] =
+            larger((dv - (a + peak) / 2.0 * change->n[0] - peak / 2.0 * change->n[2]) / peak, 0.0);
     }
-    return change;
 }
 
 /* To whole periods: up, but for what is rounding. */
 static double whole(double periods)
 {
-    const double capped = periods < PERIODS_MAX ? periods : PERIODS_MAX;
+    const double capped = smaller(periods, PERIODS_MAX);
     const double rounded = (double)(uint32_t)capped;
 
     return capped - rounded > 1e-6 ? rounded + 1.0 : rounded;
@@ -177,60 +180,53 @@ static double whole(double periods)
 
 static void round_up(struct speed_change *change)
 {
-    change->n[0] = change->n[0] > 1.0 ? whole(change->n[0]) : 1.0;
+    change->n[0] = whole(larger(change->n[0], 1.0));
     change->n[1] = whole(change->n[1]);
-    change->n[2] = change->n[2] > 1.0 ? whole(change->n[2]) : 1.0;
+    change->n[2] = whole(larger(change->n[2], 1.0));
 }
 
 /* The peak acceleration with which the change of these times ends at v1. */
-static double peak_acceleration(const struct speed_change *change, double v0, double a0, double v1)
+static double peak_acceleration(const struct speed_change *change)
 {
     const double *n = change->n;
 
-    return (v1 - v0 - a0 * n[0] / 2.0) / (n[0] / 2.0 + n[1] + n[2] / 2.0);
+    return (change->v1 - change->v0 - change->a0 * n[0] / 2.0) / (n[0] / 2.0 + n[1] + n[2] / 2.0);
 }
 
 /*
  * Lengthens the ends of a change whose jerk rounding has raised above the limit, at the expense of
  * the time at the peak as far as there is some. true: it had to.
  */
-static bool lengthen(struct speed_change *change, double v0, double a0, double v1, double jerk)
+static bool lengthen(struct speed_change *change, double jerk)
 {
-    const double peak = peak_acceleration(change, v0, a0, v1);
-    const double first = whole((peak > a0 ? peak - a0 : a0 - peak) / jerk) - change->n[0];
-    const double last = whole((peak > 0.0 ? peak : -peak) / jerk) - change->n[2];
+    const double peak = peak_acceleration(change);
+    const double first = whole(magnitude(peak - change->a0) / jerk) - change->n[0];
+    const double last = whole(magnitude(peak) / jerk) - change->n[2];
 
     if (first > 0.0) {
         change->n[0] += first;
-        change->n[1] -= first < change->n[1] ? first : change->n[1];
+        change->n[1] -= smaller(first, change->n[1]);
     }
     if (last > 0.0) {
-        const double half = (double)(uint32_t)(last / 2.0);
-
         change->n[2] += last;
-        change->n[1] -= half < change->n[1] ? half : change->n[1];
+        change->n[1] -= smaller((double)(uint32_t)(last / 2.0), change->n[1]);
     }
     return first > 0.0 || last > 0.0;
 }
 
 /* The peak is within its limit, or no further beyond than the motion begins. */
-static bool is_bounded(const struct speed_change *change, double v0, double a0, double v1,
-                       double limit)
+static bool is_bounded(const struct speed_change *change, double limit)
 {
-    const double peak = peak_acceleration(change, v0, a0, v1);
-    const double magnitude = peak < 0.0 ? -peak : peak;
-    const double begin = a0 < 0.0 ? -a0 : a0;
-
-    return magnitude <= (begin > limit ? begin : limit) * (1.0 + 1e-6);
+    return magnitude(peak_acceleration(change)) <=
+           larger(magnitude(change->a0), limit) * (1.0 + 1e-6);
 }
 
 /* Lengthens until it is enough; false: it never is. */
-static bool settles(struct speed_change *change, double v0, double a0, double v1,
-                    const struct motion_limits *limits)
+static bool settles(struct speed_change *change, const struct motion_limits *limits)
 {
     for (int i = 0; i < ADJUSTMENTS; i++) {
-        if (!lengthen(change, v0, a0, v1, limits->jerk)) {
-            return is_bounded(change, v0, a0, v1, limits->acceleration);
+        if (!lengthen(change, limits->jerk)) {
+            return is_bounded(change, limits->acceleration);
         }
     }
     return false;
@@ -249,24 +245,25 @@ static struct motion_limits softened(const struct motion_limits *limits, int tri
                                   .jerk = share * limits->jerk};
 }
 
-static double distance_of(const struct speed_change *change, double v0, double a0, double v1)
+static double distance_of(const struct speed_change *change)
 {
     const double *n = change->n;
-    const double p = peak_acceleration(change, v0, a0, v1);
-    const double v_peak = v0 + (a0 + p) / 2.0 * n[0];
+    const double p = peak_acceleration(change);
+    const double v_peak = change->v0 + (change->a0 + p) / 2.0 * n[0];
     const double v_fall = v_peak + p * n[1];
 
-    return n[0] * (v0 + n[0] * (2.0 * a0 + p) / 6.0) + n[1] * (v_peak + p * n[1] / 2.0) +
-           n[2] * (v_fall + p * n[2] / 3.0);
+    return n[0] * (change->v0 + n[0] * (2.0 * change->a0 + p) / 6.0) +
+           n[1] * (v_peak + p * n[1] / 2.0) + n[2] * (v_fall + p * n[2] / 3.0);
 }
 
+/* From where the plan ends, which a segment before may have left a rounding beside. */
 static void append_change(struct motion_plan *plan, struct motion_state *end,
-                          const struct speed_change *change, double v1)
+                          struct speed_change *change)
 {
-    const double a0 = motion_to_turns(end->acceleration);
-    const double peak = peak_acceleration(change, motion_to_turns(end->speed), a0, v1);
-
-    append(plan, end, (uint32_t)change->n[0], (peak - a0) / change->n[0]);
+    change->v0 = motion_to_turns(end->speed);
+    change->a0 = motion_to_turns(end->acceleration);
+    append(plan, end, (uint32_t)change->n[0],
+           (peak_acceleration(change) - change->a0) / change->n[0]);
     append(plan, end, (uint32_t)change->n[1], 0.0);
     append(plan, end, (uint32_t)change->n[2], -motion_to_turns(end->acceleration) / change->n[2]);
     end->acceleration = 0; /* but for rounding it is */
@@ -275,23 +272,22 @@ static void append_change(struct motion_plan *plan, struct motion_state *end,
 void motion_plan_speed(struct motion_plan *plan, struct motion_state *end, double speed,
                        const struct motion_limits *limits)
 {
-    const double v0 = motion_to_turns(end->speed);
-    const double a0 = motion_to_turns(end->acceleration);
-    struct speed_change change;
+    struct speed_change change = {
+        .v0 = motion_to_turns(end->speed), .a0 = motion_to_turns(end->acceleration), .v1 = speed};
 
-    if (v0 == speed && a0 == 0.0) {
+    if (change.v0 == speed && change.a0 == 0.0) {
         return;
     }
     for (int i = 0; i < TRIES; i++) {
         const struct motion_limits softer = softened(limits, i);
 
-        change = fastest(v0, a0, speed, &softer);
+        take_least_times(&change, &softer);
         round_up(&change);
-        if (settles(&change, v0, a0, speed, limits)) {
+        if (settles(&change, limits)) {
             break;
         }
     }
-    append_change(plan, end, &change, speed);
+    append_change(plan, end, &change);
 }
 
 void motion_plan_cruise(struct motion_plan *plan)
@@ -300,70 +296,69 @@ void motion_plan_cruise(struct motion_plan *plan)
     plan->endless = true;
 }
 
-/* Up to the cruise speed and down from it. */
+/* Up to the cruise speed, a cruise and down to rest. */
 struct move {
     struct speed_change up;
     struct speed_change down;
-};
-
-static double distance_at(struct move *move, double v0, double a0, double cruise,
-                          const struct motion_limits *limits)
-{
-    move->up = fastest(v0, a0, cruise, limits);
-    move->down = fastest(cruise, 0.0, 0.0, limits);
-    /* a change of no length divides by nothing */
-    move->up.n[0] = move->up.n[0] > 1e-9 ? move->up.n[0] : 1e-9;
-    move->down.n[0] = move->down.n[0] > 1e-9 ? move->down.n[0] : 1e-9;
-    return distance_of(&move->up, v0, a0, cruise) + distance_of(&move->down, cruise, 0.0, 0.0);
-}
-
-static double whole_distance(const struct move *move, double v0, double a0, double cruise,
-                             double cruise_periods)
-{
-    return distance_of(&move->up, v0, a0, cruise) + cruise * cruise_periods +
-           distance_of(&move->down, cruise, 0.0, 0.0);
-}
-
-/* Of a move of given times: the distance is linear in it. */
-static double cruise_speed(const struct move *move, double v0, double a0, double distance,
-                           double cruise_periods, const struct motion_limits *limits)
-{
-    const double at_zero = whole_distance(move, v0, a0, 0.0, cruise_periods);
-    const double at_limit = whole_distance(move, v0, a0, limits->speed, cruise_periods);
-
-    return limits->speed * (distance - at_zero) / (at_limit - at_zero);
-}
-
-/* Times and cruise speed of a move. */
-struct move_plan {
-    struct move move;
     double cruise_periods;
-    double cruise;
+    double distance; /* that it is to go */
 };
+
+static void set_cruise(struct move *move, double speed)
+{
+    move->up.v1 = speed;
+    move->down.v0 = speed;
+}
+
+static double distance_at(struct move *move, double cruise)
+{
+    set_cruise(move, cruise);
+    return distance_of(&move->up) + cruise * move->cruise_periods + distance_of(&move->down);
+}
+
+/* What is left of the distance at this cruise speed, reached and left in the least times. */
+static double left_at(struct move *move, double cruise, const struct motion_limits *limits)
+{
+    set_cruise(move, cruise);
+    take_least_times(&move->up, limits);
+    take_least_times(&move->down, limits);
+    /* a change of no length divides by nothing */
+    move->up.n[0] = larger(move->up.n[0], 1e-9);
+    move->down.n[0] = larger(move->down.n[0], 1e-9);
+    return move->distance - distance_at(move, cruise);
+}
+
+/* In the times of the move: the distance is linear in it. */
+static void fit_cruise(struct move *move, const struct motion_limits *limits)
+{
+    const double at_zero = distance_at(move, 0.0);
+    const double at_limit = distance_at(move, limits->speed);
+
+    set_cruise(move, limits->speed * (move->distance - at_zero) / (at_limit - at_zero));
+}
 
 /*
  * The distance grows with the cruise speed: the speed at which nothing is left for the cruise is
  * found by bisection, unless the largest leaves some. With the times rounded to whole periods, the
  * distance is linear in the speed, which then follows exactly.
  */
-static struct move_plan plan_move(double v0, double a0, double distance,
-                                  const struct motion_limits *limits)
+static void plan_move(struct move *move, const struct motion_limits *limits)
 {
     enum { BISECTIONS = 30 };
 
-    struct move_plan plan = {.cruise_periods = 0.0};
-    const bool forward = distance_at(&plan.move, v0, a0, 0.0, limits) <= distance;
+    move->cruise_periods = 0.0;
+    const bool forward = left_at(move, 0.0, limits) >= 0.0;
     double fast = forward ? limits->speed : -limits->speed;
     double slow = 0.0;
-    double left = distance - distance_at(&plan.move, v0, a0, fast, limits);
+    double left = left_at(move, fast, limits);
 
     if (forward ? left >= 0.0 : left <= 0.0) {
-        plan.cruise_periods = whole(left / fast);
+        move->cruise_periods = whole(left / fast);
     } else {
         for (int i = 0; i < BISECTIONS; i++) {
             const double middle = 0.5 * (slow + fast);
 
-            left = distance - distance_at(&plan.move, v0, a0, middle, limits);
+            left = left_at(move, middle, limits);
             if (forward ? left >= 0.0 : left <= 0.0) {
                 slow = middle;
             } else {
@@ -371,25 +366,23 @@ static struct move_plan plan_move(double v0, double a0, double distance,
             }
         }
     }
-    round_up(&plan.move.up);
-    round_up(&plan.move.down);
-    plan.cruise = cruise_speed(&plan.move, v0, a0, distance, plan.cruise_periods, limits);
-    return plan;
+    round_up(&move->up);
+    round_up(&move->down);
+    fit_cruise(move, limits);
 }
 
 /* As settles(), of both changes; the cruise speed follows their times. */
-static bool move_settles(struct move_plan *plan, double v0, double a0, double distance,
-                         const struct motion_limits *limits)
+static bool move_settles(struct move *move, const struct motion_limits *limits)
 {
     for (int i = 0; i < ADJUSTMENTS; i++) {
-        const bool up = lengthen(&plan->move.up, v0, a0, plan->cruise, limits->jerk);
-        const bool down = lengthen(&plan->move.down, plan->cruise, 0.0, 0.0, limits->jerk);
+        const bool up = lengthen(&move->up, limits->jerk);
+        const bool down = lengthen(&move->down, limits->jerk);
 
         if (!up && !down) {
-            return is_bounded(&plan->move.up, v0, a0, plan->cruise, limits->acceleration) &&
-                   is_bounded(&plan->move.down, plan->cruise, 0.0, 0.0, limits->acceleration);
+            return is_bounded(&move->up, limits->acceleration) &&
+                   is_bounded(&move->down, limits->acceleration);
         }
-        plan->cruise = cruise_speed(&plan->move, v0, a0, distance, plan->cruise_periods, limits);
+        fit_cruise(move, limits);
     }
     return false;
 }
@@ -402,25 +395,23 @@ static double sum(const struct speed_change *change)
 void motion_plan_move(struct motion_plan *plan, struct motion_state *end, struct position target,
                       const struct motion_limits *limits)
 {
-    const double v0 = motion_to_turns(end->speed);
-    const double a0 = motion_to_turns(end->acceleration);
-    const double distance = motion_distance(end, target);
-    struct move_plan found;
+    struct move move = {
+        .up = {.v0 = motion_to_turns(end->speed), .a0 = motion_to_turns(end->acceleration)},
+        .distance = motion_distance(end, target)};
 
     for (int i = 0; i < TRIES; i++) {
         const struct motion_limits softer = softened(limits, i);
 
-        found = plan_move(v0, a0, distance, &softer);
-        if (move_settles(&found, v0, a0, distance, limits)) {
+        plan_move(&move, &softer);
+        if (move_settles(&move, limits)) {
             break;
         }
     }
-    append_change(plan, end, &found.move.up, found.cruise);
-    append(plan, end, (uint32_t)found.cruise_periods, 0.0);
-    append_change(plan, end, &found.move.down, 0.0);
-    plan->speed_jump =
-        motion_from_turns(motion_distance(end, target) /
-                          (sum(&found.move.up) + found.cruise_periods + sum(&found.move.down)));
+    append_change(plan, end, &move.up);
+    append(plan, end, (uint32_t)move.cruise_periods, 0.0);
+    append_change(plan, end, &move.down);
+    plan->speed_jump = motion_from_turns(motion_distance(end, target) /
+                                         (sum(&move.up) + move.cruise_periods + sum(&move.down)));
     plan->lands = true;
     plan->target = target;
 }

@@ -1,5 +1,6 @@
 #include "firmware/motion/profile.h"
 
+#include "firmware/design/elementary.h"
 #define TURNS_MAX              1e9         /* differences of two positions stay in int32_t */
 #define DURATION_PERIODS_MAX   1073741824u /* 2^30: distances in 2^-32 turn stay in int64_t */
 #define RAMP_PERIODS_MAX       1048576u    /* 2^20: keeps rounding_speed below 1e-7 turn/period */
@@ -22,12 +23,8 @@ static int64_t in_2_64(double turns)
 static bool require_below(const char *quantity, double value, double limit, const char *reason,
                           double range, const char *unit, char error[DESIGN_ERROR_TEXT])
 {
-    double magnitude = value < 0.0 ? -value : value;
-
-    return limit < range
-               ? design_require_within(error, quantity, magnitude, 0.0, limit, unit, reason)
-               : design_require_within(error, quantity, magnitude, 0.0, range, unit,
-                                       "range of the reference");
+    return design_require_within(error, quantity, magnitude(value), 0.0, smaller(limit, range),
+                                 unit, limit < range ? reason : "range of the reference");
 }
 
 /* The time in whole periods, low...high. */
@@ -93,7 +90,7 @@ static bool scale(struct profile *profile, const struct profile_drive *drive,
     } else {
         profile->acceleration = 2 * in_2_64(acceleration / 2.0);
     }
-    profile->creeps = (speed < 0.0 ? -speed : speed) * turn_rad_s <= drive->creep_rad_s;
+    profile->creeps = magnitude(speed) * turn_rad_s <= drive->creep_rad_s;
     profile->rounding_speed =
         in_2_64(distance_left(distance, profile->acceleration * (int64_t)to_speed, at_speed) / all);
     return true;

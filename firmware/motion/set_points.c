@@ -1,5 +1,7 @@
 #include "firmware/motion/set_points.h"
 
+#include "firmware/design/elementary.h"
+
 void set_points_begin(struct set_points *points, struct position start, uint32_t interval_periods,
                       const struct motion_limits *limits)
 {
@@ -17,11 +19,6 @@ static double turns_between(struct position a, struct position b)
 {
     return motion_distance(
         &(struct motion_state){.turns = b.turns, .fraction = (uint64_t)b.fraction << 32}, a);
-}
-
-static double magnitude(double x)
-{
-    return x < 0.0 ? -x : x;
 }
 
 bool set_points_put(struct set_points *points, struct position position,

@@ -1,5 +1,7 @@
 #include "firmware/motion/sine.h"
 
+#include "firmware/design/elementary.h"
+
 #define KNOTS        4u     /* in a plan; three segments each */
 #define KNOT_MAX_s   1.5e-3 /* from knot to knot: a stop need not wait for long */
 #define KNOT_MAX_RAD 0.075  /* of phase: error below 1e-8 of the amplitude */
@@ -19,14 +21,9 @@ static struct sine_cosine of_phase(uint64_t phase)
     const uint32_t quarter = (uint32_t)(shifted >> 62);
     const int64_t rest = (int64_t)(phase - ((uint64_t)quarter << 62));
     const double x = (double)rest / two_to_64 * two_pi;
-    double s = 1.0;
-    double c = 1.0;
+    const double s = x * alternating_series(x * x, 2, 8);
+    const double c = alternating_series(x * x, 1, 8);
 
-    for (int i = 8; i > 0; i--) {
-        s = 1.0 - x * x / (double)(2 * i * (2 * i + 1)) * s;
-        c = 1.0 - x * x / (double)(2 * i * (2 * i - 1)) * c;
-    }
-    s *= x;
     switch (quarter) {
     case 0:
         return (struct sine_cosine){s, c};
@@ -66,7 +63,6 @@ struct sine sine_design(const struct sine_task *task)
 {
     const double cycles_per_period = task->frequency_Hz * task->period_s;
     struct sine sine = {.amplitude = task->amplitude_turns};
-    double knot;
 
     sine.ramp_periods = (uint32_t)(task->ramp_s / task->period_s + 0.5);
     sine.omega = two_pi * cycles_per_period;
@@ -80,8 +76,8 @@ struct sine sine_design(const struct sine_task *task)
             sine.ramp_periods = (uint32_t)(sine.periods / 2u);
         }
     }
-    knot = KNOT_MAX_RAD / sine.omega;
-    knot = knot < KNOT_MAX_s / task->period_s ? knot : KNOT_MAX_s / task->period_s;
+    const double knot = smaller(KNOT_MAX_RAD / sine.omega, KNOT_MAX_s / task->period_s);
+
     sine.knot_periods = (uint32_t)knot / KNOT_PERIODS * KNOT_PERIODS;
     if (sine.knot_periods < KNOT_PERIODS) {
         sine.knot_periods = KNOT_PERIODS;
@@ -92,7 +88,7 @@ struct sine sine_design(const struct sine_task *task)
 /* The envelope's derivatives are at most 15/8, 10/sqrt 3 and 60 by its ramp, squared, cubed. */
 struct motion_limits sine_peaks(const struct sine *sine)
 {
-    const double A = sine->amplitude < 0.0 ? -sine->amplitude : sine->amplitude;
+    const double A = magnitude(sine->amplitude);
     const double w = sine->omega;
     const double r = sine->ramp_periods > 0u ? 1.0 / (double)sine->ramp_periods : 0.0;
 

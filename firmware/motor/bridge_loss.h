@@ -38,9 +38,10 @@ struct bridge_loss_params {
 };
 
 /* `dead_time_s` 0: nothing is lost. */
-struct bridge_loss_params bridge_loss_design(const struct motor_params *motor,
-                                             const struct per_unit *base, double period_s,
-                                             double dead_time_s);
+__attribute__((cold)) struct bridge_loss_params bridge_loss_design(const struct motor_params *motor,
+                                                                   const struct per_unit *base,
+                                                                   double period_s,
+                                                                   double dead_time_s);
 
 /*
  * The voltage that acted on the phases over S(k-1)...S(k): what was commanded less the loss.

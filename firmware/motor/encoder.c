@@ -1,14 +1,20 @@
 #include "firmware/motor/encoder.h"
 
-/* teeth 2^64 / counts, by long division of two words: 64 bits do not hold the numerator. */
+/* teeth 2^64 / counts, bit by bit: 64 bits do not hold the numerator. */
 struct encoder_params encoder_design(int32_t rotor_teeth, uint32_t counts_per_turn)
 {
-    const uint64_t teeth = (uint64_t)rotor_teeth % counts_per_turn;
-    const uint64_t high = (teeth << 32) / counts_per_turn;
-    const uint64_t rest = (teeth << 32) % counts_per_turn;
-    const struct encoder_params params = {(high << 32) + (rest << 32) / counts_per_turn};
+    uint64_t rest = (uint32_t)rotor_teeth % counts_per_turn;
+    uint64_t quotient = 0;
 
-    return params;
+    for (int bit = 0; bit < 64; bit++) {
+        rest += rest;
+        quotient += quotient;
+        if (rest >= counts_per_turn) {
+            rest -= counts_per_turn;
+            quotient++;
+        }
+    }
+    return (struct encoder_params){quotient};
 }
 
 void encoder_set(struct encoder *encoder, struct position position, int32_t count)

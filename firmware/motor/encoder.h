@@ -19,7 +19,8 @@ struct encoder {
 };
 
 /* counts_per_turn: of the shaft, more than the rotor's teeth. */
-struct encoder_params encoder_design(int32_t rotor_teeth, uint32_t counts_per_turn);
+__attribute__((cold)) struct encoder_params encoder_design(int32_t rotor_teeth,
+                                                           uint32_t counts_per_turn);
 
 /* The rotor is at `position` while the counter shows `count`. */
 void encoder_set(struct encoder *encoder, struct position position, int32_t count);

@@ -22,7 +22,7 @@ VIEW = "firmware/drive/interrupt_view.h"
 
 # Sources that write the members of a block. Those of the others are written by what knows no drive.
 WRITERS = {
-    "params": ["drive", "settings_in_motion"],
+    "params": ["drive", "estimator_design", "settings_in_motion"],
     "settings": ["drive"],
     "supervision": ["state_machine"],
     "synchronism": ["synchronism", "settings_in_motion"],

@@ -41,11 +41,6 @@ void tearDown(void)
 {
 }
 
-static double magnitude(double x)
-{
-    return x < 0.0 ? -x : x;
-}
-
 static void assert_relative(double relative, double expected, double actual, const char *name)
 {
     TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(relative * magnitude(expected), expected, actual, name);

@@ -2,6 +2,7 @@
 #include <string.h>
 #include <unity.h>
 
+#include "firmware/design/elementary.h"
 #include "firmware/motion/reference.h"
 
 static const double two_pi = 6.283185307179586476925;
@@ -56,11 +57,6 @@ static double turns_of(struct position p)
 static double turns_of_rad(double rad)
 {
     return rad * 50.0 / two_pi;
-}
-
-static double magnitude(double x)
-{
-    return x < 0.0 ? -x : x;
 }
 
 static double round_to_int(double x)

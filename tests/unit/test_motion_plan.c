@@ -3,6 +3,7 @@
 #include <string.h>
 #include <unity.h>
 
+#include "firmware/design/elementary.h"
 #include "firmware/motion/reference.h"
 #include "firmware/motion/set_points.h"
 #include "firmware/motion/sine.h"
@@ -37,11 +38,6 @@ void setUp(void)
 
 void tearDown(void)
 {
-}
-
-static double magnitude(double x)
-{
-    return x < 0.0 ? -x : x;
 }
 
 static void step(void)

@@ -36,11 +36,6 @@ static struct phases predicted(struct phases current, struct phases voltage, num
     return predict_current(&model, &winding, current, speed, mid_period, voltage);
 }
 
-static double magnitude(double x)
-{
-    return x < 0.0 ? -x : x;
-}
-
 static void test_per_unit_makes_back_emf_equal_to_speed_and_torque_equal_to_current(void)
 {
     const double km = bench_params.torque_constant_Nm_A;

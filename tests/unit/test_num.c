@@ -4,6 +4,7 @@
  */
 #include <unity.h>
 
+#include "firmware/design/elementary.h"
 #include "firmware/numeric/num.h"
 
 void setUp(void)
@@ -28,11 +29,6 @@ static uint32_t random_bits(void)
 static double random_within(double limit)
 {
     return ((double)random_bits() / 2147483648.0 - 1.0) * limit;
-}
-
-static double magnitude(double x)
-{
-    return x < 0.0 ? -x : x;
 }
 
 /* Weight of the last bit of a result of the given magnitude. */
