@@ -10,7 +10,7 @@ if(NOT STEADYSTEP_CONTROL_kHz IN_LIST control_rates_kHz)
   message(FATAL_ERROR "STEADYSTEP_CONTROL_kHz is '${STEADYSTEP_CONTROL_kHz}'; expected, of "
     "${STEADYSTEP_BOARD}: ${known}${control_rates_reason}")
 endif()
-set(STEADYSTEP_LAWS all CACHE STRING
+set(STEADYSTEP_LAWS "${default_laws}" CACHE STRING
   "Position laws that the image carries, by their names, separated by semicolons; all")
 math(EXPR control_period_us "1000 / ${STEADYSTEP_CONTROL_kHz}")
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
