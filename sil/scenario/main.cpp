@@ -24,6 +24,7 @@
 #include "sil/scenario/campaign.h"
 #include "sil/scenario/image_run.h"
 #include "sil/scenario/interruption.h"
+#include "sil/scenario/junit.h"
 #include "sil/scenario/motor_plausibility.h"
 #include "sil/scenario/motor_report.h"
 #include "sil/scenario/output.h"
@@ -48,7 +49,7 @@ struct Options {
     CommandLine given;
     std::string sweep = "bendjedia-robustness";
     std::string campaign, scenario_file; /* --write-scenario */
-    std::string settings_to;             /* --write-settings */
+    std::string settings_to, junit;      /* --write-settings, --junit */
     double campaign_duration_s = 0;      /* 0: the kind's own */
     std::string numeric, seed, seeds, out, trace = "csv", folder;
     bool json = false;
@@ -230,16 +231,23 @@ int run_command(Options options)
     }
     std::size_t failed = 0;
     std::vector<Result> all;
+    std::vector<std::vector<Result>> by_scenario;
     run_all(options, pointers, !options.out.empty(),
             [&](std::size_t, const std::vector<Result> &results) {
                 const Report one = report(results);
                 failed += one.passed ? 0 : 1;
+                if (!options.junit.empty()) {
+                    by_scenario.push_back(results);
+                }
                 if (options.json) {
                     all.insert(all.end(), results.begin(), results.end());
                 } else {
                     print(one.text + "\n");
                 }
             });
+    if (!options.junit.empty()) {
+        write_file(options.junit, junit_xml(by_scenario));
+    }
     if (options.json) {
         print(summaries_json(all));
     } else {
@@ -491,6 +499,9 @@ int run_program(int argc, char **argv)
         ->check(not_empty());
     run->add_option("--write-settings", options.settings_to,
                     "file that receives the settings given to the drive")
+        ->check(not_empty());
+    run->add_option("--junit", options.junit,
+                    "file that receives the verdicts as JUnit XML, a case per run")
         ->check(not_empty());
     run->add_option("--trace", options.trace,
                     "traces that --out receives: text, or doubles as NumPy keeps them")
