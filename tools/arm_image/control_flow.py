@@ -113,15 +113,22 @@ class Function:
         return address in self._index
 
     def _table(self, instruction):
-        """Targets of a jump by a table that stands behind the instruction."""
+        """Targets of a jump by a table that stands behind the instruction: as many as the comparison
+        before it lets through, for constants may stand behind the table."""
         base = instruction.next
+        index = re.match(r"\[pc, (\w+)", instruction.operands).group(1)
+        before = self.body[: self._index[instruction.address]]
+        compared = next((i for i in reversed(before) if i.base == "cmp"), None)
+        bound = compared and re.fullmatch(rf"{index}, #(\d+)", compared.operands)
         width = 1 if instruction.base == "tbb" else 2
         following = min((a for a in self._index if a >= base), default=base)
         data = self._image.bytes(base, following - base)
         offsets = [
             int.from_bytes(data[k : k + width], "little") for k in range(0, len(data), width)
         ]
-        if width == 1 and offsets and offsets[-1] == 0:
+        if bound:
+            offsets = offsets[: int(bound.group(1)) + 1]
+        elif width == 1 and offsets and offsets[-1] == 0:
             offsets.pop()  # aligns the code behind the table
         targets = sorted({base + 2 * offset for offset in offsets})
         if not targets or any(t not in self._index for t in targets):
