@@ -13,6 +13,9 @@ static const double look_s = 0.04;
 /* 2.8 degrees: a friction of 1.7 % of the holding torque, in a hold of half the rated current. */
 #define BEYOND 0x02000000
 
+/* Errors of 1/2, 1/4, 1/16, 4e-3, 2e-5, 2e-10. */
+#define NEWTON_STEPS 5u
+
 #define QUARTER_TURN 0x40000000u
 #define EIGHTH_TURN  0x20000000u
 
@@ -40,7 +43,7 @@ uint32_t phase_balance_periods(const struct phase_balance_params *params)
     const uint32_t led = 4u * params->lead.swing + params->lead.swing;
     const uint32_t settling = 3u * params->lead.swing;
 
-    return led + settling + params->look + 32u;
+    return led + settling + params->look + 64u;
 }
 
 void phase_balance_start(struct phase_balance *balance, angle_t held)
@@ -63,21 +66,6 @@ static void look(struct channels *mean, const struct channels *winding, coef_t s
     mean->voltage.b += num_mul_coef_nearest(winding->voltage.b, share);
 }
 
-/* x / y for |x| < y/4 and 2^-24 < y < 2, without a division: Newton's method for 1 / y. */
-static num_t quotient(num_t x, num_t y)
-{
-    num_t reciprocal = NUM(1.0);
-
-    for (int doubling = 0; doubling < 24 && y < NUM(0.75); doubling++) {
-        x += x;
-        y += y;
-    }
-    for (int step = 0; step < 5; step++) {
-        reciprocal = num_mul(reciprocal, NUM(2.0) - num_mul(y, reciprocal));
-    }
-    return num_mul(x, reciprocal);
-}
-
 /* From the means; false: beyond what is sound. */
 static bool compare(struct phase_balance *balance, const struct phase_balance_params *params)
 {
@@ -85,15 +73,12 @@ static bool compare(struct phase_balance *balance, const struct phase_balance_pa
     const struct phases voltage = balance->mean.voltage;
     const num_t a = num_mul(voltage.a, current.b);
     const num_t b = num_mul(voltage.b, current.a);
-    const num_t sum = num_abs(a + b);
-    const num_t difference = a + b < NUM(0.0) ? b - a : a - b;
 
-    if (!(num_abs(current.a) > params->current_min && num_abs(current.b) > params->current_min &&
-          num_abs(difference) < num_mul(sum, NUM(2.0 * PHASE_IMBALANCE_MAX)))) {
-        return false;
-    }
-    balance->imbalance = quotient(difference, sum);
-    return num_abs(balance->imbalance) < NUM(PHASE_IMBALANCE_MAX);
+    balance->sum = num_abs(a + b);
+    balance->difference = a + b < NUM(0.0) ? b - a : a - b;
+    balance->reciprocal = NUM(1.0);
+    return num_abs(current.a) > params->current_min && num_abs(current.b) > params->current_min &&
+           num_abs(balance->difference) < num_mul(balance->sum, NUM(2.0 * PHASE_IMBALANCE_MAX));
 }
 
 static enum phase_balance_event go_on(struct phase_balance *balance)
@@ -116,12 +101,37 @@ static enum phase_balance_event settle(struct phase_balance *balance,
     return go_on(balance);
 }
 
-static enum phase_balance_event conclude(struct phase_balance *balance,
+static enum phase_balance_event end_look(struct phase_balance *balance,
                                          const struct phase_balance_params *params)
 {
     (void)go_on(balance);
+    return compare(balance, params) ? PHASES_GO_ON : PHASES_TOO_DIFFERENT;
+}
+
+static enum phase_balance_event lead_back(struct phase_balance *balance)
+{
+    (void)go_on(balance);
     held_angle_lead_to(&balance->held, balance->held.offset > 0 ? -BEYOND : BEYOND);
-    return compare(balance, params) ? PHASES_COMPARED : PHASES_TOO_DIFFERENT;
+    balance->imbalance = num_mul(balance->difference, balance->reciprocal);
+    return num_abs(balance->imbalance) < NUM(PHASE_IMBALANCE_MAX) ? PHASES_COMPARED
+                                                                  : PHASES_TOO_DIFFERENT;
+}
+
+/* Without a division: the sum is scaled to 3/4...3/2, the difference with it, then Newton's method
+   for its reciprocal, whose error of 1/2 at most is squared by each step. */
+static enum phase_balance_event divide(struct phase_balance *balance)
+{
+    if (balance->sum < NUM(0.75)) {
+        balance->sum += balance->sum;
+        balance->difference += balance->difference;
+        balance->periods = 1u;
+    } else if (balance->periods <= NEWTON_STEPS + 1u) {
+        balance->reciprocal =
+            num_mul(balance->reciprocal, NUM(2.0) - num_mul(balance->sum, balance->reciprocal));
+    } else {
+        return lead_back(balance);
+    }
+    return PHASES_GO_ON;
 }
 
 enum phase_balance_event phase_balance_step(struct phase_balance *balance,
@@ -140,7 +150,9 @@ enum phase_balance_event phase_balance_step(struct phase_balance *balance,
         return settle(balance, params);
     case PHASES_LOOKED_AT:
         look(&balance->mean, winding, params->per_look);
-        return balance->periods < params->look ? PHASES_GO_ON : conclude(balance, params);
+        return balance->periods < params->look ? PHASES_GO_ON : end_look(balance, params);
+    case PHASES_DIVIDED:
+        return divide(balance);
     case PHASES_BALANCED:
         break;
     }

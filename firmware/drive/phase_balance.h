@@ -47,6 +47,7 @@ enum phase_balance_stage {
     PHASES_LED,      /* to where both carry the same */
     PHASES_SETTLING, /* there */
     PHASES_LOOKED_AT,
+    PHASES_DIVIDED,  /* a step of the division in each period */
     PHASES_LED_BACK, /* a little further than home */
     PHASES_SETTLING_BEYOND,
     PHASES_LED_HOME,
@@ -59,7 +60,10 @@ struct phase_balance {
     struct held_angle held;
     uint32_t periods; /* of the stage */
     struct channels mean;
-    num_t imbalance; /* d; 0 until it is found */
+    num_t difference; /* numerator and denominator of d */
+    num_t sum;
+    num_t reciprocal; /* of the sum, when it has been scaled to about 1 */
+    num_t imbalance;  /* d; 0 until it is found */
 };
 
 struct phase_balance_task {
@@ -84,6 +88,12 @@ enum phase_balance_event {
     PHASES_TOO_DIFFERENT /* by more than PHASE_IMBALANCE_MAX, or one carries no current */
 };
 
+/* Whether the coming step uses the samples. */
+static inline bool phase_balance_looks(const struct phase_balance *balance)
+{
+    return balance->stage == PHASES_LOOKED_AT;
+}
+
 /* One period, with the samples of S(k). */
 enum phase_balance_event phase_balance_step(struct phase_balance *balance,
                                             const struct phase_balance_params *params,
@@ -92,7 +102,8 @@ enum phase_balance_event phase_balance_step(struct phase_balance *balance,
 /* The held angle turns, or has only just come to rest. */
 static inline bool phase_balance_leads(const struct phase_balance *balance)
 {
-    return balance->stage != PHASES_LOOKED_AT && balance->stage != PHASES_BALANCED;
+    return balance->stage != PHASES_LOOKED_AT && balance->stage != PHASES_DIVIDED &&
+           balance->stage != PHASES_BALANCED;
 }
 
 /* The held angle's, mechanical. */

@@ -42,31 +42,36 @@ static void scale_currents(struct drive *drive)
     estimate_balance_currents(&drive->estimator.estimate, imbalance);
 }
 
-/* Not inlined: with it the caller would be compiled for speed. */
-__attribute__((noinline)) static struct channels winding(const struct drive *drive,
-                                                         const struct hal_samples *samples)
-{
-    return measurement_step(&drive->measurement, &drive->params.measurement, samples).winding;
-}
-
 enum phase_balancing phase_balancing_step(struct drive *drive, const struct hal_samples *samples)
 {
     struct phase_balance *balance = &drive->enabling.balance;
     const struct phase_balance_params *params = &drive->enabling.balance_params;
-    const angle_t home = drive->reference.next.position.fraction;
-    const struct channels now = winding(drive, samples);
-    const enum phase_balance_event event = phase_balance_step(balance, params, &now);
+    struct channels winding = {{NUM(0.0), NUM(0.0)}, {NUM(0.0), NUM(0.0)}};
+
+    if (phase_balance_looks(balance)) {
+        winding =
+            measurement_step(&drive->measurement, &drive->params.measurement, samples).winding;
+    }
+    switch (phase_balance_step(balance, params, &winding)) {
+    case PHASES_GO_ON:
+        break;
+    case PHASES_COMPARED:
+        scale_currents(drive);
+        break;
+    case PHASES_AT_HOME:
+        return PHASES_ARE_BALANCED;
+    case PHASES_TOO_DIFFERENT:
+        return PHASES_DO_NOT_MATCH;
+    }
+    const bool leads = phase_balance_leads(balance);
 
     if (balance->periods == 0u) { /* what a rotor that lags was taken for, at another angle */
         estimator_forget_bias(&drive->estimator, &drive->params.estimator);
     }
-    if (event == PHASES_TOO_DIFFERENT) {
-        return PHASES_DO_NOT_MATCH;
+    if (leads || balance->periods == 0u) { /* else the frame stays where it is */
+        standstill_hold_follow(
+            &drive->hold, drive->reference.next.position.fraction + (angle_t)balance->held.offset,
+            phase_balance_speed(balance, params), leads);
     }
-    if (event == PHASES_COMPARED) {
-        scale_currents(drive);
-    }
-    standstill_hold_follow(&drive->hold, home + (angle_t)balance->held.offset,
-                           phase_balance_speed(balance, params), phase_balance_leads(balance));
-    return event == PHASES_AT_HOME ? PHASES_ARE_BALANCED : PHASES_ARE_BEING_BALANCED;
+    return PHASES_ARE_BEING_BALANCED;
 }

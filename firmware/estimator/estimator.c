@@ -1,5 +1,8 @@
 #include "firmware/estimator/estimator.h"
 
+/* Named, so that the image can place it beside the code. */
+static const struct passage at_rest = {{UNIT(1.0), UNIT(0.0)}, {UNIT(1.0), UNIT(0.0)}};
+
 struct passage estimator_observe(struct estimator *estimator, const struct estimator_params *params,
                                  const struct estimator_input *input)
 {
@@ -9,7 +12,7 @@ struct passage estimator_observe(struct estimator *estimator, const struct estim
     }
     ESTIMATORS(ESTIMATOR_OBSERVE)
 #undef ESTIMATOR_OBSERVE
-    return (struct passage){{UNIT(1.0), UNIT(0.0)}, {UNIT(1.0), UNIT(0.0)}};
+    return at_rest;
 }
 
 void estimator_predict(struct estimator *estimator, const struct estimator_params *params,
