@@ -134,27 +134,31 @@ static enum phase_balance_event divide(struct phase_balance *balance)
     return PHASES_GO_ON;
 }
 
+static bool is_led(enum phase_balance_stage stage)
+{
+    return stage == PHASES_LED || stage == PHASES_LED_BACK || stage == PHASES_LED_HOME;
+}
+
+/* Not by a switch: its helper would lie in flash. */
 enum phase_balance_event phase_balance_step(struct phase_balance *balance,
                                             const struct phase_balance_params *params,
                                             const struct channels *winding)
 {
+    const enum phase_balance_stage stage = balance->stage;
+
     balance->periods++;
-    switch (balance->stage) {
-    case PHASES_LED:
-    case PHASES_LED_BACK:
-    case PHASES_LED_HOME:
-        return held_angle_step(&balance->held, &params->lead) ? go_on(balance) : PHASES_GO_ON;
-    case PHASES_SETTLING:
-    case PHASES_SETTLING_BEYOND:
-    case PHASES_SETTLING_HOME:
-        return settle(balance, params);
-    case PHASES_LOOKED_AT:
+    if (stage == PHASES_LOOKED_AT) {
         look(&balance->mean, winding, params->per_look);
         return balance->periods < params->look ? PHASES_GO_ON : end_look(balance, params);
-    case PHASES_DIVIDED:
-        return divide(balance);
-    case PHASES_BALANCED:
-        break;
     }
-    return PHASES_AT_HOME;
+    if (stage == PHASES_DIVIDED) {
+        return divide(balance);
+    }
+    if (stage == PHASES_BALANCED) {
+        return PHASES_AT_HOME;
+    }
+    if (is_led(stage)) {
+        return held_angle_step(&balance->held, &params->lead) ? go_on(balance) : PHASES_GO_ON;
+    }
+    return settle(balance, params);
 }
