@@ -76,10 +76,9 @@ void standstill_hold_leave(struct standstill_hold *hold, uint32_t slow_periods, 
 
 void standstill_hold_consider(struct standstill_hold *hold,
                               const struct standstill_hold_params *params, angle_t reference,
-                              uint32_t slow_periods, num_t position_error, num_t speed)
+                              num_t position_error, num_t speed)
 {
-    if (RARE(slow_periods > params->delay_periods) &&
-        num_abs(position_error) < params->error_limit && num_abs(speed) < params->speed_limit) {
+    if (num_abs(position_error) < params->error_limit && num_abs(speed) < params->speed_limit) {
         standstill_hold_enter(hold, reference);
     }
 }

@@ -268,14 +268,11 @@ __attribute__((noinline)) static bool step_outside_operation(struct drive *drive
     return state_machine_powered(drive);
 }
 
-/* Enters the fault that the samples show, if any; true: they show none. Apart: rare. */
-__attribute__((noinline)) static bool samples_are_good(struct drive *drive,
-                                                       const struct hal_samples *samples)
+/* Enters the fault that the samples show, if any. Apart: rare. */
+__attribute__((noinline)) static void enter_fault_of(struct drive *drive,
+                                                     const struct hal_samples *samples)
 {
-    const enum drive_fault fault = protection_check_samples(&drive->params.protection, samples);
-
-    state_machine_fault(drive, fault);
-    return fault == DRIVE_FAULT_NONE;
+    state_machine_fault(drive, protection_check_samples(&drive->params.protection, samples));
 }
 
 /* A command may be due, or the state is another than operation. */
@@ -293,7 +290,7 @@ step_with_commands(struct drive *drive, const struct hal_samples *samples)
         return false;
     }
     if (!was_powered) { /* it has only been reset; and a fault is entered at once */
-        (void)samples_are_good(drive, samples);
+        enter_fault_of(drive, samples);
     }
     return was_powered;
 }
@@ -309,6 +306,9 @@ bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
             return false;
         }
     }
-    return protection_passes(&drive->params.protection, samples) ||
-           samples_are_good(drive, samples);
+    if (RARE(!protection_passes(&drive->params.protection, samples))) {
+        enter_fault_of(drive, samples);
+        return false;
+    }
+    return true;
 }

@@ -43,6 +43,7 @@ void reference_reset(struct reference *r, struct position position)
     r->jerks = false;
     r->jerk = 0;
     r->jerk_sixth = 0;
+    r->course = REFERENCE_TURNS;
     r->epoch++;
     place(r, position);
 }
@@ -58,6 +59,7 @@ bool reference_load(struct reference *r, struct profile *profile)
     r->at.speed = profile->rounding_speed;
     r->creeps = profile->creeps;
     r->stopped = false;
+    r->course = REFERENCE_TURNS;
     return true;
 }
 
@@ -69,6 +71,7 @@ void reference_stop(struct reference *r)
         r->next.speed = NUM(0.0);
     }
     r->stop_requested = r->phase != REFERENCE_REST;
+    r->course = REFERENCE_TURNS;
 }
 
 /*
@@ -233,6 +236,7 @@ bool reference_take_over(struct reference *r, const struct motion_plan *plan)
     r->continuation = NULL;
     r->phase = REFERENCE_PLANNED;
     r->periods_left = r->periods_left > 0u ? 1u : 0u;
+    r->course = REFERENCE_TURNS;
     return true;
 }
 
@@ -262,8 +266,61 @@ void reference_skip(struct reference *r, uint32_t periods)
     }
 }
 
-void reference_turn(struct reference *r, const struct reference_params *params)
+/* Creeps: with a rotor that is held, its ramps too, in motion the cruise alone. */
+static bool is_slow(const struct reference *r, const struct reference_params *params, bool held)
 {
+    const struct reference_sample *sample = &r->next;
+
+    return !sample->moving ||
+           (r->creeps && num_abs(sample->speed) < params->creep_speed &&
+            num_abs(sample->acceleration) <= (held ? params->creep_acceleration : NUM(0.0)));
+}
+
+/* Of the steps that follow. */
+static enum reference_course course_of(const struct reference *r)
+{
+    if (r->phase == REFERENCE_REST) {
+        return REFERENCE_STILL;
+    }
+    if (r->phase < REFERENCE_JERK_TO_ACCELERATE || r->creeps) {
+        return REFERENCE_TURNS;
+    }
+    return r->jerks ? REFERENCE_JERKS : REFERENCE_STEADY;
+}
+
+/* Rests, waits to begin, creeps, or is in the first period of a phase. */
+static bool go_on(struct reference *r, const struct reference_params *params)
+{
+    if (r->phase == REFERENCE_QUEUED) { /* it rests for a period more */
+        r->phase = REFERENCE_LOADED;
+    } else if (r->phase != REFERENCE_REST) {
+        reference_advance_with_jerk(r);
+        reference_show(r, params);
+        reference_show_acceleration(r, params);
+    }
+    r->course = course_of(r);
+    return false;
+}
+
+static bool begins(const struct reference *r)
+{
+    return (r->periods_left <= 1u || r->stop_requested) && r->phase != REFERENCE_REST &&
+           r->phase != REFERENCE_QUEUED;
+}
+
+bool reference_turn(struct reference *r, const struct reference_params *params, bool held)
+{
+    if (is_slow(r, params, held)) {
+        reference_count_slow(r);
+    } else {
+        r->slow_periods = 0u;
+    }
+    reference_pass(r);
+    reference_pass_acceleration(r);
+    r->now.moving = r->next.moving;
+    if (!begins(r)) {
+        return go_on(r, params);
+    }
     if (r->periods_left > 0u) {
         reference_advance_with_jerk(r);
     }
@@ -273,6 +330,8 @@ void reference_turn(struct reference *r, const struct reference_params *params)
         cut_short(r);
         r->stop_requested = false;
     }
+    r->course = REFERENCE_TURNS;
     reference_show(r, params);
     reference_show_acceleration(r, params);
+    return true;
 }

@@ -19,6 +19,7 @@
 #include "firmware/motion/motion_plan.h"
 #include "firmware/motion/profile.h"
 #include "firmware/motor/per_unit.h"
+#include "firmware/simulation.h"
 
 /* Acceleration is shown through 32 bits of 2^-38 turn; profile_plan keeps it below 2^31 of them. */
 #define REFERENCE_ACCELERATION_SHIFT 26
@@ -56,7 +57,16 @@ enum reference_phase {
     REFERENCE_REST
 };
 
+/* What a step has to do. Chosen anew by each that does not just go on. */
+enum reference_course {
+    REFERENCE_TURNS, /* a phase begins or ends, it creeps, or something has been asked for */
+    REFERENCE_STILL,
+    REFERENCE_STEADY, /* a phase of constant acceleration */
+    REFERENCE_JERKS
+};
+
 struct reference {
+    enum reference_course course;
     struct reference_sample now;  /* at S(k) */
     struct reference_sample next; /* at S(k+1) */
     uint32_t slow_periods;        /* since it came to rest or to creep, at S(k); saturates */
@@ -113,13 +123,6 @@ static inline bool reference_busy(const struct reference *reference)
     return reference->phase != REFERENCE_REST;
 }
 
-/* The coming step begins no phase and no stop: it is a short one. */
-static inline bool reference_goes_on(const struct reference *reference)
-{
-    return (reference->periods_left > 1u && !reference->stop_requested) ||
-           reference->phase == REFERENCE_REST;
-}
-
 /*
  * Takes a planned profile over, without copying it: it must live until the reference rests, and a
  * stop changes it. Refused (false) while another one runs or if it does not start where the
@@ -159,8 +162,9 @@ static inline void reference_count_as_slow(struct reference *reference)
     reference->slow_periods = UINT32_MAX;
 }
 
-/* The rest of a step that begins a phase or a stop. */
-void reference_turn(struct reference *reference, const struct reference_params *params);
+/* The rest of a step that does not just go on. `held`: the rotor is, and stays so while the
+   reference creeps. true: a phase or a stop has begun. */
+bool reference_turn(struct reference *reference, const struct reference_params *params, bool held);
 
 static inline void reference_travel(struct reference *r, int64_t travel)
 {
@@ -209,59 +213,52 @@ static inline void reference_show_acceleration(struct reference *r,
     r->next.acceleration = num_mul_coef(acceleration, params->acceleration);
 }
 
-/* Rests or creeps: with a rotor that is held, its ramps too, in motion the cruise alone. */
-static inline bool reference_is_slow(const struct reference *r,
-                                     const struct reference_params *params, bool held)
+static inline void reference_count_slow(struct reference *r)
 {
-    const struct reference_sample *sample = &r->next;
-
-    return !sample->moving ||
-           (RARE(r->creeps) && num_abs(sample->speed) < params->creep_speed &&
-            num_abs(sample->acceleration) <= (held ? params->creep_acceleration : NUM(0.0)));
-}
-
-static inline void reference_count_slow(struct reference *r, const struct reference_params *params,
-                                        bool held)
-{
-    if (!reference_is_slow(r, params, held)) {
-        r->slow_periods = 0u;
-    } else if (r->slow_periods < UINT32_MAX) {
+    if (r->slow_periods < UINT32_MAX) {
         r->slow_periods++;
     }
 }
 
-/* Not in the middle of a phase. A profile that has been loaded rests for a period more. */
-static inline bool reference_begins(struct reference *r)
+/* What was to come is now. */
+static inline void reference_pass(struct reference *r)
 {
-    if (r->phase == REFERENCE_QUEUED) {
-        r->phase = REFERENCE_LOADED;
-        return false;
-    }
-    return r->phase != REFERENCE_REST;
-}
-
-/* One control period on; `held`: the rotor is, and stays so while the reference creeps. true: a
-   phase or a stop begins, reference_turn is to follow. */
-static inline bool reference_step(struct reference *r, const struct reference_params *params,
-                                  bool held)
-{
-    reference_count_slow(r, params, held);
     r->now.position.turns = r->at.turns;
     r->now.position.fraction = (angle_t)(r->at.fraction >> 32);
     r->now.speed = r->next.speed;
-    r->now.acceleration = r->next.acceleration;
-    r->now.moving = r->next.moving;
-    if (RARE(r->periods_left <= 1u || r->stop_requested)) {
-        return reference_begins(r);
+}
+
+/* Of the sample what changes in a phase with jerk alone. Only a simulation asks for the present
+   acceleration. */
+static inline void reference_pass_acceleration(struct reference *r)
+{
+    if (SERVES_SIMULATION) {
+        r->now.acceleration = r->next.acceleration;
     }
-    if (RARE(r->jerks)) {
+}
+
+/* One control period on; false: it does not just go on, reference_turn is to follow. */
+static inline bool reference_step(struct reference *r, const struct reference_params *params)
+{
+    const enum reference_course course = r->course;
+
+    if (course == REFERENCE_STILL) {
+        reference_count_slow(r);
+        return true;
+    }
+    if (RARE(course == REFERENCE_TURNS || r->periods_left <= 1u)) {
+        return false;
+    }
+    reference_pass(r);
+    if (RARE(course == REFERENCE_JERKS)) {
+        reference_pass_acceleration(r);
         reference_advance_with_jerk(r);
         reference_show_acceleration(r, params);
     } else {
         reference_advance(r);
     }
     reference_show(r, params);
-    return false;
+    return true;
 }
 
 #endif

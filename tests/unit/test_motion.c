@@ -75,8 +75,8 @@ static struct profile plan(const struct profile_move *move)
 
 static void period(const struct reference_params *with, bool held)
 {
-    if (reference_step(&reference, with, held)) {
-        reference_turn(&reference, with);
+    if (!reference_step(&reference, with)) {
+        (void)reference_turn(&reference, with, held);
     }
 }
 

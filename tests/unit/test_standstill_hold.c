@@ -38,9 +38,9 @@ void tearDown(void)
 /* One period, as the control interrupt has it. */
 static void step(uint32_t rest_periods, double error_electrical_deg, double speed_rad_s)
 {
-    (void)standstill_hold_step(&hold, &params);
-    if (!hold.active) {
-        standstill_hold_consider(&hold, &params, reference, rest_periods,
+    (void)standstill_hold_step(&hold, &params, hold.active ? hold.current : params.motion_current);
+    if (!hold.active && standstill_hold_waits(&params, rest_periods)) {
+        standstill_hold_consider(&hold, &params, reference,
                                  num_from_double(error_electrical_deg / 360.0),
                                  num_from_double(speed_rad_s / base.speed_rad_s));
     }
