@@ -320,8 +320,7 @@ IN_PLACE struct passage observe_sensorless(struct drive *drive, const struct sam
 
     return invariant_ekf_step(&drive->estimator.invariant_ekf,
                               &drive->params.estimator.invariant_ekf, now->winding.current,
-                              surprise, in_force,
-                              (struct rotor_hold){held, &drive->hold.leads});
+                              surprise, in_force, (struct rotor_hold){held, &drive->hold.leads});
 }
 
 /* Where a phase or a stop begins, nothing else that can wait is done in this period, and what has
@@ -329,9 +328,9 @@ IN_PLACE struct passage observe_sensorless(struct drive *drive, const struct sam
 __attribute__((noinline)) static void turn_reference(struct drive *drive)
 {
     if (reference_turn(&drive->reference, &drive->params.reference, drive->hold.active)) {
-        synchronism_wait(drive);
+        synchronism_wait(drive, 2u);
         if (!reference_busy(&drive->reference)) {
-            command_queue_look_next(&drive->commands);
+            command_queue_rest(&drive->commands, drive->supervision.period, 1u);
         }
     }
 }
@@ -455,14 +454,42 @@ __attribute__((noinline)) static void rest(struct drive *drive, const struct hal
     *outputs = state_machine_resting_bridge(drive);
 }
 
+/* Outside operation: whether the control runs all the same, in the first hold. Apart: rare. */
+__attribute__((noinline)) static bool step_outside(struct drive *drive,
+                                                   const struct hal_samples *samples)
+{
+    if (state_machine_powered(drive) && !reference_keeps_still(&drive->reference)) {
+        turn_reference(drive);
+    }
+    return state_machine_step(drive, samples);
+}
+
+/* Reference, states and commands; true: the control runs. */
+IN_PLACE bool prepare(struct drive *drive, const struct hal_samples *samples)
+{
+    const uint32_t period = drive->supervision.period + 1u;
+
+    drive->supervision.period = period;
+    if (RARE(drive->supervision.state != DRIVE_OPERATION_ENABLED)) {
+        return step_outside(drive, samples);
+    }
+    move_reference(drive);
+    return !RARE(command_queue_is_due(&drive->commands, period)) ||
+           state_machine_obey(drive, samples);
+}
+
 void drive_control_cycle(struct drive *drive, const struct hal_samples *samples,
                          struct hal_outputs *outputs)
 {
-    if (RARE(!state_machine_step(drive, samples))) {
+    if (RARE(!prepare(drive, samples))) {
         rest(drive, samples, outputs);
         return;
     }
-    move_reference(drive);
+    if (RARE(!protection_passes(&drive->params.protection, samples))) {
+        state_machine_check_samples(drive, samples);
+        rest(drive, samples, outputs);
+        return;
+    }
     if (RARE(drive->params.path.general)) {
         control_general(drive, samples, outputs);
     } else {

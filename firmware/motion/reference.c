@@ -55,7 +55,7 @@ bool reference_load(struct reference *r, struct profile *profile)
         return false;
     }
     r->profile = profile;
-    r->phase = REFERENCE_QUEUED;
+    r->phase = REFERENCE_LOADED;
     r->at.speed = profile->rounding_speed;
     r->creeps = profile->creeps;
     r->stopped = false;
@@ -65,7 +65,7 @@ bool reference_load(struct reference *r, struct profile *profile)
 
 void reference_stop(struct reference *r)
 {
-    if (r->phase == REFERENCE_QUEUED || r->phase == REFERENCE_LOADED) {
+    if (r->phase == REFERENCE_LOADED) {
         r->phase = REFERENCE_REST;
         r->at.speed = 0;
         r->next.speed = NUM(0.0);
@@ -182,32 +182,52 @@ __attribute__((noinline)) static void begin_next_segment(struct reference *r)
     r->jerk = 2 * segment->jerk_sixth + 4 * segment->jerk_sixth; /* no library call on a M0+ */
 }
 
-/* Begins the first phase of the profile behind the one that has ended which has a length. */
-static inline __attribute__((always_inline)) void begin_next_phase_of_profile(struct reference *r)
+/* From the begin to the cruise; false: none of these phases has a length. */
+static inline __attribute__((always_inline)) bool begin_ramp_up(struct reference *r)
 {
     const struct profile *profile = r->profile;
     const enum reference_phase ended = r->phase;
-    const bool ramped = profile->acceleration_periods > 0u;
     const bool smooth = profile->jerk_periods > 0u;
 
     if (ended < REFERENCE_JERK_TO_ACCELERATE && smooth) {
         r->at.acceleration = 0;
         begin_jerk(r, REFERENCE_JERK_TO_ACCELERATE, profile->jerk, profile->jerk_sixth);
-    } else if (ended < REFERENCE_ACCELERATE && ramped) {
+    } else if (ended < REFERENCE_ACCELERATE && profile->acceleration_periods > 0u) {
         begin(r, REFERENCE_ACCELERATE, profile->acceleration_periods, profile->acceleration);
     } else if (ended < REFERENCE_JERK_TO_CRUISE && smooth) {
         begin_jerk(r, REFERENCE_JERK_TO_CRUISE, -profile->jerk, -profile->jerk_sixth);
-    } else if (ended < REFERENCE_CRUISE && profile->cruise_periods > 0u) {
+    } else if (profile->cruise_periods > 0u) {
         begin(r, REFERENCE_CRUISE, profile->cruise_periods, 0);
-    } else if (ended < REFERENCE_JERK_TO_DECELERATE && smooth) {
+    } else {
+        return false;
+    }
+    return true;
+}
+
+/* From the cruise to rest. */
+static inline __attribute__((always_inline)) void begin_ramp_down(struct reference *r)
+{
+    const struct profile *profile = r->profile;
+    const enum reference_phase ended = r->phase;
+    const bool smooth = profile->jerk_periods > 0u;
+
+    if (ended < REFERENCE_JERK_TO_DECELERATE && smooth) {
         begin_jerk(r, REFERENCE_JERK_TO_DECELERATE, -profile->jerk, -profile->jerk_sixth);
-    } else if (ended < REFERENCE_DECELERATE && ramped) {
+    } else if (ended < REFERENCE_DECELERATE && profile->acceleration_periods > 0u) {
         begin(r, REFERENCE_DECELERATE, profile->acceleration_periods, -profile->acceleration);
     } else if (ended < REFERENCE_JERK_TO_REST && smooth) {
         begin_jerk(r, REFERENCE_JERK_TO_REST, profile->jerk, profile->jerk_sixth);
     } else {
         come_to_rest(r);
         r->slow_periods = ended == REFERENCE_LOADED ? 0u : r->slow_periods; /* a step */
+    }
+}
+
+/* Begins the first phase of the profile behind the one that has ended which has a length. */
+static inline __attribute__((always_inline)) void begin_next_phase_of_profile(struct reference *r)
+{
+    if (r->phase >= REFERENCE_CRUISE || !begin_ramp_up(r)) {
+        begin_ramp_down(r);
     }
 }
 
@@ -258,9 +278,7 @@ void reference_skip(struct reference *r, uint32_t periods)
         } else {
             periods--;
         }
-        if (r->phase == REFERENCE_QUEUED) {
-            r->phase = REFERENCE_LOADED;
-        } else if (r->periods_left == 0u) {
+        if (r->periods_left == 0u) {
             begin_next_phase(r);
         }
     }
@@ -282,19 +300,26 @@ static enum reference_course course_of(const struct reference *r)
     if (r->phase == REFERENCE_REST) {
         return REFERENCE_STILL;
     }
-    if (r->phase < REFERENCE_JERK_TO_ACCELERATE || r->creeps) {
+    if (r->creeps) {
         return REFERENCE_TURNS;
     }
     return r->jerks ? REFERENCE_JERKS : REFERENCE_STEADY;
 }
 
-/* Rests, waits to begin, creeps, or is in the first period of a phase. */
+static inline void advance(struct reference *r)
+{
+    if (r->jerks) {
+        reference_advance_with_jerk(r);
+    } else {
+        reference_advance(r);
+    }
+}
+
+/* Rests, creeps, or is in the first period of a phase. */
 static bool go_on(struct reference *r, const struct reference_params *params)
 {
-    if (r->phase == REFERENCE_QUEUED) { /* it rests for a period more */
-        r->phase = REFERENCE_LOADED;
-    } else if (r->phase != REFERENCE_REST) {
-        reference_advance_with_jerk(r);
+    if (r->phase != REFERENCE_REST) {
+        advance(r);
         reference_show(r, params);
         reference_show_acceleration(r, params);
     }
@@ -304,8 +329,7 @@ static bool go_on(struct reference *r, const struct reference_params *params)
 
 static bool begins(const struct reference *r)
 {
-    return (r->periods_left <= 1u || r->stop_requested) && r->phase != REFERENCE_REST &&
-           r->phase != REFERENCE_QUEUED;
+    return (r->periods_left <= 1u || r->stop_requested) && r->phase != REFERENCE_REST;
 }
 
 bool reference_turn(struct reference *r, const struct reference_params *params, bool held)
@@ -322,7 +346,7 @@ bool reference_turn(struct reference *r, const struct reference_params *params, 
         return go_on(r, params);
     }
     if (r->periods_left > 0u) {
-        reference_advance_with_jerk(r);
+        advance(r);
     }
     if (r->periods_left == 0u) {
         begin_next_phase(r);

@@ -8,10 +8,10 @@
  * cut short by itself, and plans (motion_plan.h), which the background makes, continues and stops.
  *
  * The drive computes at S(k) what acts from S(k+1) on, so each step gives the reference of S(k+1).
- * A profile loaded at S(k) begins at S(k+2): loading it and beginning its first phase are spread
- * over two interrupts. A stop asked for at S(k) takes effect from S(k+2) on for the same reason,
- * and a period later where a phase of the profile begins at S(k+1). Where the acceleration jumps, a
- * sample shows its value behind the jump.
+ * What is asked of it is asked behind a step, for the next one: a profile loaded at S(k) begins at
+ * S(k+2), and a stop asked for at S(k) takes effect from S(k+3) on, a period later where a phase of
+ * the profile begins at S(k+2). Where the acceleration jumps, a sample shows its value behind the
+ * jump.
  */
 #ifndef STEADYSTEP_REFERENCE_H
 #define STEADYSTEP_REFERENCE_H
@@ -44,8 +44,7 @@ struct reference_sample {
 
 /* Phases of a profile, in order; those of no length are passed over. */
 enum reference_phase {
-    REFERENCE_QUEUED, /* loaded in this interrupt; begins in the next */
-    REFERENCE_LOADED,
+    REFERENCE_LOADED, /* begins with the next step */
     REFERENCE_JERK_TO_ACCELERATE,
     REFERENCE_ACCELERATE,
     REFERENCE_JERK_TO_CRUISE,
@@ -178,10 +177,11 @@ static inline void reference_travel(struct reference *r, int64_t travel)
 /* Through a phase without jerk. */
 static inline void reference_advance(struct reference *r)
 {
-    const int64_t travel = r->at.speed + (r->at.acceleration >> 1);
+    const int64_t speed = r->at.speed;
+    const int64_t acceleration = r->at.acceleration;
 
-    r->at.speed += r->at.acceleration;
-    reference_travel(r, travel);
+    r->at.speed = speed + acceleration;
+    reference_travel(r, speed + (acceleration >> 1));
 }
 
 static inline void reference_advance_with_jerk(struct reference *r)
@@ -237,13 +237,22 @@ static inline void reference_pass_acceleration(struct reference *r)
     }
 }
 
+/* One control period at rest; false: it does not rest, or has only just begun to. */
+static inline bool reference_keeps_still(struct reference *r)
+{
+    if (r->course != REFERENCE_STILL) {
+        return false;
+    }
+    reference_count_slow(r);
+    return true;
+}
+
 /* One control period on; false: it does not just go on, reference_turn is to follow. */
 static inline bool reference_step(struct reference *r, const struct reference_params *params)
 {
     const enum reference_course course = r->course;
 
-    if (course == REFERENCE_STILL) {
-        reference_count_slow(r);
+    if (reference_keeps_still(r)) {
         return true;
     }
     if (RARE(course == REFERENCE_TURNS || r->periods_left <= 1u)) {
