@@ -20,6 +20,9 @@ struct standstill_hold_params standstill_hold_design(const struct per_unit *base
     params.enters_at_rest = task->enters_at_rest;
     params.delay_periods =
         task->enters_at_rest ? (uint32_t)(task->delay_s / task->period_s + 0.5) : UINT32_MAX;
+    if (params.delay_periods == 0u) { /* what is not slow never waits for a hold */
+        params.delay_periods = 1u;
+    }
     params.error_limit = num_from_double(error_limit_turns);
     params.speed_limit = num_from_double(ramp_travel_turns / ramp_periods / base->turns_per_period);
     return params;

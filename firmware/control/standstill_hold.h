@@ -103,7 +103,7 @@ void standstill_hold_leave(struct standstill_hold *hold, uint32_t slow_periods, 
 static inline bool standstill_hold_waits(const struct standstill_hold_params *params,
                                          uint32_t slow_periods)
 {
-    return RARE(slow_periods > params->delay_periods);
+    return RARE(slow_periods >= params->delay_periods);
 }
 
 /*

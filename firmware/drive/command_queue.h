@@ -176,8 +176,8 @@ static inline void command_queue_rest(struct command_queue *queue, uint32_t peri
     queue->due = period + wait;
 }
 
-/* Interrupt, when something has acted: passes the queue by if nothing else waits but what is urgent,
-   for `wait` periods. */
+/* Interrupt, when something has acted: passes the queue by if nothing else waits but what is
+   urgent, for `wait` periods. */
 static inline void command_queue_rest_if_empty(struct command_queue *queue, uint32_t period,
                                                uint32_t wait)
 {

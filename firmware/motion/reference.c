@@ -28,6 +28,7 @@ static void place(struct reference *r, struct position position)
 {
     r->at.turns = position.turns;
     r->at.fraction = (uint64_t)position.fraction << 32;
+    r->next.position = position;
 }
 
 void reference_reset(struct reference *r, struct position position)

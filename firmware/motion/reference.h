@@ -167,11 +167,14 @@ bool reference_turn(struct reference *reference, const struct reference_params *
 
 static inline void reference_travel(struct reference *r, int64_t travel)
 {
-    const uint64_t fraction = r->at.fraction + (uint64_t)travel;
+    const uint64_t begun_at = r->at.fraction;
+    const uint64_t fraction = begun_at + (uint64_t)travel;
+    const int32_t turns = r->at.turns + (int32_t)(travel >> 63) + (fraction < begun_at ? 1 : 0);
 
-    r->at.turns += (int32_t)(travel >> 63) + (fraction < r->at.fraction ? 1 : 0);
-    r->at.fraction = fraction;
     r->periods_left--;
+    r->at.turns = turns;
+    r->at.fraction = fraction;
+    r->next.position = (struct position){turns, (angle_t)(fraction >> 32)};
 }
 
 /* Through a phase without jerk. */
@@ -198,8 +201,6 @@ static inline void reference_show(struct reference *r, const struct reference_pa
 {
     const num_t speed = turns_from_angle((int32_t)(r->at.speed >> 32));
 
-    r->next.position.turns = r->at.turns;
-    r->next.position.fraction = (angle_t)(r->at.fraction >> 32);
     r->next.speed = num_mul_coef_fine(speed, params->speed, params->speed_remainder);
 }
 
@@ -223,8 +224,8 @@ static inline void reference_count_slow(struct reference *r)
 /* What was to come is now. */
 static inline void reference_pass(struct reference *r)
 {
-    r->now.position.turns = r->at.turns;
-    r->now.position.fraction = (angle_t)(r->at.fraction >> 32);
+    r->now.position.turns = r->next.position.turns;
+    r->now.position.fraction = r->next.position.fraction;
     r->now.speed = r->next.speed;
 }
 

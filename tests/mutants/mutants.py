@@ -213,7 +213,7 @@ MUTANTS = [
            "term_limit = 10.0", "term_limit = 30.0", "fixed"),
     Mutant(CONTROL + "standstill_hold.h", "standstill_hold",
            "the_hold_begins_when_the_reference_has_rested_for_its_delay",
-           "RARE(slow_periods > params->delay_periods)", "true"),
+           "RARE(slow_periods >= params->delay_periods)", "true"),
     Mutant(CONTROL + "standstill_hold.c", "standstill_hold",
            "the_hold_waits_until_the_rotor_is_near",
            "num_abs(position_error) < params->error_limit &&", ""),
