@@ -467,9 +467,8 @@ __attribute__((noinline)) static bool step_outside(struct drive *drive,
 /* Reference, states and commands; true: the control runs. */
 IN_PLACE bool prepare(struct drive *drive, const struct hal_samples *samples)
 {
-    const uint32_t period = drive->supervision.period + 1u;
+    const uint32_t period = state_machine_begin_period(drive);
 
-    drive->supervision.period = period;
     if (RARE(drive->supervision.state != DRIVE_OPERATION_ENABLED)) {
         return step_outside(drive, samples);
     }

@@ -275,7 +275,9 @@ __attribute__((noinline)) static bool step_outside_operation(struct drive *drive
 
 void state_machine_check_samples(struct drive *drive, const struct hal_samples *samples)
 {
-    state_machine_fault(drive, protection_check_samples(&drive->params.protection, samples));
+    const enum drive_fault fault = protection_check_samples(&drive->params.protection, samples);
+
+    state_machine_fault(drive, fault);
 }
 
 bool state_machine_obey(struct drive *drive, const struct hal_samples *samples)

@@ -14,6 +14,15 @@
 
 #include "firmware/drive/drive.h"
 
+/* First of all in a control interrupt; returns the index of the period. */
+static inline uint32_t state_machine_begin_period(struct drive *drive)
+{
+    const uint32_t period = drive->supervision.period + 1u;
+
+    drive->supervision.period = period;
+    return period;
+}
+
 /* The bridge is on and the control runs; finding-position has the bridge for itself. */
 static inline bool state_machine_powered(const struct drive *drive)
 {
