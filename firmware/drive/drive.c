@@ -280,6 +280,7 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
     params->path.general = position_law_gives_voltage(settings->law) || settings->detent_learning ||
                            settings->standstill_pulses || params->path.infers_voltage ||
                            params->path.zero_delay || !settings->bridge_loss_compensation ||
+                           !settings->feed_forward ||
                            settings->feedback == DRIVE_FEEDBACK_ENCODER ||
                            settings->estimator != DRIVE_ESTIMATOR_INVARIANT_EKF;
     params->enabling.encoder_zero_known =

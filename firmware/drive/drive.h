@@ -136,12 +136,10 @@ struct enabling {
  * each are written by its own functions alone.
  */
 struct drive {
-    struct drive_params params;
-
     /* blocks, in the order of the block diagram */
     struct measurement measurement;
-    struct estimator estimator;
     struct reference reference;
+    struct estimator estimator;
     struct standstill_hold hold;
     struct current_control current_control;
     struct modulator modulator;
@@ -151,6 +149,8 @@ struct drive {
     struct dq current;
     struct dq current_reference;
     struct dq voltage_command;
+
+    struct drive_params params;
 
     /* the blocks that the default does without */
     union position_law_state law;
