@@ -5,13 +5,13 @@
  * coherent set of raw samples to the control interrupt and takes the duties of the next period.
  * Raw integers cross this border, so that a fixed-point drive needs no floating-point number.
  *
- * Timing of one period (10 kHz, T = 100 us, centre-aligned):
+ * Timing of one period T, centre-aligned; 100 us at 10 kHz, of others as much in proportion:
  *
  *   counter peak      ^             ^             ^      legs high around the valley; around the
  *   (low state)       S(k)          S(k+1)        S(k+2) peak all four low sides conduct, so that
  *                                                        the low-side shunts carry the currents
- *   control           [ISR]                              starts when the conversion at the peak
- *                                                        ends, must end within 90 us
+ *   control           [ISR]                              starts at the peak or when the conversion
+ *                                                        there ends, must end within 0.9 T
  *   duty in force     D(k-1) -----> D(k) ------->        compares load at the peak only: what is
  *                                                        computed from S(k) acts S(k+1)...S(k+2)
  *
@@ -57,9 +57,12 @@ struct hal_outputs {
 struct hal_facts {
     const char *board_name;
     double control_period_s;
-    uint32_t pwm_half_period_counts; /* timer counts from valley to peak; 8500 at 170 MHz, 10 kHz */
+    uint32_t pwm_half_period_counts; /* timer counts from valley to peak: 8500 at 170 MHz and
+                                        10 kHz */
     double dead_time_s;
     double leg_delay_s;       /* largest difference between the delays of the two legs of a phase */
+    double low_state_s;       /* in which all four low sides are to conduct around each S(k), to
+                                 measure the currents there; dead time included */
     uint32_t converter_codes; /* codes of currents and bus are 0...converter_codes - 1 */
     double current_A_per_code; /* both phases */
     uint16_t current_zero_code;

@@ -8,6 +8,11 @@
 
 static const struct hal_outputs bridge_off = {.bridge_on = false};
 
+__attribute__((noinline)) uint32_t application_typed_delay(const struct application *application)
+{
+    return drive_typed_delay_periods(application->facts.control_period_s);
+}
+
 /* By `settings`, which are in force then. */
 static bool design(struct application *application, const struct drive_settings *settings,
                    bool starts, char error[DRIVE_ERROR_TEXT])
@@ -41,6 +46,7 @@ static void prepare(struct application *application, const struct hal *board)
     application->board.facts = &application->facts;
     application->outputs = bridge_off;
     application->cycles = (struct control_cycles){.periods = 0};
+    application->cycle_statistics = (struct control_cycle_statistics){.periods = 0};
     application->stored_refused = false;
     console_init(&application->console);
 }
@@ -126,7 +132,7 @@ static bool prepare_enable(struct application *application, uint32_t *at_period,
     const uint32_t period = interrupt_view_period(drive);
 
     if ((int32_t)(*at_period - period) <= 0) {
-        *at_period = period + DRIVE_TYPED_DELAY_PERIODS;
+        *at_period = period + application_typed_delay(application);
     }
     return true;
 }
@@ -143,5 +149,6 @@ CALLED_FROM_OUTSIDE void application_background(struct application *application)
 {
     drive_feed_watchdog(&application->drive);
     drive_background(&application->drive);
+    control_cycles_gather(&application->cycle_statistics, &application->cycles);
     console_background(application);
 }

@@ -7,7 +7,7 @@
  *
  *     application_init                 once, then starts its timer
  *     application_control_interrupt    in the control interrupt, with the samples of S(k)
- *     application_count_cycles         at the end of the same interrupt, if it can measure
+ *     control_cycles_count             in the same interrupt or behind it, if it can measure
  *     application_background           all the time, from its main loop
  */
 #ifndef STEADYSTEP_APPLICATION_H
@@ -31,6 +31,7 @@ struct application {
     struct hal_outputs outputs; /* of the last control interrupt */
     uint64_t gains_hash;        /* drive_hash_gains of this start */
     struct control_cycles cycles;
+    struct control_cycle_statistics cycle_statistics;
 
     /* background */
     struct hal board;       /* as given, with the facts below */
@@ -62,11 +63,14 @@ bool application_init_with(struct application *application, const struct hal *bo
  * Background: drive_command_asked_in, for whoever commands a drive that has a console. What was set
  * since the drive was designed is put in force before an enable: it is designed anew, with its
  * bridge off, which takes as long as drive_init. If the period to act in has passed by then, the
- * command acts, and its at_period is, DRIVE_TYPED_DELAY_PERIODS after the end of the design. false:
+ * command acts, and its at_period is, DRIVE_TYPED_DELAY_s after the end of the design. false:
  * refused, reason in error; a set-up that the drive refuses leaves the one before in force.
  */
 bool application_command(struct application *application, struct drive_command *command,
                          uint32_t asked_in, char error[DRIVE_ERROR_TEXT]);
+
+/* DRIVE_TYPED_DELAY_s in control periods. */
+uint32_t application_typed_delay(const struct application *application);
 
 /* Background: by this period the bridge is off, and no enable waits: what is set waits for one. */
 bool application_settings_wait(const struct application *application, uint32_t at_period);
@@ -75,12 +79,8 @@ bool application_settings_wait(const struct application *application, uint32_t a
  * The control interrupt: drive_control_cycle. What it returns acts over S(k+1)...S(k+2); a bridge
  * that is to be off is switched off at once.
  */
-struct hal_outputs application_control_interrupt(struct application *application,
-                                                 const struct hal_samples *samples);
-
-/* The control interrupt, at its end: what this one has taken. */
-void application_count_cycles(struct application *application,
-                              const struct control_cycles_of_period *cycles);
+const struct hal_outputs *application_control_interrupt(struct application *application,
+                                                        const struct hal_samples *samples);
 
 /*
  * The main loop calls it all the time, at least once in 3 ms. One call takes at most one typed line

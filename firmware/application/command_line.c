@@ -17,7 +17,7 @@ static const struct line_form forms[] = {
     {"help", LINE_HELP, DRIVE_COMMANDS, 0, 0, false, "lists commands; help <command> explains one"},
     {"state", LINE_STATE, DRIVE_COMMANDS, 0, 0, false, "what the drive does and measures"},
     {"cycles", LINE_CYCLES, DRIVE_COMMANDS, 0, 0, false,
-     "last/mean/most cycles of the control interrupt by stage; cycles reset begins anew"},
+     "cycles of the control interrupt, mean and most; cycles reset begins anew"},
     {"signals", LINE_SIGNALS, DRIVE_COMMANDS, 0, 0, false, "all signals with their values"},
     {"move", LINE_MOVE, DRIVE_COMMAND_MOVE_SMOOTH, WITH(position_rad),
      WITH(duration_s) | WITH(ramp_s) | WITH(jerk_s), true,

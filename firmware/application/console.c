@@ -130,7 +130,7 @@ static bool address(const struct application *application, struct command_line *
     const uint32_t lead = drive_command_is(line->command.kind, DRIVE_AHEAD)
                               ? planner_lead_periods(&application->drive)
                               : 0u;
-    const uint32_t earliest = line_period + DRIVE_TYPED_DELAY_PERIODS + lead;
+    const uint32_t earliest = line_period + application_typed_delay(application) + lead;
 
     line->command.at_period = line->at_given ? line->at_period : earliest;
     if ((int32_t)(line->command.at_period - earliest) >= 0) {
@@ -224,8 +224,11 @@ static void report(struct application *application, const struct command_line *l
         break;
     case LINE_CYCLES:
         text_put(answer, "cycles");
+        control_cycles_gather(&application->cycle_statistics, &application->cycles);
         report_cycles(answer, application);
-        application->cycles.restart = line->resets;
+        if (line->resets) {
+            control_cycles_restart(&application->cycle_statistics, &application->cycles);
+        }
         break;
     default:
         confirm(application, line, answer);

@@ -7,7 +7,7 @@
  * and so the '\n' of "\r\n" counts for nothing. Backspace and delete take the last character back.
  * A line with a NUL byte is refused. Nothing is echoed.
  *
- * A command acts DRIVE_TYPED_DELAY_PERIODS after the period in which its line's last byte arrived,
+ * A command acts DRIVE_TYPED_DELAY_s after the period in which its line's last byte arrived,
  * and one that the background plans DRIVE_LEAD_s after that: so what a tape of lines does, depends
  * on when they arrive and not on how fast they are read. `at=<period>` addresses a later period.
  * The board stamps '\n' alone: a line that ends with '\r', be it followed by '\n', counts from the

@@ -192,56 +192,19 @@ void report_signals(struct text *text, const struct application *application)
     }
 }
 
-static struct control_cycles read_cycles(const struct application *application)
-{
-    const struct control_cycles *counted = &application->cycles;
-    struct control_cycles copy;
-    uint32_t before;
-
-    do {
-        before = counted->periods;
-        atomic_signal_fence(memory_order_seq_cst);
-        copy = *counted;
-        atomic_signal_fence(memory_order_seq_cst);
-    } while (before != counted->periods);
-    return copy;
-}
-
-static void put_stage(struct text *text, const char *name, const struct control_stage_cycles *stage,
-                      uint32_t periods)
-{
-    text_put(text, " ");
-    text_put(text, name);
-    text_put(text, "=");
-    text_unsigned(text, stage->last);
-    text_put(text, "/");
-    text_number(text, (double)stage->sum / (double)periods, DIGITS);
-    text_put(text, "/");
-    text_unsigned(text, stage->max);
-}
-
 void report_cycles(struct text *text, const struct application *application)
 {
-    static const char *const names[CONTROL_STAGES] = {
-        [CONTROL_STAGE_LATENCY] = "latency",
-        [CONTROL_STAGE_READ] = "read",
-        [CONTROL_STAGE_CONTROL] = "control",
-        [CONTROL_STAGE_WRITE] = "write",
-    };
-    const double share = 0.9; /* the interrupt must end within 90 us of 100 (hal.h) */
+    const double share = 0.9; /* of the period, in which the interrupt must end (hal.h) */
     const struct hal_facts *facts = application->board.facts;
-    const struct control_cycles cycles = read_cycles(application);
+    const struct control_cycle_statistics *cycles = &application->cycle_statistics;
 
-    put_count(text, "periods", cycles.periods);
-    if (cycles.periods == 0u) {
+    put_count(text, "periods", cycles->periods);
+    if (cycles->periods == 0u) {
         text_put(text, ": none counted yet, or this board does not count");
         return;
     }
-    text_put(text, "; last/mean/most:");
-    for (int stage = 0; stage < CONTROL_STAGES; stage++) {
-        put_stage(text, names[stage], &cycles.stage[stage], cycles.periods);
-    }
-    put_stage(text, "total", &cycles.total, cycles.periods);
+    put_number(text, "mean", (double)cycles->sum / (double)cycles->periods);
+    put_count(text, "most", cycles->most);
     put_number(text, "budget", share * facts->control_period_s * facts->cycle_counter_Hz);
 }
 

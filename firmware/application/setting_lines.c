@@ -1,5 +1,7 @@
 #include "firmware/application/setting_lines.h"
 
+#include <stddef.h>
+
 #include "firmware/application/application.h"
 #include "firmware/application/number_text.h"
 #include "firmware/application/settings_record.h"
@@ -98,15 +100,27 @@ static void put_setting(const struct application *application, struct element el
     }
 }
 
+/* A law that the image does not carry is no choice. */
+static bool is_there(const struct setting *setting, size_t choice)
+{
+    return setting->offset != offsetof(struct drive_settings, law) ||
+           drive_carries_law((enum position_law)choice);
+}
+
 static void put_range(const struct application *application, const struct setting *setting,
                       struct text *text)
 {
     if (setting->type == SETTING_FLAG) {
         text_put(text, "; true or false");
     } else if (setting->type == SETTING_CHOICE) {
+        const char *before = "; ";
+
         for (size_t i = 0; i <= (size_t)setting->most; i++) {
-            text_put(text, i == 0u ? "; " : ", ");
-            text_put(text, setting->choices[i]);
+            if (is_there(setting, i)) {
+                text_put(text, before);
+                text_put(text, setting->choices[i]);
+                before = ", ";
+            }
         }
     } else {
         text_put(text, "; ");
@@ -257,7 +271,7 @@ static bool waits(const struct application *application)
 {
     const uint32_t period = interrupt_view_period(&application->drive);
 
-    return application_settings_wait(application, period + DRIVE_TYPED_DELAY_PERIODS);
+    return application_settings_wait(application, period + application_typed_delay(application));
 }
 
 /* Puts `changed` in force, at the next enable or at once. */

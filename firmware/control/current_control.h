@@ -53,32 +53,28 @@ static inline void current_control_preset(struct current_control *control, struc
     control->integral = voltage;
 }
 
-static inline num_t current_control_integrate(const struct current_control_params *params,
-                                              num_t integral, num_t error, num_t taken_away)
-{
-    return integral + num_mul_coef(error, params->integral) +
-           num_mul_coef(taken_away, params->unwind);
-}
-
 /* Voltage in the control frame, of magnitude at most voltage_limit. */
 __attribute__((always_inline)) static inline struct dq
 current_control_step(struct current_control *control, const struct current_control_params *params,
                      struct dq reference, struct dq current, struct rotation speed,
                      num_t voltage_limit)
 {
-    num_t reactance = num_mul_coef(speed.frame, params->reactance);
-    struct dq error = {reference.d - current.d, reference.q - current.q};
-    struct dq wanted = {num_mul_coef(error.d, params->proportional) + control->integral.d -
-                            num_mul(reactance, current.q),
-                        num_mul_coef(error.q, params->proportional) + control->integral.q +
-                            num_mul(reactance, current.d) + speed.rotor};
-    struct dq v = limit_voltage(wanted, voltage_limit);
+    const num_t reactance = num_mul_coef(speed.frame, params->reactance);
+    const struct dq error = {reference.d - current.d, reference.q - current.q};
+    const struct dq wanted = {num_mul_coef(error.d, params->proportional) + control->integral.d -
+                                  num_mul(reactance, current.q),
+                              num_mul_coef(error.q, params->proportional) + control->integral.q +
+                                  num_mul(reactance, current.d) + speed.rotor};
+    struct dq voltage = wanted;
 
-    control->integral.d =
-        current_control_integrate(params, control->integral.d, error.d, v.d - wanted.d);
-    control->integral.q =
-        current_control_integrate(params, control->integral.q, error.q, v.q - wanted.q);
-    return v;
+    control->integral.d += num_mul_coef(error.d, params->integral);
+    control->integral.q += num_mul_coef(error.q, params->integral);
+    if (RARE(exceeds_voltage(wanted, voltage_limit))) {
+        voltage = limit_voltage(wanted, voltage_limit);
+        control->integral.d += num_mul_coef(voltage.d - wanted.d, params->unwind);
+        control->integral.q += num_mul_coef(voltage.q - wanted.q, params->unwind);
+    }
+    return voltage;
 }
 
 #endif

@@ -10,6 +10,7 @@
 #include "firmware/control/csmc_servo.h"
 #include "firmware/control/feedback_linearisation.h"
 #include "firmware/control/foc.h"
+#include "firmware/control/laws_carried.h"
 #include "firmware/control/microstepping.h"
 #include "firmware/control/pid.h"
 #include "firmware/control/position_laws.h"
@@ -17,7 +18,6 @@
 #include "firmware/control/state_feedback.h"
 #include "firmware/control/stmms.h"
 #include "firmware/control/stmms_plus.h"
-#include "firmware/simulation.h"
 
 union position_law_params {
 #define POSITION_LAW_PARAMS(constant, function, text) struct function##_law_params function;
@@ -37,17 +37,11 @@ static inline bool position_law_gives_voltage(enum position_law law)
     return law >= (enum position_law)POSITION_LAW_VOLTAGE_FIRST;
 }
 
-/* Whether an image that serves no simulation has the law. */
-static inline bool position_law_is_there(enum position_law law)
-{
-    return SERVES_SIMULATION || law != POSITION_LAW_SMC;
-}
-
 /* The gains that can be given to a law; none for a law that does not exist. */
 static inline struct law_gain_list position_law_gains(enum position_law law)
 {
 #define POSITION_LAW_GAINS(constant, function, text)                                               \
-    if (position_law_is_there(POSITION_LAW_##constant) && law == POSITION_LAW_##constant) {        \
+    if (position_law_is_carried(POSITION_LAW_##constant) && law == POSITION_LAW_##constant) {      \
         return function##_law_gains;                                                               \
     }
     POSITION_LAWS(POSITION_LAW_GAINS)
@@ -61,7 +55,7 @@ static inline bool position_law_design(enum position_law law, union position_law
                                        char error[DESIGN_ERROR_TEXT])
 {
 #define POSITION_LAW_DESIGN(constant, function, text)                                              \
-    if (position_law_is_there(POSITION_LAW_##constant) && law == POSITION_LAW_##constant) {        \
+    if (position_law_is_carried(POSITION_LAW_##constant) && law == POSITION_LAW_##constant) {      \
         return function##_law_design(&params->function, task, error);                              \
     }
     POSITION_LAWS(POSITION_LAW_DESIGN)
@@ -86,7 +80,8 @@ static inline num_t position_law_current(enum position_law law, union position_l
                                          const struct position_law_input *input)
 {
 #define POSITION_LAW_CURRENT(constant, function, text)                                             \
-    if (law == POSITION_LAW_##constant) {                                                          \
+    if (position_law_is_carried(POSITION_LAW_##constant) &&                                        \
+        !RARE(law != POSITION_LAW_##constant)) {                                                   \
         const struct position_law_input own = *input;                                              \
         return function##_law_step(&state->function, &params->function, &own);                     \
     }
@@ -102,7 +97,7 @@ static inline struct voltage_demand position_law_voltage(enum position_law law,
                                                          const struct voltage_law_input *input)
 {
 #define POSITION_LAW_VOLTAGE(constant, function, text)                                             \
-    if (position_law_is_there(POSITION_LAW_##constant) && law == POSITION_LAW_##constant) {        \
+    if (position_law_is_carried(POSITION_LAW_##constant) && law == POSITION_LAW_##constant) {      \
         return function##_law_step(&state->function, &params->function, input);                    \
     }
     VOLTAGE_LAWS(POSITION_LAW_VOLTAGE)

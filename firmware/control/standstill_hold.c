@@ -68,15 +68,6 @@ void standstill_hold_follow(struct standstill_hold *hold, angle_t reference, num
     hold->leads = goes_on;
 }
 
-num_t standstill_hold_step(struct standstill_hold *hold,
-                           const struct standstill_hold_params *params)
-{
-    const num_t target = hold->active ? hold->current : params->motion_current;
-
-    hold->i_d += num_limit(target - hold->i_d, params->current_ramp);
-    return hold->i_d;
-}
-
 void standstill_hold_leave(struct standstill_hold *hold, uint32_t slow_periods, bool moving)
 {
     hold->active = hold->active && slow_periods > 0u;
@@ -87,8 +78,8 @@ void standstill_hold_consider(struct standstill_hold *hold,
                               const struct standstill_hold_params *params, angle_t reference,
                               uint32_t slow_periods, num_t position_error, num_t speed)
 {
-    if (slow_periods > params->delay_periods && num_abs(position_error) < params->error_limit &&
-        num_abs(speed) < params->speed_limit) {
+    if (RARE(slow_periods > params->delay_periods) &&
+        num_abs(position_error) < params->error_limit && num_abs(speed) < params->speed_limit) {
         standstill_hold_enter(hold, reference);
     }
 }

@@ -83,8 +83,16 @@ static inline bool standstill_hold_leads_in(uint32_t period)
 }
 
 /* One period: ramps the d current in or out and returns it. */
-num_t standstill_hold_step(struct standstill_hold *hold,
-                           const struct standstill_hold_params *params);
+static inline num_t standstill_hold_step(struct standstill_hold *hold,
+                                         const struct standstill_hold_params *params)
+{
+    const num_t target = hold->active ? hold->current : params->motion_current;
+
+    if (RARE(hold->i_d != target)) {
+        hold->i_d += num_limit(target - hold->i_d, params->current_ramp);
+    }
+    return hold->i_d;
+}
 
 /*
  * At the end of a period: the hold ends with it if the reference moves (`slow_periods` is 0), and

@@ -97,8 +97,19 @@ static const struct tuning hold_tuning = {
 #define LED_MEMORY 0.5
 /* A load step is followed until the rotor has swung out, in units of 1/w_h. */
 #define FOLLOWING_SWING 8.0
+/* Behind the gains that follow a load step the hold returns to the load found, for a while, unless
+   the load changes by twice a step: a hold that followed each drift at once would follow its own
+   compensation around. */
+#define REST_S 0.010
+/* A rotor that is drawn into place from where it was told not to be comes to rest within this. */
+#define SWING_S 0.050
 /* The settled load is the mean of the estimate over this time. */
 #define LOAD_SETTLE_TIME_S 5e-4
+
+static uint32_t periods(double time_s, double period_s)
+{
+    return (uint32_t)(time_s / period_s + 0.5);
+}
 
 static double square(double x)
 {
@@ -211,8 +222,8 @@ bool invariant_ekf_motion_design(const struct motor_params *motor, double period
 /* Load step, of the rated torque, that a motor has to bear in motion. */
 #define BORNE_LOAD_STEP 0.25
 
-/* Within so many periods a throw has reached its peak, or the motor is slow enough to be seen. */
-#define THROW_PERIODS 1000
+/* Within this a throw has reached its peak, or the motor is slow enough to be seen. */
+#define THROW_S 0.1
 
 double invariant_ekf_thrown_rad(const struct motor_params *motor, double period_s,
                                 const struct invariant_ekf_gains *gains, double load_step_Nm)
@@ -228,7 +239,7 @@ double invariant_ekf_thrown_rad(const struct motor_params *motor, double period_
     double load = -load_step_Nm;
     double peak = 0.0;
 
-    for (int k = 0; k < THROW_PERIODS && angle >= 0.98 * peak; k++) {
+    for (uint32_t k = periods(THROW_S, period_s); k > 0u && angle >= 0.98 * peak; k--) {
         const double mean_speed = speed + 0.5 * per_inertia * (km * current - load);
         const double next_current = decay * current - admittance * km * mean_speed;
         const double torque_Nm =
@@ -381,7 +392,9 @@ bool invariant_ekf_following_hold_design(const struct motor_params *motor, doubl
     let_return(motor, period_s, hold_current_A, &gains->quiet);
     gains->following.load_settle = 1.0 - exponential(-period_s / LOAD_SETTLE_TIME_S);
     gains->following_periods =
-        (uint32_t)(FOLLOWING_SWING / hold_frequency(motor, hold_current_A) / period_s + 0.5);
+        periods(FOLLOWING_SWING / hold_frequency(motor, hold_current_A), period_s);
+    gains->rest_periods = periods(REST_S, period_s);
+    gains->swing_periods = periods(SWING_S, period_s);
     gains->load_step_Nm = load_step_Nm(motor, period_s, hold_current_A);
     gains->led_load_memory = LED_MEMORY * gains->quiet.load_return;
     return true;

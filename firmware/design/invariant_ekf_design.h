@@ -56,6 +56,8 @@ struct invariant_ekf_hold_gains {
     struct invariant_ekf_gains following; /* behind a load step: the load is learned */
     struct invariant_ekf_gains unloaded;  /* no load is expected: the voltage offset is learned */
     uint32_t following_periods;           /* how long a load step is followed */
+    uint32_t rest_periods;                /* behind that, in which none is */
+    uint32_t swing_periods;               /* in which a rotor swings into place */
     double load_step_Nm;                  /* change that ends the quiet hold */
     double led_load_memory; /* of the mean change where the hold leads, share per period */
 };

@@ -13,7 +13,17 @@ static struct position initial_position(const struct drive *drive, struct positi
                : drive->enabling.start;
 }
 
-void drive_reset_blocks(struct drive *drive)
+void drive_reset_control(struct drive *drive)
+{
+    standstill_hold_reset(&drive->hold, &drive->params.hold);
+    position_law_reset(&drive->law);
+    detent_compensation_reset(&drive->detent);
+    current_control_reset(&drive->current_control);
+    synchronism_reset(drive);
+    expectation_reset(&drive->expectation);
+}
+
+void drive_reset_motion(struct drive *drive)
 {
     const struct drive_params *params = &drive->params;
     const struct estimator_start start = {
@@ -21,16 +31,11 @@ void drive_reset_blocks(struct drive *drive)
         .encoder_position = initial_position(drive, params->enabling.encoder_zero),
         .load_torque = params->enabling.initial_load_torque,
         .resistance = drive->estimator.estimate.winding.resistance,
-        .unloaded_periods = params->enabling.hold_on_enable_periods,
+        .unloaded_periods =
+            params->enabling.hold_on_enable_periods + params->enabling.balance_periods,
         .encoder_count = drive->encoder_count,
     };
 
     estimator_begin(&drive->estimator, &params->estimator, &start);
     reference_reset(&drive->reference, start.position);
-    standstill_hold_reset(&drive->hold, &params->hold);
-    position_law_reset(&drive->law);
-    detent_compensation_reset(&drive->detent);
-    current_control_reset(&drive->current_control);
-    synchronism_reset(drive);
-    expectation_reset(&drive->expectation);
 }

@@ -4,7 +4,11 @@
 
 #include "firmware/drive/drive.h"
 
-/* In the interrupt: all blocks at rest at the initial position; a calibrated resistance is kept. */
-__attribute__((noinline)) void drive_reset_blocks(struct drive *drive);
+/* In the interrupt, when enabling begins: what controls is at rest. */
+__attribute__((noinline)) void drive_reset_control(struct drive *drive);
+
+/* When the bridge is switched on, so that no interrupt pays for both: estimate and reference are at
+   rest at the initial position; a calibrated resistance is kept. */
+__attribute__((noinline)) void drive_reset_motion(struct drive *drive);
 
 #endif

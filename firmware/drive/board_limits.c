@@ -62,6 +62,15 @@ static bool check_current_limit(double current_A, double range_A, char error[DRI
                   " that the board measures", error);
 }
 
+static bool check_low_state(const struct hal_facts *facts, char error[DRIVE_ERROR_TEXT])
+{
+    const double limit_s = 0.5 * (1.0 - MODULATION_MAX_LEAST) * facts->control_period_s;
+
+    return facts->low_state_s <= limit_s ||
+           refuse("low_state_s", facts->low_state_s, limit_s, "s",
+                  "a fifth of the control period, ", facts->control_period_s, " s", error);
+}
+
 bool board_limits_apply(struct drive_settings *settings, const struct hal_facts *facts,
                         char error[DRIVE_ERROR_TEXT])
 {
@@ -76,7 +85,7 @@ bool board_limits_apply(struct drive_settings *settings, const struct hal_facts 
         settings->overcurrent_trip_A =
             smaller(OVERCURRENT_SHARE * rated_A, CURRENT_LIMIT_SHARE * range_A);
     }
-    return check_supply(settings->motor.supply_V, facts, error) &&
+    return check_low_state(facts, error) && check_supply(settings->motor.supply_V, facts, error) &&
            (limit_given ? check_current_limit(settings->current_limit_A, range_A, error)
                         : check_rated_current(rated_A, range_A, error)) &&
            (settings->overcurrent_trip_A <= range_A ||
@@ -89,19 +98,21 @@ __attribute__((noinline)) double default_speed_limit_rad_s(const struct motor_pa
     return SPEED_LIMIT_SHARE * motor->supply_V / motor->torque_constant_Nm_A;
 }
 
-/* MODULATION_MAX of the supply = R i + Km w, with the current Kv w / Km of the friction. */
-static double supplied_speed_rad_s(const struct motor_params *motor)
+/* The largest modulation of the supply = R i + Km w, with the current Kv w / Km of the friction. */
+static double supplied_speed_rad_s(const struct motor_params *motor, const struct hal_facts *facts)
 {
+    const double modulation = modulation_max(facts->low_state_s, facts->control_period_s);
     const double friction_V_s_rad =
         motor->resistance_ohm * motor->viscous_friction_Nms_rad / motor->torque_constant_Nm_A;
 
-    return MODULATION_MAX * motor->supply_V / (motor->torque_constant_Nm_A + friction_V_s_rad);
+    return modulation * motor->supply_V / (motor->torque_constant_Nm_A + friction_V_s_rad);
 }
 
-struct speed_limit board_limits_speed(const struct drive_settings *settings)
+struct speed_limit board_limits_speed(const struct drive_settings *settings,
+                                      const struct hal_facts *facts)
 {
     const struct motor_params *motor = &settings->motor;
-    const double supplied_rad_s = supplied_speed_rad_s(motor);
+    const double supplied_rad_s = supplied_speed_rad_s(motor, facts);
     const double default_rad_s = default_speed_limit_rad_s(motor);
     const bool widened = settings->speed_limit_rad_s > default_rad_s;
 

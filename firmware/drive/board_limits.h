@@ -56,7 +56,8 @@ struct speed_limit {
 /* The speed at which back-EMF and friction leave nothing of the supply, or speed_limit_rad_s if
    that is less, or beyond its default: then motion that lags for want of voltage is what is asked
    for. */
-struct speed_limit board_limits_speed(const struct drive_settings *settings);
+struct speed_limit board_limits_speed(const struct drive_settings *settings,
+                                      const struct hal_facts *facts);
 
 #ifdef __cplusplus
 }

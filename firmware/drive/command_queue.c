@@ -24,7 +24,7 @@ bool command_queue_put(struct command_queue *queue, const struct queued_command 
     }
     atomic_signal_fence(memory_order_release);
     queue->written = queue->written + 1u;
-    queue->pending = COMMAND_QUEUE_PENDING;
+    command_queue_look_next(queue);
     return true;
 }
 
@@ -51,7 +51,7 @@ void command_queue_put_urgent(struct command_queue *queue, struct urgent_command
     urgent->flush_to = queue->written;
     atomic_signal_fence(memory_order_release);
     urgent->posted = true;
-    queue->pending = COMMAND_QUEUE_PENDING;
+    command_queue_look_next(queue);
 }
 
 /* Whether the period has come; if not, `wait` lasts until then at most. */
@@ -129,7 +129,7 @@ void command_queue_put_take_over(struct command_queue *queue, const struct take_
     own->command = take_over->command;
     atomic_signal_fence(memory_order_release);
     own->posted = true;
-    queue->pending = COMMAND_QUEUE_PENDING;
+    command_queue_look_next(queue);
 }
 
 void command_queue_withdraw_take_over(struct command_queue *queue)

@@ -6,7 +6,8 @@
  * The interrupt can pre-empt the background between any two instructions, never the other way
  * round, and there is one core: the order in which the background writes is all that counts. What
  * an entry holds is written before the flag or counter that shows it; a signal fence keeps the
- * compiler to that order.
+ * compiler to that order. Whoever posts makes the queue due at once, by a period that has passed;
+ * the interrupt then looks at all that waits and puts off what is not to act yet.
  */
 #ifndef STEADYSTEP_COMMAND_QUEUE_H
 #define STEADYSTEP_COMMAND_QUEUE_H
@@ -64,19 +65,13 @@ struct take_over {
     uint32_t command; /* queue entry that it obeys; leaves the queue with it */
 };
 
-enum command_queue_pending {
-    COMMAND_QUEUE_NOT_PENDING,
-    COMMAND_QUEUE_OVERDUE, /* the oldest command waits for the reference to rest, or for its plan */
-    COMMAND_QUEUE_PENDING  /* something has been posted, or may be due next */
-};
-
 struct command_queue {
     struct queued_command entry[COMMAND_QUEUE_LENGTH];
     volatile uint32_t written;
     volatile uint32_t read;
-    volatile uint8_t pending; /* enum command_queue_pending */
-    uint32_t next_due;        /* period in which something else may be due */
-    uint32_t looked;          /* period in which it was last looked at */
+    volatile uint32_t due;    /* first period in which there may be something to do: all that the
+                                 interrupt asks */
+    volatile uint32_t looked; /* period in which all that waits was last looked at */
     struct urgent_command disable;
     struct urgent_command stop;
     uint32_t stop_acted_in; /* period of the last stop; the interrupt's */
@@ -98,7 +93,7 @@ void command_queue_put_urgent(struct command_queue *queue, struct urgent_command
  * Interrupt, of the functions below with `wait`: it begins as COMMAND_QUEUE_NEVER and is lowered to
  * the periods until what they look at is to be looked at again.
  */
-#define COMMAND_QUEUE_NEVER UINT32_MAX
+#define COMMAND_QUEUE_NEVER (UINT32_C(1) << 30)
 
 /* Interrupt: true once, when the period of `urgent` has come; flushes the queue. */
 bool command_queue_take_urgent(struct command_queue *queue, struct urgent_command *urgent,
@@ -126,17 +121,24 @@ static inline void command_queue_count_dropped(struct command_queue *queue,
     queue->dropped_kind = command->kind;
 }
 
-/* Interrupt: all that waits is looked at in this period. */
-static inline void command_queue_look(struct command_queue *queue, uint32_t period)
+/* Interrupt: whether there may be something to do in this period. */
+static inline bool command_queue_is_due(const struct command_queue *queue, uint32_t period)
 {
-    queue->pending = COMMAND_QUEUE_PENDING;
-    queue->looked = period;
+    return (int32_t)(period - queue->due) >= 0;
 }
 
-/* Interrupt: all that waits is to be looked at in the next period. */
+/* Interrupt: all that waits is looked at in this period, and in the next if something acts. */
+static inline void command_queue_look(struct command_queue *queue, uint32_t period)
+{
+    queue->looked = period;
+    queue->due = period;
+}
+
+/* Interrupt and background: all that waits is to be looked at in the next period; the oldest
+   command may wait for the reference to rest. */
 static inline void command_queue_look_next(struct command_queue *queue)
 {
-    queue->pending = COMMAND_QUEUE_PENDING;
+    queue->due = queue->looked;
 }
 
 /* Interrupt: the reference has taken a stop. */
@@ -167,24 +169,20 @@ static inline bool command_queue_holds_any(const struct command_queue *queue)
     return queue->written != queue->read;
 }
 
-/* Interrupt: whether there may be something to do in this period. `idle`: the reference rests. */
-static inline bool command_queue_is_pending(const struct command_queue *queue, uint32_t period,
-                                            bool idle)
+/* Interrupt, when something has acted: passes the queue by if nothing else waits. */
+static inline void command_queue_rest_if_empty(struct command_queue *queue, uint32_t period)
 {
-    const uint8_t pending = queue->pending;
-
-    return period == queue->next_due ||
-           (pending != COMMAND_QUEUE_NOT_PENDING && (idle || pending == COMMAND_QUEUE_PENDING));
+    if (queue->written == queue->read && !queue->disable.posted && !queue->stop.posted &&
+        !queue->take_over.posted) {
+        queue->due = period + COMMAND_QUEUE_NEVER;
+    }
 }
 
-/* Interrupt, when nothing has acted: lowers `pending` until something is posted, `wait` periods
-   have passed, or, if the oldest command is overdue, the reference rests. The background cannot run
-   in between. */
-static inline void command_queue_rest(struct command_queue *queue, uint32_t period, uint32_t wait,
-                                      bool overdue)
+/* Interrupt, when nothing has acted: passes the queue by until something is posted, `wait` periods
+   have passed, or the reference has come to rest. The background cannot run in between. */
+static inline void command_queue_rest(struct command_queue *queue, uint32_t period, uint32_t wait)
 {
-    queue->pending = overdue ? COMMAND_QUEUE_OVERDUE : COMMAND_QUEUE_NOT_PENDING;
-    queue->next_due = period + wait;
+    queue->due = period + wait;
 }
 
 #endif

@@ -23,7 +23,7 @@ static bool plan(struct drive *drive, const struct drive_command *command, struc
         .ramp_s = command->ramp_s,
         .jerk_s = command->jerk_s,
     };
-    const struct speed_limit speed = board_limits_speed(&drive->settings);
+    const struct speed_limit speed = board_limits_speed(&drive->settings, drive->board->facts);
     const struct profile_drive limits = {
         .period_s = drive->board->facts->control_period_s,
         .rotor_teeth = drive->settings.motor.rotor_teeth,

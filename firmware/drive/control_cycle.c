@@ -14,41 +14,43 @@
 #include "firmware/drive/standstill_angle.h"
 #include "firmware/drive/state_machine.h"
 #include "firmware/drive/synchronism.h"
+#include "firmware/estimator/invariant_ekf_step.h"
 
 /* The blocks that both paths of control() go through are compiled into each of them. */
 #define IN_PLACE __attribute__((always_inline)) static inline
-
-static const struct hal_outputs bridge_off = {.bridge_on = false};
 
 /* The motor at the instant at which the answer begins to act, as known at S(k). */
 struct prediction {
     struct phases current;
     struct phases undisturbed_current; /* had what was demanded acted; for voltage laws */
     struct rotor rotor;
-    struct sincos frame; /* of the rotor */
+    struct sincos frame;     /* of the rotor */
+    struct sincos half_turn; /* its rotation in half a period */
     const struct reference_sample *reference;
     num_t load_torque_change; /* over the period after it, as far as it is known */
 };
 
-/* At S(k+1), with the voltage already committed. */
+/* At S(k+1), with the voltage already committed: what the estimator expects. */
 IN_PLACE void predict(struct prediction *next, const struct drive *drive,
-                      const struct estimate *estimate)
+                      const struct estimate *estimate, struct passage passage)
 {
-    next->current = forced_current(&estimate->winding, estimate->free_current,
-                                   actuation_in_force(&drive->actuation));
-    next->rotor = estimate->rotor;
-    next->frame = estimate_end_of_period(estimate);
+    next->current = estimate->next.current;
+    next->rotor.position = estimate->next.position;
+    next->rotor.speed = estimate->next.speed;
+    next->rotor.load_torque = estimate->rotor.load_torque;
+    next->frame = estimate->next.frame;
+    next->half_turn = passage.half_turn;
     next->reference = &drive->reference.next;
-    predict_rotor(&drive->params.model, &next->rotor, park(next->current, estimate->mid_period).q);
 }
 
 /* At S(k): without a delay nothing need be predicted. */
-IN_PLACE void present(struct prediction *next, const struct drive *drive,
-                      const struct estimate *estimate)
+static void present(struct prediction *next, const struct drive *drive,
+                    const struct estimate *estimate, struct passage passage)
 {
     next->current = estimate->current;
     next->rotor = estimate->rotor;
-    next->frame = estimate_begin_of_period(estimate);
+    next->frame = sincos_of(estimate->rotor.position.fraction);
+    next->half_turn = passage.half_turn;
     next->reference = &drive->reference.now;
 }
 
@@ -56,7 +58,7 @@ IN_PLACE struct position_law_input law_input(const struct drive *drive,
                                              const struct prediction *next)
 {
     const struct reference_sample *reference = next->reference;
-    const bool feed_forward = drive->params.path.feed_forward;
+    const bool feed_forward = !RARE(!drive->params.path.feed_forward);
 
     return (struct position_law_input){
         .position_error = position_difference(reference->position, next->rotor.position),
@@ -80,7 +82,7 @@ IN_PLACE struct dq wanted_current(struct drive *drive, const struct prediction *
     struct dq current;
 
     current.d = standstill_hold_step(&drive->hold, &params->hold);
-    if (drive->hold.active) {
+    if (RARE(drive->hold.active)) {
         current.q = standstill_hold_torque_current(
             &params->hold, next->rotor.speed - drive->hold.speed,
             drive->supervision.aligns ? NUM(0.0) : next->rotor.load_torque);
@@ -94,29 +96,26 @@ IN_PLACE struct dq wanted_current(struct drive *drive, const struct prediction *
 }
 
 /* Of the hold: of the reference. In motion: of the rotor, as it turns. */
-IN_PLACE struct frame current_frame(const struct drive *drive, const struct estimate *estimate,
-                                    const struct prediction *next)
+IN_PLACE struct frame current_frame(const struct drive *drive, const struct prediction *next)
 {
-    if (drive->hold.active) {
+    if (RARE(drive->hold.active)) {
         return (struct frame){drive->hold.frame, drive->hold.frame, drive->hold.speed};
     }
-    return (struct frame){next->frame, sincos_add(next->frame, estimate->half_turn),
-                          next->rotor.speed};
+    return (struct frame){next->frame, sincos_add(next->frame, next->half_turn), next->rotor.speed};
 }
 
 /* Hold or current law, then current control. */
-IN_PLACE struct phases regulate_current(struct drive *drive, const struct estimate *estimate,
-                                        const struct prediction *next)
+IN_PLACE struct phases regulate_current(struct drive *drive, const struct prediction *next)
 {
     drive->current_reference = wanted_current(drive, next);
 
-    const struct frame frame = current_frame(drive, estimate, next);
+    const struct frame frame = current_frame(drive, next);
 
     drive->current = park(next->current, frame.begin);
     drive->voltage_command = current_control_step(
         &drive->current_control, &drive->params.current_control, drive->current_reference,
         drive->current, (struct rotation){frame.speed, next->rotor.speed},
-        modulator_voltage_limit(&drive->modulator));
+        modulator_voltage_limit(&drive->modulator, &drive->params.modulator));
     return inverse_park(drive->voltage_command, frame.middle);
 }
 
@@ -136,7 +135,7 @@ static struct phases regulate_voltage(struct drive *drive, const struct estimate
                               : NUM(0.0),
         .load_torque_change = next->load_torque_change,
         .resistance = estimate->winding.resistance,
-        .voltage_limit = modulator_voltage_limit(&drive->modulator),
+        .voltage_limit = modulator_voltage_limit(&drive->modulator, &drive->params.modulator),
         .angle = next->rotor.position.fraction,
         .reference_angle = next->reference->position.fraction,
     };
@@ -147,7 +146,17 @@ static struct phases regulate_voltage(struct drive *drive, const struct estimate
     drive->current = input.current;
     drive->current_reference = (struct dq){input.current_d_reference, demand.torque_current};
     drive->voltage_command = demand.voltage;
-    return inverse_park(demand.voltage, sincos_add(next->frame, estimate->half_turn));
+    return inverse_park(demand.voltage, sincos_add(next->frame, next->half_turn));
+}
+
+/* Of the coming S(k), had this voltage acted since the present one. */
+static struct phases current_under(const struct drive *drive, const struct estimate *estimate,
+                                   struct phases voltage)
+{
+    const struct phases expected = drive->actuation.in_force;
+    const struct phases more = {voltage.a - expected.a, voltage.b - expected.b};
+
+    return forced_current(&estimate->winding, estimate->next.current, more);
 }
 
 /*
@@ -158,22 +167,30 @@ static void expect_current(struct drive *drive, const struct estimate *estimate,
                            struct prediction *next)
 {
     next->load_torque_change = NUM(0.0);
-    next->undisturbed_current = has_zero_delay(&drive->params.path)
-                                    ? estimate->current
-                                    : forced_current(&estimate->winding, estimate->free_current,
-                                                     drive->expectation.demanded_voltage);
+    next->undisturbed_current =
+        has_zero_delay(&drive->params.path)
+            ? estimate->current
+            : current_under(drive, estimate, drive->expectation.demanded_voltage);
 }
 
 /* Afterwards, with this period's voltage. */
 static void remember_demand(struct drive *drive, const struct estimate *estimate,
-                            const struct prediction *next, struct phases voltage)
+                            const struct prediction *next, struct sincos mid_period,
+                            struct phases voltage)
 {
     struct phases expected = next->undisturbed_current;
 
     if (has_zero_delay(&drive->params.path)) {
-        expected = forced_current(&estimate->winding, estimate->free_current, voltage);
+        expected = current_under(drive, estimate, voltage);
     }
-    expectation_set(&drive->expectation, voltage, expected, estimate->mid_period);
+    expectation_set(&drive->expectation, voltage, expected, mid_period);
+}
+
+/* Without a delay the command is in force at once, and the estimator did not know of it. */
+static void act_at_once(struct drive *drive)
+{
+    estimator_predict(&drive->estimator, &drive->params.estimator, &drive->params.model,
+                      actuation_act(&drive->actuation));
 }
 
 /* The detent torque at the instant of action, learned from what the observer has left of it. A
@@ -183,15 +200,13 @@ compensate_detent(struct drive *drive, const struct estimate *estimate, struct p
 {
     const num_t before = drive->detent.torque;
 
-    if (!has_zero_delay(
-            &drive->params.path)) { /* the prediction knew the estimated part of the load alone */
-        next->rotor.speed -= num_mul_coef(before, drive->params.model.speed_per_torque);
-    }
     detent_compensation_step(&drive->detent, &drive->params.detent, next->rotor.position.fraction,
                              next->frame, next->rotor.speed, estimate->rotor.load_torque,
                              drive->reference.now.moving == drive->reference.next.moving);
     if (estimator_is(&drive->params.estimator, ESTIMATOR_ENCODER_OBSERVER)) {
-        encoder_observer_set_known_torque(&drive->estimator.encoder_observer, drive->detent.torque);
+        encoder_observer_set_known_torque(&drive->estimator.encoder_observer,
+                                          &drive->params.estimator.encoder_observer,
+                                          drive->detent.torque);
     }
     next->load_torque_change = drive->detent.torque - before;
     next->rotor.load_torque = estimate->rotor.load_torque + drive->detent.torque;
@@ -201,7 +216,8 @@ compensate_detent(struct drive *drive, const struct estimate *estimate, struct p
 __attribute__((noinline)) static void lead_rotor(struct drive *drive)
 {
     const struct reference_sample *reference = &drive->reference.next;
-    const int32_t half_turn = half_period_rotation(&drive->params.model, reference->speed);
+    const int32_t half_turn =
+        angle_from_turns(half_period_turns(&drive->params.model, reference->speed));
 
     standstill_hold_follow(&drive->hold, reference->position.fraction + 6u * (angle_t)half_turn,
                            reference->speed, reference->moving);
@@ -209,17 +225,21 @@ __attribute__((noinline)) static void lead_rotor(struct drive *drive)
 
 /* The hold ends where the reference moves, but takes its frame along with one that creeps, until
    that has come to rest. */
-IN_PLACE void leave_or_lead(struct drive *drive)
+static void leave_or_lead_hold(struct drive *drive)
 {
-    if (!drive->hold.active) {
-        return;
-    }
     standstill_hold_leave(&drive->hold, drive->reference.slow_periods,
                           drive->reference.next.moving);
     if (drive->hold.active && drive->hold.leads &&
         standstill_hold_leads_in(drive->supervision.period) &&
         drive->commands.looked != drive->supervision.period) {
         lead_rotor(drive);
+    }
+}
+
+IN_PLACE void leave_or_lead(struct drive *drive)
+{
+    if (RARE(drive->hold.active)) {
+        leave_or_lead_hold(drive);
     }
 }
 
@@ -239,28 +259,104 @@ IN_PLACE void hand_over(struct drive *drive, const struct estimate *estimate, bo
     }
 }
 
-/*
- * The path of voltage laws, of the detent compensation and of what only a simulation has: no
- * delay, no loss compensation. Kept out of the interrupt's body, so that the registers and the
- * stack of the heaviest law cost the default path nothing.
- */
-__attribute__((noinline)) static struct hal_outputs control_general(struct drive *drive,
-                                                                    const struct estimate *estimate)
+/* What the estimator gets instead of what is measured. */
+static void prepare_input(struct drive *drive, struct channels *winding)
+{
+    if (drive->params.path.prepares_input) {
+        prepared_input_make(drive, winding);
+    }
+}
+
+/* The voltage in force until S(k+1): as was found before a pulse, where one holds. */
+static struct phases voltage_in_force(struct drive *drive)
+{
+    if (drive->params.path.standstill_pulses) {
+        standstill_angle_begin(drive);
+    }
+    return actuation_act(&drive->actuation);
+}
+
+static struct passage observe(struct drive *drive, const struct sample_set *now)
+{
+    struct estimator_input input = {
+        .winding = now->winding,
+        .encoder_count = now->encoder_count,
+        .hold = {.active = drive->hold.active, .leads = &drive->hold.leads},
+    };
+
+    modulator_track_bus(&drive->modulator, now->bus);
+    prepare_input(drive, &input.winding);
+    input.surprise = actuation_observe(&drive->actuation, input.winding.voltage);
+    input.in_force = voltage_in_force(drive);
+    return estimator_observe(&drive->estimator, &drive->params.estimator, &input);
+}
+
+/* The sensorless default: nothing is prepared, and it is the invariant EKF. */
+IN_PLACE struct passage observe_sensorless(struct drive *drive, const struct sample_set *now)
+{
+    modulator_track_bus(&drive->modulator, now->bus);
+
+    const struct phases surprise = actuation_observe(&drive->actuation, now->winding.voltage);
+    const struct phases in_force = actuation_act(&drive->actuation);
+
+    return invariant_ekf_step(&drive->estimator.invariant_ekf,
+                              &drive->params.estimator.invariant_ekf, now->winding.current,
+                              surprise, in_force,
+                              (struct rotor_hold){drive->hold.active, &drive->hold.leads});
+}
+
+/* Begins a phase or a stop; nothing else that can wait is done in this period, and what has waited
+   for the reference to rest is looked at in the next. Apart: rare. */
+__attribute__((noinline)) static void turn_reference(struct drive *drive)
+{
+    reference_turn(&drive->reference, &drive->params.reference);
+    synchronism_wait(drive);
+    if (!reference_busy(&drive->reference)) {
+        command_queue_look_next(&drive->commands);
+    }
+}
+
+IN_PLACE void move_reference(struct drive *drive)
+{
+    if (RARE(reference_step(&drive->reference, &drive->params.reference, drive->hold.active))) {
+        turn_reference(drive);
+    }
+}
+
+/* Opens the bridge. Apart: rare. */
+__attribute__((noinline)) static void stop_in_fault(struct drive *drive, enum drive_fault fault,
+                                                    struct hal_outputs *outputs)
+{
+    state_machine_fault(drive, fault);
+    *outputs = (struct hal_outputs){.bridge_on = false};
+}
+
+/* Last of all, as nothing is kept for it: a step of the monitor. Apart: its switch would be a table
+   of addresses in the interrupt's body. */
+__attribute__((noinline)) static void watch_synchronism(struct drive *drive,
+                                                        struct hal_outputs *outputs)
+{
+    const enum drive_fault fault = synchronism_watch(drive);
+
+    if (fault != DRIVE_FAULT_NONE) {
+        stop_in_fault(drive, fault, outputs);
+    }
+}
+
+/* A law or the hold, with all that only some drives have. */
+static void control_with_all(struct drive *drive, const struct estimate *estimate,
+                             struct passage passage, struct hal_outputs *outputs)
 {
     const struct drive_params *params = &drive->params;
     const bool held = drive->hold.active;
     const struct current_control before = drive->current_control;
     struct prediction next;
     struct phases voltage;
-    struct hal_outputs duties;
 
-    if (params->path.standstill_pulses) {
-        standstill_angle_begin(drive);
-    }
     if (has_zero_delay(&params->path)) {
-        present(&next, drive, estimate);
+        present(&next, drive, estimate, passage);
     } else {
-        predict(&next, drive, estimate);
+        predict(&next, drive, estimate, passage);
     }
     expect_current(drive, estimate, &next);
     if (ESTIMATORS_READ_ENCODER && params->path.detent_learning && !drive->supervision.aligns) {
@@ -268,97 +364,90 @@ __attribute__((noinline)) static struct hal_outputs control_general(struct drive
     }
     voltage = !drive->hold.active && position_law_gives_voltage(params->position_law)
                   ? regulate_voltage(drive, estimate, &next)
-                  : regulate_current(drive, estimate, &next);
+                  : regulate_current(drive, &next);
     if (params->path.standstill_pulses) {
         standstill_angle_step(drive, estimate, &before, &voltage);
     }
-    remember_demand(drive, estimate, &next, voltage);
-    duties = modulate(drive, params->path.bridge_loss_compensation
-                                 ? actuation_compensate(&drive->actuation, voltage)
-                                 : voltage);
+    remember_demand(drive, estimate, &next, passage.mid_period, voltage);
+    modulate(drive,
+             params->path.bridge_loss_compensation
+                 ? actuation_compensate(&drive->actuation, voltage)
+                 : voltage,
+             outputs);
     if (has_zero_delay(&params->path)) {
-        actuation_commit_past(&drive->actuation); /* measured at the next S(k) already */
+        act_at_once(drive);
     }
     hand_over(drive, estimate, held);
-    return duties;
 }
 
-/* The path of the sensorless default: a current law or the hold. */
-IN_PLACE struct hal_outputs control_current(struct drive *drive, const struct estimate *estimate)
-{
-    struct prediction next;
-    struct phases voltage;
-    struct hal_outputs duties;
-
-    predict(&next, drive, estimate);
-    voltage = regulate_current(drive, estimate, &next);
-    duties = modulate(drive, actuation_compensate(&drive->actuation, voltage));
-    leave_or_lead(drive);
-    return duties;
-}
-
-IN_PLACE struct hal_outputs control(struct drive *drive, const struct estimate *estimate)
-{
-    reference_step(&drive->reference, &drive->params.reference, drive->hold.active);
-    return drive->params.path.general ? control_general(drive, estimate)
-                                      : control_current(drive, estimate);
-}
-
-IN_PLACE const struct estimate *observe(struct drive *drive, const struct sample_set *now)
-{
-    struct channels winding = now->winding;
-
-    modulator_track_bus(&drive->modulator, now->bus);
-    if (drive->params.path.general && drive->params.path.prepares_input) {
-        prepared_input_make(drive, winding.current, winding.voltage);
-        winding = drive->input.winding;
-    }
-    actuation_observe(&drive->actuation, winding.voltage);
-    const struct estimator_input input = {
-        .winding = &winding,
-        .encoder_count = drive->encoder_count,
-        .hold = {.active = drive->hold.active, .leads = &drive->hold.leads},
-    };
-
-    return estimator_observe(&drive->estimator, &drive->params.estimator, &input);
-}
-
-/* The bridge is on and stays on for this period: what it needs of estimate and duties. */
-IN_PLACE struct hal_outputs powered_cycle(struct drive *drive, const struct sample_set *now)
-{
-    const struct estimate *estimate = observe(drive, now);
-    enum drive_fault fault = protection_check_estimate(&drive->params.protection, estimate);
-
-    if (fault == DRIVE_FAULT_NONE && synchronism_is_due(drive)) {
-        fault = synchronism_watch(drive, &estimate->rotor);
-    }
-    if (fault != DRIVE_FAULT_NONE) {
-        state_machine_fault(drive, fault);
-        return bridge_off;
-    }
-    return control(drive, estimate);
-}
-
-IN_PLACE struct sample_set measure(struct drive *drive, const struct hal_samples *samples)
+/*
+ * The path of voltage laws, of encoders, of the detent compensation and of what only a simulation
+ * has: no delay, no loss compensation. Kept out of the interrupt's body, so that the registers and
+ * the stack of the heaviest law cost the default path nothing.
+ */
+__attribute__((noinline)) static void
+control_general(struct drive *drive, const struct hal_samples *samples, struct hal_outputs *outputs)
 {
     const struct sample_set now =
         measurement_step(&drive->measurement, &drive->params.measurement, samples);
+    const struct passage passage = observe(drive, &now);
+    const struct estimate *estimate = &drive->estimator.estimate;
 
-    drive->bus = now.bus;
-    return now;
+    if (!protection_trusts(&drive->params.protection, estimate)) {
+        stop_in_fault(drive, DRIVE_FAULT_ESTIMATE_RANGE, outputs);
+        return;
+    }
+    control_with_all(drive, estimate, passage, outputs);
 }
 
-struct hal_outputs drive_control_cycle(struct drive *drive, const struct hal_samples *samples)
+/* The path of the sensorless default: a current law or the hold. */
+IN_PLACE void control_current(struct drive *drive, const struct hal_samples *samples,
+                              struct hal_outputs *outputs)
 {
-    drive->encoder_count = samples->encoder_count;
-    state_machine_begin_period(drive);
-    if (state_machine_step(drive, samples)) {
-        const struct sample_set now = measure(drive, samples);
+    const struct sample_set now =
+        measurement_step(&drive->measurement, &drive->params.measurement, samples);
+    const struct passage passage = observe_sensorless(drive, &now);
+    const struct estimate *estimate = &drive->estimator.estimate;
+    struct prediction next;
 
-        return powered_cycle(drive, &now);
+    if (RARE(!protection_trusts(&drive->params.protection, estimate))) {
+        stop_in_fault(drive, DRIVE_FAULT_ESTIMATE_RANGE, outputs);
+        return;
     }
-    (void)measure(drive, samples); /* the bus is shown in every state */
-    return drive->supervision.state == DRIVE_FINDING_POSITION
-               ? finding_position_cycle(drive, samples)
-               : state_machine_resting_bridge(drive);
+    predict(&next, drive, estimate, passage);
+
+    const struct phases voltage = regulate_current(drive, &next);
+
+    modulate(drive, actuation_compensate(&drive->actuation, voltage), outputs);
+    leave_or_lead(drive);
+}
+
+/* Nothing controls: the bus is shown in every state. Apart: rare. */
+__attribute__((noinline)) static void rest(struct drive *drive, const struct hal_samples *samples,
+                                           struct hal_outputs *outputs)
+{
+    if (drive->supervision.state == DRIVE_FINDING_POSITION) {
+        *outputs = finding_position_cycle(drive, samples);
+        return;
+    }
+    modulator_see_bus(&drive->modulator, measurement_bus(&drive->params.measurement, samples));
+    *outputs = state_machine_resting_bridge(drive);
+}
+
+void drive_control_cycle(struct drive *drive, const struct hal_samples *samples,
+                         struct hal_outputs *outputs)
+{
+    if (RARE(!state_machine_step(drive, samples))) {
+        rest(drive, samples, outputs);
+        return;
+    }
+    move_reference(drive);
+    if (RARE(drive->params.path.general)) {
+        control_general(drive, samples, outputs);
+    } else {
+        control_current(drive, samples, outputs);
+    }
+    if (RARE(synchronism_is_due(drive))) {
+        watch_synchronism(drive, outputs);
+    }
 }

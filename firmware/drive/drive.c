@@ -1,5 +1,6 @@
 #include "firmware/drive/drive.h"
 
+#include "firmware/control/modulation_limit.h"
 #include "firmware/design/elementary.h"
 #include "firmware/design/mechanical_control_design.h"
 #include "firmware/design/text.h"
@@ -8,6 +9,7 @@
 #include "firmware/drive/estimator_design.h"
 #include "firmware/drive/interrupt_view.h"
 #include "firmware/drive/law_design.h"
+#include "firmware/drive/phase_balancing.h"
 #include "firmware/drive/synchronism.h"
 #include "firmware/interface/simulation_only.h"
 
@@ -182,6 +184,24 @@ static bool check_simulation(const struct drive_settings *settings, const struct
     return false;
 }
 
+bool drive_carries_law(enum position_law law)
+{
+    return position_law_is_carried(law);
+}
+
+static bool check_law(const struct drive_settings *settings, char error[DRIVE_ERROR_TEXT])
+{
+    struct text refusal = text_in(error, DRIVE_ERROR_TEXT);
+
+    if (position_law_is_carried(settings->law)) {
+        return true;
+    }
+    text_put(&refusal, "law = ");
+    text_put(&refusal, drive_law_name(settings->law));
+    text_put(&refusal, ": this image does not carry it; get law lists those that it does");
+    return false;
+}
+
 bool drive_init(struct drive *drive, const struct hal *board, const struct drive_settings *settings,
                 char error[DRIVE_ERROR_TEXT])
 {
@@ -205,7 +225,8 @@ static bool settle_settings(struct drive *drive, const struct drive_settings *gi
     struct drive_settings *settings = &drive->settings;
     struct default_settings_search search = {.refused = 0};
 
-    if (!drive_settings_check(given, error) || !check_simulation(given, facts, error)) {
+    if (!drive_settings_check(given, error) || !check_simulation(given, facts, error) ||
+        !check_law(given, error)) {
         return false;
     }
     *settings = *given;
@@ -242,7 +263,8 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
     params->reference = reference_design(&drive->base, period_s, creep_limits(settings));
     params->current_control = current_control_design(&settings->motor, &drive->base, period_s,
                                                      settings->current_bandwidth_rad_s);
-    params->modulator = modulator_design(facts->pwm_half_period_counts);
+    params->modulator = modulator_design(facts->pwm_half_period_counts,
+                                         modulation_max(facts->low_state_s, period_s));
     params->protection = protection_design(&drive->base, facts, &drive->settings);
     params->enabling.calibrates_offsets = settings->calibrate_offsets;
     drive->enabling.calibration_params =
@@ -257,7 +279,9 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
                            settings->bridge_loss_compensation ? facts->dead_time_s : 0.0);
     params->path.general = position_law_gives_voltage(settings->law) || settings->detent_learning ||
                            settings->standstill_pulses || params->path.infers_voltage ||
-                           params->path.zero_delay || !settings->bridge_loss_compensation;
+                           params->path.zero_delay || !settings->bridge_loss_compensation ||
+                           settings->feedback == DRIVE_FEEDBACK_ENCODER ||
+                           settings->estimator != DRIVE_ESTIMATOR_INVARIANT_EKF;
     params->enabling.encoder_zero_known =
         settings->feedback == DRIVE_FEEDBACK_ENCODER && settings->encoder_zero_known;
     params->enabling.encoder_zero =
@@ -269,6 +293,7 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
         num_from_double(settings->initial_load_torque_Nm / drive->base.torque_Nm);
     params->enabling.hold_on_enable_periods =
         settings->hold_on_enable ? (uint32_t)(settings->hold_on_enable_s / period_s + 0.5) : 0u;
+    params->enabling.balance_periods = phase_balancing_design(drive, settings, period_s);
     modulator_reset(&drive->modulator);
     reference_reset(&drive->reference, params->enabling.initial_position);
     planned_end_init(drive);

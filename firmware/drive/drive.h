@@ -16,6 +16,7 @@
 #include "firmware/drive/measurement.h"
 #include "firmware/drive/offset_calibration.h"
 #include "firmware/drive/parameter_store.h"
+#include "firmware/drive/phase_balance.h"
 #include "firmware/drive/planned_end.h"
 #include "firmware/drive/planner.h"
 #include "firmware/drive/protection.h"
@@ -34,7 +35,8 @@
 struct path_params {
     bool feed_forward;
     bool zero_delay; /* the answer acts from S(k) on, without a period of delay */
-    bool general;    /* more is in use than a current law with delay and loss compensation */
+    bool general;    /* more is in use than a current law on the invariant EKF, with delay and loss
+                        compensation */
     bool bridge_loss_compensation;
     bool infers_voltage; /* the phase voltages are not measured */
     bool detent_learning;
@@ -54,6 +56,7 @@ struct enabling_params {
     struct position encoder_zero_assumed; /* with initial_angle_error_rad */
     num_t initial_load_torque;
     uint32_t hold_on_enable_periods;
+    uint32_t balance_periods; /* behind the hold, at most; 0: the phases are not balanced */
     bool calibrates_offsets;
     bool detects_position;
     bool encoder_zero_known;
@@ -101,7 +104,6 @@ struct synchronism_supervision {
 
 /* What the estimator gets instead of samples: prepared_input.h. */
 struct prepared_input {
-    struct channels winding;    /* of this S(k) */
     struct phases past_current; /* of S(k-1), where the phase voltages are inferred from it */
 };
 
@@ -120,6 +122,8 @@ struct enabling {
     struct offset_calibration_params calibration_params;
     struct initial_position detection;
     struct initial_position_params detection_params;
+    struct phase_balance balance;
+    struct phase_balance_params balance_params;
     struct encoder_alignment alignment;
     struct encoder_alignment_params alignment_params;
 };
@@ -144,7 +148,6 @@ struct drive {
     struct dq current;
     struct dq current_reference;
     struct dq voltage_command;
-    num_t bus;
 
     /* the blocks that the default does without */
     union position_law_state law;
@@ -188,6 +191,9 @@ __attribute__((noinline)) bool drive_init(struct drive *drive, const struct hal 
 __attribute__((noinline)) bool drive_design(struct drive *drive, const struct drive_settings *given,
                                             char error[DRIVE_ERROR_TEXT]);
 
+/* Whether this image has the law; one that it has not is refused. */
+bool drive_carries_law(enum position_law law);
+
 /* Background: feeds the board's watchdog, if a control interrupt has come since it was fed: a board
    where none comes any more is to be reset. */
 void drive_feed_watchdog(struct drive *drive);
@@ -199,8 +205,9 @@ bool drive_learned(const struct drive *drive, struct learned_parameters *learned
 void drive_put_learned(struct drive *drive, const struct learned_parameters *learned);
 
 /* The control interrupt: from the samples of S(k) to the duties of S(k+1)...S(k+2). */
-__attribute__((noinline)) struct hal_outputs drive_control_cycle(struct drive *drive,
-                                                                 const struct hal_samples *samples);
+__attribute__((noinline)) void drive_control_cycle(struct drive *drive,
+                                                   const struct hal_samples *samples,
+                                                   struct hal_outputs *outputs);
 
 /* Background: judges a command by command_rules.h, plans and posts it. false: refused, reason in
    error. */

@@ -60,8 +60,10 @@ __attribute__((noinline)) enum encoder_aligning encoder_aligning_step(struct dri
     if (event == ALIGNMENT_PLACES) {
         estimator_place(&drive->estimator, &drive->params.estimator,
                         position_add(home, alignment->rotor), drive->encoder_count);
+        estimator_predict(&drive->estimator, &drive->params.estimator, &drive->params.model,
+                          drive->actuation.in_force);
     }
-    standstill_hold_align(&drive->hold, home.fraction + (angle_t)alignment->offset,
+    standstill_hold_align(&drive->hold, home.fraction + (angle_t)alignment->held.offset,
                           encoder_alignment_speed(alignment, &drive->enabling.alignment_params),
                           encoder_alignment_current(alignment, &drive->enabling.alignment_params));
     return alignment->stage == ALIGNMENT_FOUND ? ENCODER_ALIGNED : ENCODER_ALIGNING;

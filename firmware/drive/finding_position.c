@@ -10,12 +10,14 @@ static struct hal_outputs act(struct drive *drive, struct initial_position_outpu
         actuation_reset(&drive->actuation);
         return (struct hal_outputs){.bridge_on = false};
     }
-    const struct hal_outputs duties =
-        modulate(drive, output.compensated ? actuation_compensate(&drive->actuation, output.voltage)
-                                           : output.voltage);
+    struct hal_outputs duties;
 
+    modulate(drive,
+             output.compensated ? actuation_compensate(&drive->actuation, output.voltage)
+                                : output.voltage,
+             &duties);
     if (has_zero_delay(&drive->params.path)) {
-        actuation_commit_past(&drive->actuation);
+        (void)actuation_act(&drive->actuation);
     }
     return duties;
 }
@@ -34,6 +36,8 @@ static void go_on(struct drive *drive, const struct sample_set *now)
         standstill_hold_preset(&drive->hold, finding->current_reference);
         current_control_preset(&drive->current_control, (struct dq){finding->voltage, NUM(0.0)});
         estimator_preset_current(&drive->estimator, &drive->params.estimator, now->winding.current);
+        estimator_predict(&drive->estimator, &drive->params.estimator, &drive->params.model,
+                          drive->actuation.in_force);
     }
 }
 
@@ -51,7 +55,8 @@ finding_position_cycle(struct drive *drive, const struct hal_samples *samples)
                                       ? prepared_input_voltage(drive, now->winding.current)
                                       : now->winding.voltage;
 
-    actuation_observe(&drive->actuation, voltage);
+    (void)actuation_observe(&drive->actuation, voltage);
+    (void)actuation_act(&drive->actuation);
 
     const struct initial_position_output output =
         initial_position_step(&drive->enabling.detection, &drive->enabling.detection_params,

@@ -8,6 +8,7 @@
  * One period of it, up to the one in which the state is left: for aligning or operation with the
  * rotor's angle known, or for the fault position-not-found.
  */
-struct hal_outputs finding_position_cycle(struct drive *drive, const struct hal_samples *samples);
+__attribute__((noinline)) struct hal_outputs
+finding_position_cycle(struct drive *drive, const struct hal_samples *samples);
 
 #endif

@@ -32,3 +32,13 @@ bool drive_hold_bearing_of(const struct drive_settings *given, double period_s,
     };
     return true;
 }
+
+double drive_law_stiffness_Nm_rad(const struct drive_settings *given, double period_s,
+                                  uint32_t counts_per_turn)
+{
+    struct drive_settings settings = *given;
+
+    default_settings_apply(&settings, period_s, counts_per_turn);
+    return settings.motor.inertia_kgm2 * settings.law_bandwidth_rad_s *
+           settings.law_bandwidth_rad_s;
+}

@@ -13,9 +13,23 @@ struct measurement_params measurement_design(const struct hal_facts *facts,
     return params;
 }
 
-void measurement_reset(struct measurement *measurement)
+void measurement_reset(struct measurement *measurement, const struct measurement_params *params)
 {
-    const struct measurement zero = {0};
+    const struct channels none = {{NUM(0.0), NUM(0.0)}, {NUM(0.0), NUM(0.0)}};
 
-    *measurement = zero;
+    measurement->offset = none;
+    measurement->current_a = params->current;
+    measurement->current_b = params->current;
+}
+
+void measurement_balance(struct measurement *measurement, num_t imbalance)
+{
+    const num_t square = num_half(num_mul(imbalance, imbalance));
+    const num_t more = square + imbalance;
+    const num_t less = square - imbalance;
+
+    measurement->current_a = coef_more(measurement->current_a, more);
+    measurement->current_b = coef_more(measurement->current_b, less);
+    measurement->offset.current.a += num_mul(measurement->offset.current.a, more);
+    measurement->offset.current.b += num_mul(measurement->offset.current.b, less);
 }

@@ -15,21 +15,42 @@ struct measurement_params {
 
 struct measurement {
     struct channels offset; /* of the four channels that are zeroed: offset_calibration.h */
+    coef_t current_a;       /* per code; as the board has them, until the phases are balanced */
+    coef_t current_b;
 };
 
 struct sample_set {
     struct channels winding;
     num_t bus;
+    int32_t encoder_count;
 };
 
 __attribute__((cold)) struct measurement_params measurement_design(const struct hal_facts *facts,
                                                                    const struct per_unit *base);
 
-void measurement_reset(struct measurement *measurement);
+void measurement_reset(struct measurement *measurement, const struct measurement_params *params);
+
+static inline void measurement_add_voltage_offset(struct measurement *measurement,
+                                                  struct phases more)
+{
+    measurement->offset.voltage.a += more.a;
+    measurement->offset.voltage.b += more.b;
+}
+
+/* The currents, their offsets with them, by 1 + d + d^2 / 2 and 1 - d + d^2 / 2: phase_balance.h.
+ */
+__attribute__((noinline)) void measurement_balance(struct measurement *measurement,
+                                                   num_t imbalance);
 
 static inline void measurement_set_offset(struct measurement *measurement, struct channels offset)
 {
     measurement->offset = offset;
+}
+
+static inline num_t measurement_bus(const struct measurement_params *params,
+                                    const struct hal_samples *samples)
+{
+    return num_from_code(samples->bus_voltage, params->bus_voltage);
 }
 
 static inline __attribute__((always_inline)) struct sample_set
@@ -41,13 +62,14 @@ measurement_step(const struct measurement *measurement, const struct measurement
     const int32_t code_b = samples->current_b - params->current_zero_code;
     struct sample_set now;
 
-    now.winding.current.a = num_from_code(code_a, params->current) - offset->current.a;
-    now.winding.current.b = num_from_code(code_b, params->current) - offset->current.b;
+    now.winding.current.a = num_from_code(code_a, measurement->current_a) - offset->current.a;
+    now.winding.current.b = num_from_code(code_b, measurement->current_b) - offset->current.b;
     now.winding.voltage.a =
         num_from_code(samples->phase_voltage_a, params->phase_voltage) - offset->voltage.a;
     now.winding.voltage.b =
         num_from_code(samples->phase_voltage_b, params->phase_voltage) - offset->voltage.b;
-    now.bus = num_from_code(samples->bus_voltage, params->bus_voltage);
+    now.bus = measurement_bus(params, samples);
+    now.encoder_count = samples->encoder_count;
     return now;
 }
 

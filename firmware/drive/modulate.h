@@ -5,18 +5,18 @@
 #include "firmware/drive/drive.h"
 
 /* `command`: mean phase voltages, with what the bridge takes of them if that is compensated. */
-__attribute__((always_inline)) static inline struct hal_outputs modulate(struct drive *drive,
-                                                                         struct phases command)
+__attribute__((always_inline)) static inline void
+modulate(struct drive *drive, struct phases command, struct hal_outputs *outputs)
 {
     const struct modulation out =
         modulator_step(&drive->modulator, &drive->params.modulator, command);
-    const struct hal_outputs duties = {
-        .high_counts = {out.a.plus, out.a.minus, out.b.plus, out.b.minus},
-        .bridge_on = true,
-    };
 
+    outputs->high_counts[HAL_LEG_A_PLUS] = out.a.plus;
+    outputs->high_counts[HAL_LEG_A_MINUS] = out.a.minus;
+    outputs->high_counts[HAL_LEG_B_PLUS] = out.b.plus;
+    outputs->high_counts[HAL_LEG_B_MINUS] = out.b.minus;
+    outputs->bridge_on = true;
     actuation_commit(&drive->actuation, out.voltage);
-    return duties;
 }
 
 #endif

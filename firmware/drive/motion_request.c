@@ -41,7 +41,7 @@ static struct units units_of(const struct drive *drive)
 /* What the drive can follow, rad/s and rad/s^2. */
 static struct speed_limit speed_limit(const struct drive *drive, const struct units *units)
 {
-    struct speed_limit limit = board_limits_speed(&drive->settings);
+    struct speed_limit limit = board_limits_speed(&drive->settings, drive->board->facts);
 
     limit.rad_s = smaller(limit.rad_s, SPEED_MAX_TURNS * units->speed);
     return limit;

@@ -21,6 +21,7 @@ struct offset_calibration_params offset_calibration_design(const struct hal_fact
         .shift_max = {whole(shift_codes * OFFSET_SAMPLES), INT32_MAX},
         .deviation_max = whole(OFFSET_DEVIATION_CODES_MAX * finer * OFFSET_SAMPLES),
         .drop = coef_from_double(drop_V / base->voltage_V * NUM_CODE_SCALE),
+        .drop_resistance = num_from_double(motor->resistance_ohm / base->resistance_ohm),
     };
 }
 
@@ -105,6 +106,18 @@ static bool end_stage(struct offset_calibration *calibration,
 __attribute__((noinline)) static num_t mean_offset(int32_t sum, coef_t per_code)
 {
     return num_mul(num_from_code(sum, per_code), NUM(1.0 / OFFSET_SAMPLES));
+}
+
+struct phases offset_calibration_drop_error(const struct offset_calibration *calibration,
+                                            const struct offset_calibration_params *params,
+                                            const struct measurement_params *scales,
+                                            num_t resistance)
+{
+    const num_t error = params->drop_resistance - resistance;
+
+    return (struct phases){
+        num_mul(mean_offset(calibration->channel[0].flowing, scales->current), error),
+        num_mul(mean_offset(calibration->channel[1].flowing, scales->current), error)};
 }
 
 enum offset_result offset_calibration_step(struct offset_calibration *calibration,

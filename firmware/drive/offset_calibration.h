@@ -50,6 +50,7 @@ struct offset_calibration_params {
     int32_t shift_max[2];  /* what a sensor's offset may differ by */
     int32_t deviation_max; /* sum of magnitudes */
     coef_t drop;           /* voltage at the winding's resistance, per code of current */
+    num_t drop_resistance;
 };
 
 struct offset_channel {
@@ -73,6 +74,16 @@ struct offset_calibration_params offset_calibration_design(const struct hal_fact
 void offset_calibration_reset(struct offset_calibration *calibration);
 
 enum offset_result { OFFSETS_PENDING, OFFSETS_FOUND, OFFSETS_OUT_OF_RANGE };
+
+/*
+ * What is to be added to the offsets of the voltages once the resistance is known: the currents
+ * that may have flowed while these were read had been given the drop at the winding's as it was
+ * told.
+ */
+struct phases offset_calibration_drop_error(const struct offset_calibration *calibration,
+                                            const struct offset_calibration_params *params,
+                                            const struct measurement_params *scales,
+                                            num_t resistance);
 
 /* One period. The bridge is to be on with all legs at half duty as soon as bridge_on is set. Apart:
    compiled into its caller, it would be made large. */

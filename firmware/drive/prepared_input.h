@@ -20,11 +20,9 @@ __attribute__((noinline)) struct phases prepared_input_voltage(struct drive *dri
                                                                struct phases current);
 
 /*
- * One period, into drive->input.winding. A current that a pulse has made is not for the estimator,
- * which goes by its model meanwhile. Apart, and by value, so that the default path keeps its
- * samples in registers.
+ * One period: puts what the estimator is to get in place of what is measured. A current that a
+ * pulse has made is not for it: it goes by its model meanwhile.
  */
-__attribute__((noinline)) void prepared_input_make(struct drive *drive, struct phases current,
-                                                   struct phases voltage);
+__attribute__((noinline)) void prepared_input_make(struct drive *drive, struct channels *winding);
 
 #endif

@@ -40,12 +40,6 @@ struct protection_params protection_design(const struct per_unit *base,
     return params;
 }
 
-/* One comparison: a code below the range wraps to a large number. */
-static bool beyond(struct code_range range, int32_t code)
-{
-    return (uint32_t)(code - range.low) > (uint32_t)range.width;
-}
-
 enum drive_fault protection_check_samples(const struct protection_params *params,
                                           const struct hal_samples *samples)
 {
@@ -53,21 +47,9 @@ enum drive_fault protection_check_samples(const struct protection_params *params
         return (samples->flags & HAL_FLAG_OVERCURRENT_TRIP) != 0u ? DRIVE_FAULT_HARDWARE_OVERCURRENT
                                                                   : DRIVE_FAULT_DEADLINE_MISSED;
     }
-    if (beyond(params->current_codes, samples->current_a) ||
-        beyond(params->current_codes, samples->current_b)) {
+    if (code_is_beyond(params->current_codes, samples->current_a) ||
+        code_is_beyond(params->current_codes, samples->current_b)) {
         return DRIVE_FAULT_OVERCURRENT;
     }
-    if (beyond(params->bus_codes, samples->bus_voltage)) {
-        return DRIVE_FAULT_BUS_VOLTAGE;
-    }
-    return DRIVE_FAULT_NONE;
-}
-
-enum drive_fault protection_check_estimate(const struct protection_params *params,
-                                           const struct estimate *estimate)
-{
-    const bool physical = num_abs(estimate->rotor.speed) < params->speed_limit &&
-                          num_abs(estimate->rotor.load_torque) < params->load_torque_limit;
-
-    return physical ? DRIVE_FAULT_NONE : DRIVE_FAULT_ESTIMATE_RANGE;
+    return protection_passes(params, samples) ? DRIVE_FAULT_NONE : DRIVE_FAULT_BUS_VOLTAGE;
 }

@@ -29,17 +29,19 @@ static void preset_estimator(struct drive *drive, const struct standstill_angle 
         invariant_ekf_preset_bias_along(&drive->estimator.invariant_ekf,
                                         drive->standstill.bias_of_motion, drive->hold.frame);
     }
+    estimator_predict(&drive->estimator, &drive->params.estimator, &drive->params.model,
+                      drive->actuation.in_force);
 }
 
-/* Of the coming S(k), had this voltage acted since S(k-1). Apart: compiled once. */
+/* Of this S(k), had this voltage acted since S(k-1). Apart: compiled once. */
 __attribute__((noinline)) static struct phases expected_current(const struct drive *drive,
                                                                 struct phases voltage)
 {
     const struct estimate *x = &drive->estimator.estimate;
-    const struct phases bias = estimated_bias(drive);
-    const struct phases driving = {voltage.a - bias.a, voltage.b - bias.b};
+    const struct phases in_force = drive->actuation.in_force;
+    const struct phases more = {voltage.a - in_force.a, voltage.b - in_force.b};
 
-    return forced_current(&x->winding, x->free_current, driving);
+    return forced_current(&x->winding, x->next.current, more);
 }
 
 void standstill_angle_blank_sample(struct drive *drive, struct channels *winding)

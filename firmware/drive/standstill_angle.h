@@ -12,7 +12,8 @@
  */
 void standstill_angle_blank_sample(struct drive *drive, struct channels *winding);
 
-/* Before the control: what the bridge was found to take of the voltage before a pulse holds. */
+/* Before the voltage in force is known: what the bridge was found to take of the voltage before a
+ * pulse holds. */
 void standstill_angle_begin(struct drive *drive);
 
 /*

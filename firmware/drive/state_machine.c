@@ -3,6 +3,7 @@
 #include "firmware/drive/block_reset.h"
 #include "firmware/drive/command_rules.h"
 #include "firmware/drive/encoder_aligning.h"
+#include "firmware/drive/phase_balancing.h"
 #include "firmware/drive/prepared_input.h"
 #include "firmware/drive/synchronism.h"
 
@@ -17,6 +18,7 @@ static void end_aligning(struct drive *drive)
     const struct drive_params *params = &drive->params;
 
     drive->supervision.aligns = false;
+    estimator_expect_load(&drive->estimator, &drive->params.estimator);
     standstill_hold_end_aligning(&drive->hold, &params->hold);
     synchronism_start(drive);
     enter(drive, DRIVE_OPERATION_ENABLED);
@@ -33,20 +35,37 @@ static void align_encoder(struct drive *drive)
     }
 }
 
-/* The first hold: without an encoder, and with one whose zero is known, it calibrates. */
-static void align(struct drive *drive)
+static void balance_phases(struct drive *drive, const struct hal_samples *samples)
 {
+    const enum phase_balancing balancing = phase_balancing_step(drive, samples);
+
+    if (balancing == PHASES_ARE_BALANCED) {
+        end_aligning(drive);
+    } else if (balancing == PHASES_DO_NOT_MATCH) {
+        state_machine_fault(drive, DRIVE_FAULT_PHASE_IMBALANCE);
+    }
+}
+
+/* The first hold: without an encoder, and with one whose zero is known, it calibrates. */
+static void align(struct drive *drive, const struct hal_samples *samples)
+{
+    const uint32_t held = drive->supervision.period - drive->supervision.state_since;
+    const uint32_t enough = drive->params.enabling.hold_on_enable_periods + 1u;
+
     if (drive->supervision.aligns) {
         align_encoder(drive);
-    } else if (drive->supervision.period - drive->supervision.state_since >
-               drive->params.enabling.hold_on_enable_periods) {
+    } else if (held >= enough && drive->params.enabling.balance_periods == 0u) {
         end_aligning(drive);
+    } else if (held == enough) {
+        phase_balancing_start(drive);
+    } else if (held > enough) {
+        balance_phases(drive, samples);
     }
 }
 
 static void power_up(struct drive *drive)
 {
-    drive_reset_blocks(drive);
+    drive_reset_motion(drive);
     if (drive->params.enabling.hold_on_enable_periods > 0u) {
         drive->supervision.aligns = estimator_has_encoder(&drive->params.estimator) &&
                                     !drive->params.enabling.encoder_zero_known;
@@ -75,7 +94,7 @@ static void find_position_or_power_up(struct drive *drive)
     actuation_reset(&drive->actuation);
     prepared_input_reset(drive);
     if (drive->params.enabling.detects_position) {
-        drive_reset_blocks(drive);
+        drive_reset_motion(drive);
         initial_position_start(&drive->enabling.detection, &drive->enabling.detection_params,
                                drive->enabling.start.fraction);
         enter(drive, DRIVE_FINDING_POSITION);
@@ -87,7 +106,8 @@ static void find_position_or_power_up(struct drive *drive)
 /* Apart: rare. */
 __attribute__((noinline)) static void start_enabling(struct drive *drive)
 {
-    measurement_reset(&drive->measurement);
+    drive_reset_control(drive);
+    measurement_reset(&drive->measurement, &drive->params.measurement);
     offset_calibration_reset(&drive->enabling.calibration);
     if (drive->params.enabling.calibrates_offsets) {
         enter(drive, DRIVE_CALIBRATING_OFFSETS);
@@ -149,7 +169,7 @@ static void take_over(struct drive *drive, const struct motion_plan *plan)
 }
 
 /* One command a period: short worst case. */
-static void take_commands(struct drive *drive)
+static inline __attribute__((always_inline)) void take_commands(struct drive *drive)
 {
     struct command_queue *queue = &drive->commands;
     const uint32_t period = drive->supervision.period;
@@ -166,20 +186,21 @@ static void take_commands(struct drive *drive)
     if (command_queue_take_urgent(queue, &queue->stop, period, &wait)) {
         reference_stop(&drive->reference);
         command_queue_stop_acted(queue, period);
+        command_queue_rest_if_empty(queue, period);
         return;
     }
     /* A move is loaded a period ahead: it begins with the period it is addressed to. */
     command = command_queue_due(queue, period + 1u, &wait);
     if (command != NULL && obey(drive, command)) {
         command_queue_drop(queue);
+        command_queue_rest_if_empty(queue, period);
         return;
     }
     plan = command_queue_take_over(queue, period, &wait);
     if (plan != NULL) {
         take_over(drive, plan);
     } else {
-        command_queue_rest(queue, period, wait,
-                           command != NULL && command->at_period != period + 1u);
+        command_queue_rest(queue, period, wait);
     }
 }
 
@@ -239,7 +260,7 @@ __attribute__((noinline)) static bool step_outside_operation(struct drive *drive
     if (drive->supervision.state == DRIVE_CALIBRATING_OFFSETS) {
         calibrate_offsets(drive, samples);
     } else if (drive->supervision.state == DRIVE_ALIGNING) {
-        align(drive);
+        align(drive, samples);
     }
     if (drive->supervision.state == DRIVE_FINDING_POSITION) {
         state_machine_fault(drive, protection_check_samples(&drive->params.protection, samples));
@@ -247,20 +268,47 @@ __attribute__((noinline)) static bool step_outside_operation(struct drive *drive
     return state_machine_powered(drive);
 }
 
-bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
+/* Enters the fault that the samples show, if any; true: they show none. Apart: rare. */
+__attribute__((noinline)) static bool samples_are_good(struct drive *drive,
+                                                       const struct hal_samples *samples)
+{
+    const enum drive_fault fault = protection_check_samples(&drive->params.protection, samples);
+
+    state_machine_fault(drive, fault);
+    return fault == DRIVE_FAULT_NONE;
+}
+
+/* A command may be due, or the state is another than operation. */
+static inline __attribute__((always_inline)) bool
+step_with_commands(struct drive *drive, const struct hal_samples *samples)
 {
     const bool was_powered = state_machine_powered(drive);
 
-    if (command_queue_is_pending(&drive->commands, drive->supervision.period,
-                                 !reference_busy(&drive->reference))) {
+    drive->encoder_count = samples->encoder_count;
+    if (command_queue_is_due(&drive->commands, drive->supervision.period)) {
         take_commands(drive);
     }
     if (drive->supervision.state != DRIVE_OPERATION_ENABLED &&
         !step_outside_operation(drive, samples)) {
         return false;
     }
-    const enum drive_fault fault = protection_check_samples(&drive->params.protection, samples);
+    if (!was_powered) { /* it has only been reset; and a fault is entered at once */
+        (void)samples_are_good(drive, samples);
+    }
+    return was_powered;
+}
 
-    state_machine_fault(drive, fault);
-    return was_powered && fault == DRIVE_FAULT_NONE;
+bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
+{
+    const uint32_t period = drive->supervision.period + 1u;
+
+    drive->supervision.period = period;
+    if (RARE(drive->supervision.state != DRIVE_OPERATION_ENABLED ||
+             command_queue_is_due(&drive->commands, period))) {
+        if (!step_with_commands(drive, samples)) {
+            return false;
+        }
+    }
+    return protection_passes(&drive->params.protection, samples) ||
+           samples_are_good(drive, samples);
 }

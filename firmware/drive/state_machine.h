@@ -21,16 +21,10 @@ static inline bool state_machine_powered(const struct drive *drive)
            drive->supervision.state == DRIVE_OPERATION_ENABLED;
 }
 
-/* First of all in a control interrupt. */
-static inline void state_machine_begin_period(struct drive *drive)
-{
-    drive->supervision.period++;
-}
-
 /*
- * One period: takes due commands, the steps of enabling and the faults seen in the samples. true:
- * the bridge was on before and stays on. The period that powers up only resets the blocks, so that
- * no interrupt pays for both.
+ * One period, first of all in a control interrupt: counts it, takes due commands, the steps of
+ * enabling and the faults seen in the samples. true: the bridge was on before and stays on. The
+ * period that powers up only resets the blocks, so that no interrupt pays for both.
  */
 bool state_machine_step(struct drive *drive, const struct hal_samples *samples);
 

@@ -58,7 +58,8 @@ void synchronism_start(struct drive *drive)
 {
     if (drive->synchronism.monitored) {
         drive->synchronism.step = TAKE;
-        drive->synchronism.due = drive->supervision.period + SYNCHRONISM_BLOCK_PERIODS;
+        drive->synchronism.due =
+            drive->supervision.period + drive->synchronism.params.block_periods;
         (void)invariant_ekf_take_innovation_sum(&drive->estimator.invariant_ekf);
     }
 }
@@ -69,8 +70,10 @@ static enum synchronism doubt(struct drive *drive)
         synchronism_monitor_doubt(&drive->synchronism.monitor, &drive->synchronism.params);
 
     drive->synchronism.step = TAKE;
-    if (drive->supervision.period - drive->synchronism.block_began < SYNCHRONISM_BLOCK_PERIODS) {
-        drive->synchronism.due = drive->synchronism.block_began + SYNCHRONISM_BLOCK_PERIODS;
+    if (drive->supervision.period - drive->synchronism.block_began <
+        drive->synchronism.params.block_periods) {
+        drive->synchronism.due =
+            drive->synchronism.block_began + drive->synchronism.params.block_periods;
     }
     if (verdict == SYNCHRONISM_SURE && drive->synchronism.shown != DRIVE_SYNCHRONISM_LOST) {
         drive->synchronism.shown = DRIVE_SYNCHRONISM_SURE;
@@ -81,7 +84,7 @@ static enum synchronism doubt(struct drive *drive)
 /* Of the rotor, beside the reference for this S(k). */
 static num_t error_of(const struct drive *drive, const struct rotor *rotor)
 {
-    return position_difference(drive->reference.next.position, rotor->position);
+    return position_difference(drive->reference.now.position, rotor->position);
 }
 
 /* A hold that has lost its grip drives the rotor on: the position law catches it, if it may. */
@@ -126,7 +129,7 @@ static enum synchronism step(struct drive *drive, const struct rotor *rotor)
         return synchronism_monitor_judge_load(monitor, params, rotor->load_torque);
     case JUDGE_FOLLOWING:
         return synchronism_monitor_judge_following(monitor, params, error_of(drive, rotor),
-                                                   drive->reference.next.speed - rotor->speed);
+                                                   drive->reference.now.speed - rotor->speed);
     case JUDGE_GRIP:
         return drive->hold.active ? judge_grip(drive, rotor) : SYNCHRONISM_SURE;
     case DOUBT:
@@ -158,9 +161,9 @@ static enum drive_fault act(struct drive *drive, enum synchronism verdict)
     return verdict == SYNCHRONISM_LOST ? DRIVE_FAULT_LOST_SYNCHRONISM : DRIVE_FAULT_STALLED;
 }
 
-enum drive_fault synchronism_watch(struct drive *drive, const struct rotor *rotor)
+enum drive_fault synchronism_watch(struct drive *drive)
 {
-    const enum synchronism verdict = step(drive, rotor);
+    const enum synchronism verdict = step(drive, &drive->estimator.estimate.rotor);
 
     return verdict == SYNCHRONISM_SURE ? DRIVE_FAULT_NONE : act(drive, verdict);
 }

@@ -24,13 +24,12 @@ void synchronism_start(struct drive *drive);
  */
 static inline bool synchronism_is_due(const struct drive *drive)
 {
-    return (int32_t)(drive->supervision.period - drive->synchronism.due) >= 0 &&
-           reference_goes_on(&drive->reference) &&
+    return RARE((int32_t)(drive->supervision.period - drive->synchronism.due) >= 0) &&
            (!drive->hold.active || !drive->hold.leads ||
             !standstill_hold_leads_in(drive->supervision.period));
 }
 
-/* In a period in which commands are looked at. */
+/* In a period in which commands are looked at, or a phase of the reference begins. */
 static inline void synchronism_wait(struct drive *drive)
 {
     if ((int32_t)(drive->supervision.period - drive->synchronism.due) >= 0) {
@@ -38,11 +37,7 @@ static inline void synchronism_wait(struct drive *drive)
     }
 }
 
-/*
- * In a period in which it is due, with the rotor as estimated at S(k): the fault to enter, if any.
- * Not part of the interrupt's body, whose registers it would cost.
- */
-__attribute__((noinline)) enum drive_fault synchronism_watch(struct drive *drive,
-                                                             const struct rotor *rotor);
+/* At the end of a period in which it is due: the fault to enter, if any. */
+enum drive_fault synchronism_watch(struct drive *drive);
 
 #endif

@@ -12,7 +12,6 @@ enum { LOOK_SWINGS = 2 };
 #define OUTERMOST (15 << 27)
 
 static const double turn = 4294967296.0;
-static const double eighth_turn = 536870912.0;
 static const double two_pi = 6.28318530717958647693;
 
 /* Bounds in electrical turns. */
@@ -30,34 +29,23 @@ static const double noise_counts = 0.3;
 static const double outlier_share = 0.6;
 #define OUTLIER_OF_LOAD NUM(0.125) /* and of the displacement by a load */
 
-static const double swing_min = 8.0;
-static const double swing_max = 1e6;
 static const double patience_swings = 40.0;
 static const double current_tolerance = 0.1;
-
-/* Periods of a swing, within what any motor that can be controlled has. */
-static double design_swing(const struct encoder_alignment_task *task, double current_A)
-{
-    const double swing = two_pi / (hold_frequency(task->motor, current_A) * task->period_s);
-
-    return larger(smaller(swing, swing_max), swing_min);
-}
 
 static struct alignment_hold design_held(const struct encoder_alignment_task *task,
                                          double current_A)
 {
-    const double swing = design_swing(task, current_A);
+    const double held_rad_s = hold_frequency(task->motor, current_A);
+    const struct held_angle_params lead = held_angle_design(two_pi / (held_rad_s * task->period_s));
     const double current = current_A / task->base->current_A;
-    const uint32_t look = LOOK_SWINGS * (uint32_t)swing;
+    const uint32_t look = LOOK_SWINGS * lead.swing;
 
     return (struct alignment_hold){
         .current = num_from_double(current),
         .tolerance = num_from_double(current_tolerance * current),
-        .swing = (uint32_t)swing,
         .look = look,
         .per_look = coef_from_double(1.0 / (double)look),
-        .speed = (int32_t)(eighth_turn / swing),
-        .acceleration = (int32_t)(eighth_turn / (swing * swing)) + 1,
+        .lead = lead,
     };
 }
 
@@ -97,8 +85,9 @@ struct encoder_alignment_params encoder_alignment_design(const struct encoder_al
         .outlier_max = num_from_double(outlier_share * bound),
     };
 
-    params.patience = params.settling +
-                      (uint32_t)(patience_swings * (double)params.hold[ALIGNMENT_WEAK].swing + 0.5);
+    params.patience =
+        params.settling +
+        (uint32_t)(patience_swings * (double)params.hold[ALIGNMENT_WEAK].lead.swing + 0.5);
     return params;
 }
 
@@ -109,9 +98,7 @@ static void look_anew(struct encoder_alignment *alignment)
 
 static void go_to(struct encoder_alignment *alignment, int32_t target)
 {
-    alignment->target = target;
-    alignment->speed = 0;
-    alignment->stopping = 0;
+    held_angle_lead_to(&alignment->held, target);
     alignment->periods = 0u;
     look_anew(alignment);
 }
@@ -120,7 +107,7 @@ static void go_to(struct encoder_alignment *alignment, int32_t target)
 static void anchor(struct encoder_alignment *alignment, int32_t count)
 {
     alignment->count = count;
-    alignment->count_offset = alignment->offset;
+    alignment->count_offset = alignment->held.offset;
 }
 
 void encoder_alignment_start(struct encoder_alignment *alignment, int32_t count)
@@ -128,8 +115,7 @@ void encoder_alignment_start(struct encoder_alignment *alignment, int32_t count)
     alignment->stage = ALIGNMENT_DRAWING;
     alignment->way = ALIGNMENT_UP_WEAK;
     alignment->stop = 0u;
-    alignment->offset = 0;
-    alignment->moved = 0;
+    held_angle_start(&alignment->held);
     alignment->deviation = 0;
     alignment->rotor = 0;
     alignment->zero = NUM(0.0);
@@ -160,28 +146,6 @@ static int32_t angle_of_stop(const struct encoder_alignment *alignment,
     return number == TURN ? -OUTERMOST : (MIDDLE - number) * params->spacing + params->interleave;
 }
 
-/* Towards its target, the speed rising and falling evenly; true: it is there. */
-static bool move(struct encoder_alignment *alignment, const struct alignment_hold *hold)
-{
-    const int64_t way = (int64_t)alignment->target - alignment->offset;
-    const int64_t distance = way < 0 ? -way : way;
-
-    if (distance < alignment->stopping && alignment->speed > hold->acceleration) {
-        alignment->stopping -= alignment->speed;
-        alignment->speed -= hold->acceleration;
-    } else if (distance > alignment->stopping + alignment->speed &&
-               alignment->speed < hold->speed) {
-        alignment->speed += hold->acceleration;
-        alignment->stopping += alignment->speed;
-    }
-    alignment->moved = way < 0 ? -alignment->speed : alignment->speed;
-    if (distance <= alignment->speed) {
-        alignment->moved = (int32_t)way;
-    }
-    alignment->offset += alignment->moved;
-    return alignment->offset == alignment->target;
-}
-
 /* How far the rotor is beyond the held angle, seen from where its travel began. */
 static int32_t deviation(const struct encoder_alignment *alignment,
                          const struct encoder_alignment_params *params, int32_t count)
@@ -189,7 +153,8 @@ static int32_t deviation(const struct encoder_alignment *alignment,
     const int32_t counts = (int32_t)((uint32_t)count - (uint32_t)alignment->count);
     const angle_t travelled = (angle_t)(encoder_travel(&params->encoder, counts) >> 32);
 
-    return (int32_t)(travelled - ((uint32_t)alignment->offset - (uint32_t)alignment->count_offset));
+    return (int32_t)(travelled -
+                     ((uint32_t)alignment->held.offset - (uint32_t)alignment->count_offset));
 }
 
 /* One period of the look at the rotor: the mean of its deviation over a swing. */
@@ -227,7 +192,7 @@ static bool still(const struct encoder_alignment *alignment,
 /* The rotor stands, in the mean of the look or by what has been found, `turns` beyond the hold. */
 static void place(struct encoder_alignment *alignment, num_t by_count)
 {
-    alignment->rotor = (int32_t)((uint32_t)alignment->offset + (uint32_t)alignment->deviation -
+    alignment->rotor = (int32_t)((uint32_t)alignment->held.offset + (uint32_t)alignment->deviation -
                                  (uint32_t)angle_from_turns(by_count));
 }
 
@@ -342,7 +307,7 @@ static enum encoder_alignment_event draw(struct encoder_alignment *alignment,
     if (!still(alignment, params)) {
         return ALIGNMENT_PLACES;
     }
-    if (alignment->target == 0) {
+    if (alignment->held.target == 0) {
         go_to(alignment, -OUTERMOST);
     } else {
         alignment->stage = ALIGNMENT_SWEEPING;
@@ -404,7 +369,7 @@ enum encoder_alignment_event encoder_alignment_step(struct encoder_alignment *al
     if (++alignment->periods > params->patience) {
         return fail(alignment);
     }
-    if (!move(alignment, hold) || alignment->periods < settling) {
+    if (!held_angle_step(&alignment->held, &hold->lead) || alignment->periods < settling) {
         return ALIGNMENT_GOES_ON;
     }
     look(alignment, params, count);

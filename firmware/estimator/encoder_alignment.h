@@ -34,13 +34,13 @@
  * At rest: for two swings of the held rotor, 2 pi / sqrt(N Km i / J) each, the counts stay within
  * one or within a degree electrical, and within one more after five swings, since a hold that damps
  * by counts may keep a rotor swinging within them. So no turning point is taken for rest, not with
- * several times the inertia either, and what is left of a swing falls out of the mean. The held
- * angle gathers and loses speed in one swing each, which excites no other.
+ * several times the inertia either, and what is left of a swing falls out of the mean.
  */
 #ifndef STEADYSTEP_ENCODER_ALIGNMENT_H
 #define STEADYSTEP_ENCODER_ALIGNMENT_H
 
 #include "firmware/motor/encoder.h"
+#include "firmware/motor/held_angle.h"
 #include "firmware/motor/motor_params.h"
 #include "firmware/motor/per_unit.h"
 
@@ -61,12 +61,10 @@ enum encoder_alignment_way {
 /* Of a rotor held by one of the two currents. */
 struct alignment_hold {
     num_t current;
-    num_t tolerance;      /* of the current that flows */
-    uint32_t swing;       /* periods of one, undamped */
-    uint32_t look;        /* periods for which it must rest */
-    coef_t per_look;      /* 1 / look */
-    int32_t speed;        /* of the held angle, per period */
-    int32_t acceleration; /* per period */
+    num_t tolerance; /* of the current that flows */
+    uint32_t look;   /* periods for which it must rest */
+    coef_t per_look; /* 1 / look */
+    struct held_angle_params lead;
 };
 
 struct encoder_alignment_params {
@@ -100,11 +98,7 @@ struct encoder_alignment {
     enum encoder_alignment_way way;
     uint32_t stop;    /* on the way; the first is 1 */
     uint32_t periods; /* since the held angle began to move to it */
-    int32_t offset;   /* of the held angle from the final one, -1/2...1/2 turn */
-    int32_t target;
-    int32_t speed;    /* magnitude of the held angle's, per period */
-    int32_t stopping; /* distance in which it comes to rest */
-    int32_t moved;    /* in this period */
+    struct held_angle held;
 
     /* the present look at a rotor that may be at rest */
     uint32_t looked;
@@ -172,7 +166,7 @@ encoder_alignment_hold(const struct encoder_alignment *alignment,
 static inline num_t encoder_alignment_speed(const struct encoder_alignment *alignment,
                                             const struct encoder_alignment_params *params)
 {
-    return num_mul_coef(turns_from_angle(alignment->moved), params->speed_per_turn);
+    return num_mul_coef(held_angle_turned(&alignment->held), params->speed_per_turn);
 }
 
 /* What is to hold the rotor in the coming period. */

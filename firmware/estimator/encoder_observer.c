@@ -80,8 +80,7 @@ void encoder_observer_reset(struct encoder_observer *observer,
     observer->known_torque = NUM(0.0);
 }
 
-void encoder_observer_place(struct encoder_observer *observer,
-                            const struct encoder_observer_params *params, struct position position,
+void encoder_observer_place(struct encoder_observer *observer, struct position position,
                             int32_t count)
 {
     struct rotor *rotor = &observer->estimate.rotor;
@@ -90,13 +89,12 @@ void encoder_observer_place(struct encoder_observer *observer,
     rotor->position = position;
     rotor->speed = NUM(0.0);
     rotor->load_torque = park(observer->estimate.current, sincos_of(position.fraction)).q;
-    estimate_look_ahead(&observer->estimate, &params->model);
 }
 
 static void adapt_resistance(struct estimate *x, const struct encoder_observer_params *params,
-                             struct phases current, struct phases voltage)
+                             struct phases current, struct phases surprise)
 {
-    const struct phases expected = forced_current(&x->winding, x->free_current, voltage);
+    const struct phases expected = forced_current(&x->winding, x->next.current, surprise);
     const num_t along =
         num_mul(current.a - expected.a, current.a) + num_mul(current.b - expected.b, current.b);
 
@@ -104,40 +102,71 @@ static void adapt_resistance(struct estimate *x, const struct encoder_observer_p
                            x->winding.resistance - num_mul_coef(along, params->gain_resistance));
 }
 
-/*
- * Mean of i_q over S(k-1)...S(k) from its two ends, each in the rotor's frame of its own instant: h
- * before and after the middle of the period, so it takes the q part of their sum and the d part of
- * their difference. (The mean of the phase currents is the chord of the
- * arc that they run through, short by h^2/2: 0.8 % at 50 rad/s, 10 kHz and 50 teeth.)
- */
-static num_t mean_torque_current(const struct estimate *x, struct phases current)
+/* By how much the rotor is faster than predicted, as the current is another. To nearest, as are its
+   turns: what a floor left would be taken for a speed. */
+static num_t speed_of_current(const struct estimate *x, const struct motor_model_params *model,
+                              struct phases current)
 {
-    const struct phases sum = {x->current.a + current.a, x->current.b + current.b};
-    const struct phases difference = {x->current.a - current.a, x->current.b - current.b};
+    const struct phases error = {current.a - x->next.current.a, current.b - x->next.current.b};
 
-    return num_half(num_mul_unit(park(sum, x->mid_period).q, x->half_turn.cos) +
-                    num_mul_unit(park(difference, x->mid_period).d, x->half_turn.sin));
+    return num_mul_coef_nearest(num_half(park(error, x->next.frame).q), model->speed_per_torque);
 }
 
-void encoder_observer_step(struct encoder_observer *observer,
-                           const struct encoder_observer_params *params, struct phases current,
-                           struct phases voltage, int32_t count, bool holding)
+static void correct(struct encoder_observer *observer, const struct encoder_observer_params *params,
+                    struct phases current, int32_t count)
 {
     struct estimate *x = &observer->estimate;
-    struct rotor *rotor = &x->rotor;
     const struct position measured = encoder_step(&observer->encoder, &params->encoder, count);
+    const num_t more_speed = speed_of_current(x, &params->model, current);
+    const num_t more_turns = num_mul_coef_nearest(more_speed, params->model.half_turns_per_speed);
+    const num_t innovation =
+        num_limit(position_difference(measured, x->next.position) - more_turns, NUM(0.25));
 
-    if (holding) {
-        adapt_resistance(x, params, current, voltage);
-    }
-    predict_rotor(&params->model, rotor, mean_torque_current(x, current) - observer->known_torque);
-
-    const num_t innovation = num_limit(position_difference(measured, rotor->position), NUM(0.25));
-
-    rotor->position = position_add(rotor->position,
-                                   angle_from_turns(num_mul_coef(innovation, params->gain_angle)));
-    rotor->speed += num_mul_coef(innovation, params->gain_speed);
-    rotor->load_torque -= num_mul_coef(innovation, params->gain_load);
+    x->rotor.position =
+        position_add(x->next.position,
+                     angle_from_turns(more_turns + num_mul_coef(innovation, params->gain_angle)));
+    x->rotor.speed = x->next.speed + more_speed + num_mul_coef(innovation, params->gain_speed);
+    x->rotor.load_torque -= num_mul_coef(innovation, params->gain_load);
     x->current = current;
-    estimate_look_ahead(x, &params->model);
+}
+
+/* Compiled into both its places. */
+__attribute__((always_inline)) static inline struct passage
+predict(struct encoder_observer *observer, const struct encoder_observer_params *params,
+        struct phases voltage)
+{
+    struct estimate *x = &observer->estimate;
+    const struct passage passage = estimate_predict_current(x, &params->model, voltage);
+
+    estimate_predict_rotor(x, &params->model,
+                           estimate_mean_of_ends(x, passage) - observer->known_torque);
+    return passage;
+}
+
+struct passage encoder_observer_predict(struct encoder_observer *observer,
+                                        const struct encoder_observer_params *params,
+                                        struct phases voltage)
+{
+    return predict(observer, params, voltage);
+}
+
+struct passage encoder_observer_step(struct encoder_observer *observer,
+                                     const struct encoder_observer_params *params,
+                                     struct phases current, struct phases surprise,
+                                     struct phases in_force, int32_t count, bool holding)
+{
+    if (holding) {
+        adapt_resistance(&observer->estimate, params, current, surprise);
+    }
+    correct(observer, params, current, count);
+    return predict(observer, params, in_force);
+}
+
+void encoder_observer_set_known_torque(struct encoder_observer *observer,
+                                       const struct encoder_observer_params *params, num_t torque)
+{
+    const num_t half_more = num_half(torque - observer->known_torque);
+
+    observer->estimate.next.speed -= num_mul_coef(half_more, params->model.speed_per_torque);
+    observer->known_torque = torque;
 }

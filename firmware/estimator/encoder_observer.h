@@ -1,8 +1,8 @@
 /*
  * Model observer on an encoder: rotor position, speed and load torque from counts and currents.
  *
- *   predict with the measured currents (motor_model.h), then correct with
- *   nu = theta_measured - theta_hat:
+ *   predict with the voltage that is expected over the period (motor_model.h); at its end put the
+ *   speed right by the current that is measured, then correct with nu = theta_measured - theta_hat:
  *   theta += l_theta nu,   w += l_w nu,   T_L -= l_T nu
  *
  * Triple pole p = e^(-w_o T) of the error (position, speed and acceleration of a free rotor,
@@ -31,7 +31,7 @@ struct encoder_observer_params {
 struct encoder_observer {
     struct estimate estimate;
     struct encoder encoder;
-    num_t known_torque; /* part of the load that need not be estimated; set before each step */
+    num_t known_torque; /* part of the load that need not be estimated, at S(k) */
 };
 
 /* What it is designed from. */
@@ -56,16 +56,25 @@ void encoder_observer_reset(struct encoder_observer *observer,
                             const struct encoder_observer_params *params, struct position position,
                             num_t load_torque, num_t resistance, int32_t count);
 
-/* The rotor rests at `position` with this count: its load is the torque that its current makes. */
-void encoder_observer_place(struct encoder_observer *observer,
-                            const struct encoder_observer_params *params, struct position position,
+/* The rotor rests at `position` with this count: its load is the torque that its current makes. To
+   be predicted from there. */
+void encoder_observer_place(struct encoder_observer *observer, struct position position,
                             int32_t count);
 
-/* From S(k-1) to S(k). Not inlined: its registers cost the sensorless interrupt nothing. */
-__attribute__((noinline)) void encoder_observer_step(struct encoder_observer *observer,
-                                                     const struct encoder_observer_params *params,
-                                                     struct phases current, struct phases voltage,
-                                                     int32_t count, bool holding);
+/*
+ * At S(k): corrects what was predicted for it, and predicts S(k+1). `surprise`: by how much the
+ * mean voltage over S(k-1)...S(k) was another than expected; `in_force`: what is expected over
+ * S(k)...S(k+1). Not inlined: its registers cost the sensorless interrupt nothing.
+ */
+__attribute__((noinline)) struct passage
+encoder_observer_step(struct encoder_observer *observer,
+                      const struct encoder_observer_params *params, struct phases current,
+                      struct phases surprise, struct phases in_force, int32_t count, bool holding);
+
+/* Predicts S(k+1) once more, under this mean voltage. Apart: rare. */
+__attribute__((noinline)) struct passage
+encoder_observer_predict(struct encoder_observer *observer,
+                         const struct encoder_observer_params *params, struct phases voltage);
 
 static inline void encoder_observer_begin(struct encoder_observer *observer,
                                           const struct encoder_observer_params *params,
@@ -75,19 +84,17 @@ static inline void encoder_observer_begin(struct encoder_observer *observer,
                            start->resistance, start->encoder_count);
 }
 
-static inline void encoder_observer_observe(struct encoder_observer *observer,
-                                            const struct encoder_observer_params *params,
-                                            const struct estimator_input *input)
+static inline struct passage encoder_observer_observe(struct encoder_observer *observer,
+                                                      const struct encoder_observer_params *params,
+                                                      const struct estimator_input *input)
 {
-    encoder_observer_step(observer, params, input->winding->current, input->winding->voltage,
-                          input->encoder_count, input->hold.active);
+    return encoder_observer_step(observer, params, input->winding.current, input->surprise,
+                                 input->in_force, input->encoder_count, input->hold.active);
 }
 
-/* Torque that the next prediction takes into account besides the load. */
-static inline void encoder_observer_set_known_torque(struct encoder_observer *observer,
-                                                     num_t torque)
-{
-    observer->known_torque = torque;
-}
+/* Torque besides the load, as it is known for S(k+1): the prediction takes the mean of it and of
+   what was known for S(k). */
+void encoder_observer_set_known_torque(struct encoder_observer *observer,
+                                       const struct encoder_observer_params *params, num_t torque);
 
 #endif

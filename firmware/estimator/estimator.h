@@ -57,21 +57,15 @@ static inline void estimator_begin(struct estimator *estimator,
 #undef ESTIMATOR_BEGIN
 }
 
-/* From S(k-1) to S(k). */
-static inline const struct estimate *estimator_observe(struct estimator *estimator,
-                                                       const struct estimator_params *params,
-                                                       const struct estimator_input *input)
-{
-#define ESTIMATOR_OBSERVE(constant, name)                                                          \
-    if (estimator_is(params, ESTIMATOR_##constant)) {                                              \
-        name##_observe(&estimator->name, &params->name, input);                                    \
-    } else
-    ESTIMATORS(ESTIMATOR_OBSERVE)
-    {
-    }
-#undef ESTIMATOR_OBSERVE
-    return &estimator->estimate;
-}
+/* At S(k): from S(k-1) on to what is expected of S(k+1). The default path does not come here. */
+struct passage estimator_observe(struct estimator *estimator, const struct estimator_params *params,
+                                 const struct estimator_input *input);
+
+/* From S(k) to S(k+1) once more, under this mean voltage. Apart: rare. */
+__attribute__((noinline)) void estimator_predict(struct estimator *estimator,
+                                                 const struct estimator_params *params,
+                                                 const struct motor_model_params *model,
+                                                 struct phases voltage);
 
 /* Without an encoder, behind estimator_begin: this current flows already. */
 static inline void estimator_preset_current(struct estimator *estimator,
@@ -80,12 +74,30 @@ static inline void estimator_preset_current(struct estimator *estimator,
 {
 #define ESTIMATOR_PRESET_CURRENT(constant, name)                                                   \
     if (estimator_is(params, ESTIMATOR_##constant)) {                                              \
-        name##_preset_current(&estimator->name, &params->name, current);                           \
+        name##_preset_current(&estimator->name, current);                                          \
     } else
     SENSORLESS_ESTIMATORS(ESTIMATOR_PRESET_CURRENT)
     {
     }
 #undef ESTIMATOR_PRESET_CURRENT
+}
+
+/* Only this one tells them from others. */
+static inline void estimator_expect_load(struct estimator *estimator,
+                                         const struct estimator_params *params)
+{
+    if (estimator_is(params, ESTIMATOR_INVARIANT_EKF)) {
+        invariant_ekf_expect_load(&estimator->invariant_ekf);
+    }
+}
+
+/* Only this one has such a bias. */
+static inline void estimator_forget_bias(struct estimator *estimator,
+                                         const struct estimator_params *params)
+{
+    if (estimator_is(params, ESTIMATOR_INVARIANT_EKF)) {
+        invariant_ekf_forget_bias(&estimator->invariant_ekf);
+    }
 }
 
 /* At rest, without an encoder: the rotor is known from elsewhere. */
@@ -95,7 +107,7 @@ static inline void estimator_preset_rotor(struct estimator *estimator,
 {
 #define ESTIMATOR_PRESET_ROTOR(constant, name)                                                     \
     if (estimator_is(params, ESTIMATOR_##constant)) {                                              \
-        name##_preset_rotor(&estimator->name, &params->name, rotor);                               \
+        name##_preset_rotor(&estimator->name, rotor);                                              \
     } else
     SENSORLESS_ESTIMATORS(ESTIMATOR_PRESET_ROTOR)
     {
@@ -103,14 +115,14 @@ static inline void estimator_preset_rotor(struct estimator *estimator,
 #undef ESTIMATOR_PRESET_ROTOR
 }
 
-/* With an encoder: the rotor is at `position` with this count. */
+/* With an encoder: the rotor is at `position` with this count; predict is to follow. */
 static inline void estimator_place(struct estimator *estimator,
                                    const struct estimator_params *params, struct position position,
                                    int32_t count)
 {
 #define ESTIMATOR_PLACE(constant, name)                                                            \
     if (estimator_is(params, ESTIMATOR_##constant)) {                                              \
-        name##_place(&estimator->name, &params->name, position, count);                            \
+        name##_place(&estimator->name, position, count);                                           \
     } else
     ENCODER_ESTIMATORS(ESTIMATOR_PLACE)
     {

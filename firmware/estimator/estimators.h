@@ -6,12 +6,14 @@
  *   struct <estimator>_params   constants, scaled from what design/ computes
  *   struct <estimator>          state; begins with a struct estimate
  *   <estimator>_begin           when the bridge is switched on, from a struct estimator_start
- *   <estimator>_observe         one period, from a struct estimator_input
+ *   <estimator>_observe         one period, from a struct estimator_input: corrects what was
+ *                               predicted for S(k), and predicts
  *
  * and, without an encoder,
  *
- *   <estimator>_preset_current  behind begin: this current flows already
- *   <estimator>_preset_rotor    at rest: the rotor is known from elsewhere
+ *   <estimator>_preset_current  behind begin: this current flows already; estimator_predict is to
+ * follow <estimator>_preset_rotor    at rest: the rotor is known from elsewhere; estimator_predict
+ * is to follow
  *
  * or, with one,
  *

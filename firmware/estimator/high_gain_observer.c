@@ -94,11 +94,9 @@ void high_gain_observer_reset(struct high_gain_observer *observer,
     observer->x[2] = NUM(0.0);
 }
 
-void high_gain_observer_place(struct high_gain_observer *observer,
-                              const struct high_gain_observer_params *params,
-                              struct position position, int32_t count)
+void high_gain_observer_place(struct high_gain_observer *observer, struct position position,
+                              int32_t count)
 {
-    (void)params;
     encoder_set(&observer->encoder, position, count);
     observer->estimate.rotor.position = position;
     observer->measured = position;
@@ -119,22 +117,35 @@ static void move_on(struct high_gain_observer *observer,
     observer->measured = measured;
 }
 
-void high_gain_observer_step(struct high_gain_observer *observer,
-                             const struct high_gain_observer_params *params, struct phases current,
-                             int32_t count)
+struct passage high_gain_observer_predict(struct high_gain_observer *observer,
+                                          const struct high_gain_observer_params *params,
+                                          struct phases voltage)
+{
+    struct estimate *x = &observer->estimate;
+    const num_t speed = x->rotor.speed;
+    struct passage passage;
+
+    x->rotor.speed = num_limit(speed, params->speed_limit);
+    passage = estimate_predict_current(x, &params->model, voltage);
+    x->rotor.speed = speed;
+    estimate_predict_rotor(x, &params->model, estimate_mean_current(x, passage.mid_period));
+    return passage;
+}
+
+struct passage high_gain_observer_step(struct high_gain_observer *observer,
+                                       const struct high_gain_observer_params *params,
+                                       struct phases current, struct phases in_force, int32_t count)
 {
     struct estimate *x = &observer->estimate;
 
     move_on(observer, params, encoder_step(&observer->encoder, &params->encoder, count));
 
-    const num_t speed = num_mul_coef(observer->x[1], params->speed_per_turn);
     const num_t acceleration = num_mul_coef(observer->x[2], params->acceleration_per_turn);
 
     x->rotor.position = observer->measured;
-    x->rotor.speed = num_limit(speed, params->speed_limit);
+    x->rotor.speed = num_mul_coef(observer->x[1], params->speed_per_turn);
     x->current = current;
-    estimate_look_ahead(x, &params->model);
-    x->rotor.speed = speed;
-    x->rotor.load_torque = park(current, estimate_begin_of_period(x)).q -
-                           num_mul_coef(speed, params->model.friction) - acceleration;
+    x->rotor.load_torque = park(current, sincos_of(observer->measured.fraction)).q -
+                           num_mul_coef(x->rotor.speed, params->model.friction) - acceleration;
+    return high_gain_observer_predict(observer, params, in_force);
 }

@@ -67,14 +67,19 @@ void high_gain_observer_reset(struct high_gain_observer *observer,
                               int32_t count);
 
 /* The rotor is where the encoder now is: at `position`. */
-void high_gain_observer_place(struct high_gain_observer *observer,
-                              const struct high_gain_observer_params *params,
-                              struct position position, int32_t count);
+void high_gain_observer_place(struct high_gain_observer *observer, struct position position,
+                              int32_t count);
 
-/* From S(k-1) to S(k). */
-void high_gain_observer_step(struct high_gain_observer *observer,
-                             const struct high_gain_observer_params *params, struct phases current,
-                             int32_t count);
+/* What the control answers to: the motor at S(k+1), under this mean voltage. */
+struct passage high_gain_observer_predict(struct high_gain_observer *observer,
+                                          const struct high_gain_observer_params *params,
+                                          struct phases voltage);
+
+/* From S(k-1) to S(k), and the same; `in_force`: voltage that is expected over S(k)...S(k+1). */
+__attribute__((noinline)) struct passage
+high_gain_observer_step(struct high_gain_observer *observer,
+                        const struct high_gain_observer_params *params, struct phases current,
+                        struct phases in_force, int32_t count);
 
 static inline void high_gain_observer_begin(struct high_gain_observer *observer,
                                             const struct high_gain_observer_params *params,
@@ -84,11 +89,13 @@ static inline void high_gain_observer_begin(struct high_gain_observer *observer,
                              start->resistance, start->encoder_count);
 }
 
-static inline void high_gain_observer_observe(struct high_gain_observer *observer,
-                                              const struct high_gain_observer_params *params,
-                                              const struct estimator_input *input)
+static inline struct passage
+high_gain_observer_observe(struct high_gain_observer *observer,
+                           const struct high_gain_observer_params *params,
+                           const struct estimator_input *input)
 {
-    high_gain_observer_step(observer, params, input->winding->current, input->encoder_count);
+    return high_gain_observer_step(observer, params, input->winding.current, input->in_force,
+                                   input->encoder_count);
 }
 
 #endif

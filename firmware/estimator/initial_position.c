@@ -31,7 +31,11 @@ static const double quarter_s = 0.025;
 static const double rest_s = 0.040;
 static const double drawing_s = 0.075; /* behind the ramp, from anywhere */
 
-enum { QUIET_PERIODS = 64, QUIET_BEGIN = 4, ATTEMPTS = 2, REPETITIONS = 8 };
+/* What the offsets are the mean of, and what the bridge needs to settle before. */
+static const double quiet_s = 6.4e-3;
+static const double quiet_begin_s = 0.4e-3;
+
+enum { ATTEMPTS = 2, REPETITIONS = 8 };
 
 static bool is_published(const struct initial_position_params *params)
 {
@@ -119,6 +123,9 @@ bool initial_position_design(struct initial_position_params *params,
     const double floor = floor_A / base->current_A * impulses / 2.0;
     const double response = peak_A / base->current_A * impulses / 2.0 / IMPULSES;
 
+    params->quiet_begin = (uint32_t)(quiet_begin_s / task->period_s + 0.5);
+    params->quiet_periods = (uint32_t)(quiet_s / task->period_s + 0.5);
+    params->per_quiet_period = UNIT(1.0 / params->quiet_periods);
     params->quiet_max = num_from_double(quiet_share * peak_A / base->current_A);
     params->floor_squared = num_from_double(floor * floor);
     params->response_min = num_from_double(0.5 * response);
@@ -230,13 +237,13 @@ static void wait_for_rest(struct initial_position *finding,
 static void listen(struct initial_position *finding, const struct initial_position_params *params,
                    struct phases current, struct phases voltage)
 {
-    if (finding->periods >= QUIET_BEGIN) {
+    if (finding->periods >= params->quiet_begin) {
         add(&finding->current_offset, current);
         add(&finding->voltage_offset, voltage);
     }
-    if (++finding->periods == QUIET_BEGIN + QUIET_PERIODS) {
-        finding->current_offset = divide(finding->current_offset, UNIT(1.0 / QUIET_PERIODS));
-        finding->voltage_offset = divide(finding->voltage_offset, UNIT(1.0 / QUIET_PERIODS));
+    if (++finding->periods == params->quiet_begin + params->quiet_periods) {
+        finding->current_offset = divide(finding->current_offset, params->per_quiet_period);
+        finding->voltage_offset = divide(finding->voltage_offset, params->per_quiet_period);
         if (num_abs(finding->current_offset.a) < params->quiet_max &&
             num_abs(finding->current_offset.b) < params->quiet_max) {
             enter(finding, INITIAL_POSITION_IMPULSES);
@@ -320,10 +327,8 @@ static struct initial_position_output give_impulse(struct initial_position *find
     if (period <= begin) {
         finding->expected = nothing;
     } else if (period <= end) {
-        finding->expected = forced_current(
-            &finding->winding,
-            free_current(&params->model, &finding->winding, finding->expected, NUM(0.0), no_turn),
-            voltage);
+        finding->expected = predict_current(&params->model, &finding->winding, finding->expected,
+                                            NUM(0.0), no_turn, voltage);
     }
     if (period == end) {
         take_peak(finding, impulse, current);

@@ -45,7 +45,9 @@ struct initial_position_params {
     num_t impulse_voltage;
     num_t response_min; /* sum of a phase's peaks by 16 */
     num_t response_max;
-    coef_t per_response; /* 1 / what a phase's should be */
+    coef_t per_response;                 /* 1 / what a phase's should be */
+    uint32_t quiet_begin, quiet_periods; /* until offsets are added up, and in which they are */
+    unit_t per_quiet_period;
     num_t quiet_max;     /* a larger offset is the current of a rotor that turns */
     num_t floor_squared; /* of what may pass for an asymmetry without being one, in the sum */
     coef_t certainty;    /* square of the least confidence */

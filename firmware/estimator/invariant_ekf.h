@@ -7,7 +7,8 @@
  * d current only, so that one constant gain serves every speed. The gain from nu_d to the angle
  * changes sign with the direction of rotation and is therefore multiplied by sat(w / w_s).
  *
- *   predict with the voltage measured over the past period (motor_model.h), then correct:
+ *   predict with the voltage that is expected over the period (motor_model.h); at its end correct,
+ *   with i_hat moved by what the voltage was another than expected:
  *   i_hat += k_i (i - i_hat)          w_hat  += k_w nu_q
  *   theta += k_td sat(w/w_s) nu_d + k_tq nu_q
  *   T_L   += k_T nu_q
@@ -59,6 +60,8 @@ struct invariant_ekf_params {
     struct invariant_ekf_gain_set following; /* holding, after a load step */
     num_t odd_gain_speed;                    /* w_s */
     uint32_t following_periods;              /* how long a load step is followed */
+    uint32_t rest_periods;                   /* behind that, in which none is */
+    uint32_t swing_periods;                  /* in which a rotor swings into place */
     num_t load_step;                         /* what a quiet hold takes for a step of the load */
     coef_t led_memory; /* share per period of led_change's way to the change */
 };
@@ -97,9 +100,11 @@ static inline num_t invariant_ekf_take_innovation_sum(struct invariant_ekf *ekf)
     return sum;
 }
 
-/* From S(k-1) to S(k). `voltage`: mean over that period; `current`: sampled at S(k). */
-void invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                        struct phases current, struct phases voltage, struct rotor_hold hold);
+/* At S(k): corrects what was predicted for it, and predicts S(k+1). The default path does not come
+   here: invariant_ekf_step.h. */
+__attribute__((noinline)) struct passage
+invariant_ekf_observe(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
+                      const struct estimator_input *input);
 
 static inline void invariant_ekf_begin(struct invariant_ekf *ekf,
                                        const struct invariant_ekf_params *params,
@@ -108,28 +113,27 @@ static inline void invariant_ekf_begin(struct invariant_ekf *ekf,
     invariant_ekf_reset(ekf, params, start->position, start->resistance, start->unloaded_periods);
 }
 
-static inline void invariant_ekf_observe(struct invariant_ekf *ekf,
-                                         const struct invariant_ekf_params *params,
-                                         const struct estimator_input *input)
-{
-    invariant_ekf_step(ekf, params, input->winding->current, input->winding->voltage, input->hold);
-}
-
-static inline void invariant_ekf_preset_current(struct invariant_ekf *ekf,
-                                                const struct invariant_ekf_params *params,
-                                                struct phases current)
+static inline void invariant_ekf_preset_current(struct invariant_ekf *ekf, struct phases current)
 {
     ekf->estimate.current = current;
-    estimate_look_ahead(&ekf->estimate, &params->model);
 }
 
-static inline void invariant_ekf_preset_rotor(struct invariant_ekf *ekf,
-                                              const struct invariant_ekf_params *params,
-                                              const struct rotor *rotor)
+/* The first hold is over: what is left of its unloaded periods is. */
+static inline void invariant_ekf_expect_load(struct invariant_ekf *ekf)
+{
+    ekf->unloaded_periods = 0u;
+}
+
+/* What was taken for an offset of the measured voltage was something else, which is over. */
+static inline void invariant_ekf_forget_bias(struct invariant_ekf *ekf)
+{
+    ekf->bias = (struct phases){NUM(0.0), NUM(0.0)};
+}
+
+static inline void invariant_ekf_preset_rotor(struct invariant_ekf *ekf, const struct rotor *rotor)
 {
     ekf->estimate.rotor = *rotor;
     ekf->settled_load = rotor->load_torque;
-    estimate_look_ahead(&ekf->estimate, &params->model);
 }
 
 /*

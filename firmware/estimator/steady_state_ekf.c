@@ -25,10 +25,11 @@ void steady_state_ekf_reset(struct steady_state_ekf *ekf,
 
     estimate_reset(&ekf->estimate, &params->model, position, resistance);
     ekf->current = no_current;
+    ekf->mid_period = ekf->estimate.next.frame;
 }
 
 /* (8): x(k+1|k) = x(k|k) + T f(x(k|k), u). */
-static void predict(struct steady_state_ekf *ekf, const struct steady_state_ekf_params *params,
+static void move_on(struct steady_state_ekf *ekf, const struct steady_state_ekf_params *params,
                     struct dq voltage)
 {
     const struct motor_model_params *model = &params->model;
@@ -62,14 +63,27 @@ static void correct(struct steady_state_ekf *ekf, const struct steady_state_ekf_
     rotor->load_torque += num_mul_coef(innovation.q, params->gain_load);
 }
 
-void steady_state_ekf_step(struct steady_state_ekf *ekf,
-                           const struct steady_state_ekf_params *params, struct phases current,
-                           struct phases voltage)
+struct passage steady_state_ekf_predict(struct steady_state_ekf *ekf,
+                                        const struct steady_state_ekf_params *params,
+                                        struct phases voltage)
+{
+    struct estimate *x = &ekf->estimate;
+    const struct passage passage = estimate_predict_current(x, &params->model, voltage);
+
+    ekf->mid_period = passage.mid_period;
+    estimate_predict_rotor(x, &params->model, estimate_mean_current(x, passage.mid_period));
+    return passage;
+}
+
+struct passage steady_state_ekf_step(struct steady_state_ekf *ekf,
+                                     const struct steady_state_ekf_params *params,
+                                     struct phases current, struct phases voltage,
+                                     struct phases in_force)
 {
     struct estimate *x = &ekf->estimate;
 
-    predict(ekf, params, park(voltage, x->mid_period));
-    correct(ekf, params, park(current, estimate_end_of_period(x)));
+    move_on(ekf, params, park(voltage, ekf->mid_period));
+    correct(ekf, params, park(current, x->next.frame));
     x->current = current;
-    estimate_look_ahead(x, &params->model);
+    return steady_state_ekf_predict(ekf, params, in_force);
 }

@@ -24,7 +24,8 @@ struct steady_state_ekf_params {
 
 struct steady_state_ekf {
     struct estimate estimate;
-    struct dq current; /* in the estimated rotor frame */
+    struct dq current;        /* in the estimated rotor frame */
+    struct sincos mid_period; /* of the rotor over S(k)...S(k+1) */
 };
 
 struct steady_state_ekf_params steady_state_ekf_scale(const struct motor_model_params *model,
@@ -35,10 +36,16 @@ void steady_state_ekf_reset(struct steady_state_ekf *ekf,
                             const struct steady_state_ekf_params *params, struct position position,
                             num_t resistance);
 
-/* From S(k-1) to S(k). `voltage`: mean over that period; `current`: sampled at S(k). */
-__attribute__((noinline)) void steady_state_ekf_step(struct steady_state_ekf *ekf,
-                                                     const struct steady_state_ekf_params *params,
-                                                     struct phases current, struct phases voltage);
+/* What the control answers to: the motor at S(k+1), under this mean voltage. */
+struct passage steady_state_ekf_predict(struct steady_state_ekf *ekf,
+                                        const struct steady_state_ekf_params *params,
+                                        struct phases voltage);
+
+/* From S(k-1) to S(k), and the same. `voltage`: mean over that period; `current`: sampled at S(k);
+   `in_force`: voltage that is expected over S(k)...S(k+1). */
+__attribute__((noinline)) struct passage
+steady_state_ekf_step(struct steady_state_ekf *ekf, const struct steady_state_ekf_params *params,
+                      struct phases current, struct phases voltage, struct phases in_force);
 
 static inline void steady_state_ekf_begin(struct steady_state_ekf *ekf,
                                           const struct steady_state_ekf_params *params,
@@ -48,28 +55,25 @@ static inline void steady_state_ekf_begin(struct steady_state_ekf *ekf,
 }
 
 /* It has no tuning of its own for the hold. */
-static inline void steady_state_ekf_observe(struct steady_state_ekf *ekf,
-                                            const struct steady_state_ekf_params *params,
-                                            const struct estimator_input *input)
+static inline struct passage steady_state_ekf_observe(struct steady_state_ekf *ekf,
+                                                      const struct steady_state_ekf_params *params,
+                                                      const struct estimator_input *input)
 {
-    steady_state_ekf_step(ekf, params, input->winding->current, input->winding->voltage);
+    return steady_state_ekf_step(ekf, params, input->winding.current, input->winding.voltage,
+                                 input->in_force);
 }
 
 static inline void steady_state_ekf_preset_current(struct steady_state_ekf *ekf,
-                                                   const struct steady_state_ekf_params *params,
                                                    struct phases current)
 {
     ekf->estimate.current = current;
-    ekf->current = park(current, estimate_begin_of_period(&ekf->estimate));
-    estimate_look_ahead(&ekf->estimate, &params->model);
+    ekf->current = park(current, sincos_of(ekf->estimate.rotor.position.fraction));
 }
 
 static inline void steady_state_ekf_preset_rotor(struct steady_state_ekf *ekf,
-                                                 const struct steady_state_ekf_params *params,
                                                  const struct rotor *rotor)
 {
     ekf->estimate.rotor = *rotor;
-    estimate_look_ahead(&ekf->estimate, &params->model);
 }
 
 #endif

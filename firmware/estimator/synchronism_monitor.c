@@ -60,22 +60,28 @@ static const double torn_s = 3.2e-3;
 static const double doubt_s = 5e-3;
 static const double doubtful_s = 20e-3;
 
-__attribute__((noinline)) static uint32_t blocks(double time_s, double period_s)
+static uint32_t block_periods(double period_s)
 {
-    const double count = time_s / (period_s * SYNCHRONISM_BLOCK_PERIODS);
+    const double count = SYNCHRONISM_BLOCK_S / period_s;
+
+    return count > SYNCHRONISM_STEPS ? (uint32_t)(count + 0.5) : SYNCHRONISM_STEPS;
+}
+
+__attribute__((noinline)) static uint32_t blocks(double time_s, double block_s)
+{
+    const double count = time_s / block_s;
 
     return count > 1.0 ? (uint32_t)(count + 0.5) : 1u;
 }
 
-/* c / 16 for a share k_i of the innovation that is corrected each period. */
+/* c over the periods of a block, for a share k_i of the innovation that is corrected in each. */
 __attribute__((noinline)) static coef_t voltage_per_sum(const struct motor_model_params *model,
-                                                        double current_gain)
+                                                        double current_gain, double periods)
 {
     const double admittance = num_to_double(model->nominal_admittance);
     const double left = 1.0 - admittance * num_to_double(model->nominal_resistance); /* a */
 
-    return coef_from_double((1.0 - (1.0 - current_gain) * left) / admittance /
-                            SYNCHRONISM_BLOCK_PERIODS);
+    return coef_from_double((1.0 - (1.0 - current_gain) * left) / admittance / periods);
 }
 
 struct synchronism_monitor_params
@@ -83,6 +89,8 @@ synchronism_monitor_design(const struct synchronism_monitor_task *task)
 {
     const struct motor_params *motor = task->motor;
     const struct per_unit *base = task->base;
+    const uint32_t periods = block_periods(task->period_s);
+    const double block_s = task->period_s * periods;
     const double resistance = num_to_double(task->model->nominal_resistance);
     const double rated_torque_Nm = motor->torque_constant_Nm_A * motor->rated_current_A;
     const double resistance_error =
@@ -96,8 +104,10 @@ synchronism_monitor_design(const struct synchronism_monitor_task *task)
                                           task->current_limit_A / motor->torque_constant_Nm_A;
 
     return (struct synchronism_monitor_params){
-        .voltage_per_sum_moving = voltage_per_sum(task->model, task->current_gain_moving),
-        .voltage_per_sum_holding = voltage_per_sum(task->model, task->current_gain_holding),
+        .block_periods = periods,
+        .voltage_per_sum_moving = voltage_per_sum(task->model, task->current_gain_moving, periods),
+        .voltage_per_sum_holding =
+            voltage_per_sum(task->model, task->current_gain_holding, periods),
         .voltage_per_current =
             coef_from_double(resistance * (task->resistance_adapted ? resistance_error_known
                                                                     : resistance_error_unknown)),
@@ -109,13 +119,13 @@ synchronism_monitor_design(const struct synchronism_monitor_task *task)
         .standing_speed = num_from_double(standing_rad_s / base->speed_rad_s),
         .full_current = num_from_double(0.99 * task->current_limit_A / base->current_A),
         .load_limit = num_from_double(torn_load * rated_torque_Nm / base->torque_Nm),
-        .standing_blocks = blocks(standing_s, task->period_s),
-        .lagging_blocks = blocks(lagging_s, task->period_s),
-        .torn_blocks = blocks(torn_s, task->period_s),
-        .mirrored_blocks = blocks(mirrored_s, task->period_s),
-        .settled_blocks = task->resistance_adapted ? blocks(settled_s, task->period_s) : UINT32_MAX,
-        .doubt_blocks = blocks(doubt_s, task->period_s),
-        .doubtful_blocks = blocks(doubtful_s, task->period_s),
+        .standing_blocks = blocks(standing_s, block_s),
+        .lagging_blocks = blocks(lagging_s, block_s),
+        .torn_blocks = blocks(torn_s, block_s),
+        .mirrored_blocks = blocks(mirrored_s, block_s),
+        .settled_blocks = task->resistance_adapted ? blocks(settled_s, block_s) : UINT32_MAX,
+        .doubt_blocks = blocks(doubt_s, block_s),
+        .doubtful_blocks = blocks(doubtful_s, block_s),
     };
 }
 

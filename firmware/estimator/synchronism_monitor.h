@@ -1,6 +1,6 @@
 /*
  * Does the rotor still run with its estimate? Watches an invariant EKF while the drive is in
- * operation, in blocks of 16 periods, and tells two things apart:
+ * operation, in blocks of 1.6 ms, and tells two things apart:
  *
  * Lost synchronism: the estimate no longer belongs to the rotor. A rotor that stands delta beside
  * its estimate induces, in the estimated frame, Km w (-sin N delta, cos N delta). The q part is
@@ -46,7 +46,9 @@
 
 #include "firmware/estimator/estimate.h"
 
-#define SYNCHRONISM_BLOCK_PERIODS 16u /* a power of two */
+/* A block, of at least as many periods as it has steps. */
+#define SYNCHRONISM_BLOCK_S 1.6e-3
+#define SYNCHRONISM_STEPS   8u
 
 struct synchronism_monitor_task {
     const struct motor_params *motor;
@@ -61,6 +63,7 @@ struct synchronism_monitor_task {
 };
 
 struct synchronism_monitor_params {
+    uint32_t block_periods;
     coef_t voltage_per_sum_moving; /* c, of a block's sum of innovations */
     coef_t voltage_per_sum_holding;
     coef_t voltage_per_current_at_first; /* r, until a hold has settled */

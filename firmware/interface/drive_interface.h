@@ -154,9 +154,15 @@ struct drive_command {
 };
 #undef DRIVE_PARAMETER_MEMBER
 
-/* A command that is typed acts this many control periods after the one in which the last byte of
-   its line has arrived; one that is planned DRIVE_LEAD_s after that. */
-#define DRIVE_TYPED_DELAY_PERIODS 10
+/* A command that is typed acts so much later than the control period in which the last byte of its
+   line has arrived, as the background takes to read a line; one that is planned DRIVE_LEAD_s after
+   that. 10 control periods at 10 kHz. */
+#define DRIVE_TYPED_DELAY_s 1e-3
+
+static inline uint32_t drive_typed_delay_periods(double control_period_s)
+{
+    return (uint32_t)(DRIVE_TYPED_DELAY_s / control_period_s + 0.5);
+}
 
 /* How far ahead of its begin a motion is planned; at least 3 periods. Doubled each time the
    background has been too late, up to DRIVE_LEAD_MAX_s, and back to DRIVE_LEAD_s once a plan has
@@ -225,6 +231,11 @@ struct drive_hold_bearing {
    bear the motor without an encoder. */
 bool drive_hold_bearing_of(const struct drive_settings *settings, double period_s,
                            struct drive_hold_bearing *bearing, char error[DRIVE_ERROR_TEXT]);
+
+/* With the default law of an encoder of so many counts, as it is designed of settings that need not
+   be complete: its stiffness J w0^2, N m/rad, against what it has not observed yet. */
+double drive_law_stiffness_Nm_rad(const struct drive_settings *settings, double period_s,
+                                  uint32_t counts_per_turn);
 
 /* Name of a state, fault, command, law or estimator as scenarios and the serial line spell it. */
 const char *drive_state_name(enum drive_state state);

@@ -45,6 +45,10 @@
         "move more gently, or give more current; check initial angle and motor's settings, home "  \
         "the axis again")                                                                          \
     FAULT(STALLED, 0x7121, "stalled", "the rotor does not follow: overloaded, or held", NO_LIMIT,  \
-          "free the axis or reduce the load, or raise current_limit_A; home the axis again")
+          "free the axis or reduce the load, or raise current_limit_A; home the axis again")       \
+    FAULT(PHASE_IMBALANCE, 0xff02, "phase-imbalance",                                              \
+          "the phases differ by more than 15 %, or one of them carries no current", NO_LIMIT,      \
+          "check both leads of each phase, that its resistance is the other's, and the current "   \
+          "sensors")
 
 #endif

@@ -53,8 +53,10 @@
          "commanded voltage, after the limit")                                                     \
     REAL(0x2326, resistance_est_ohm, estimator.estimate.winding.resistance, "resistance_ohm",      \
          TRACED, resistance_ohm, "ohm", "estimate of a phase's series resistance")                 \
-    REAL(0x2327, bus_V, bus, "bus_V", UNTRACED, voltage_V, "V",                                    \
+    REAL(0x2327, bus_V, modulator.bus, "bus_V", UNTRACED, voltage_V, "V",                          \
          "measured supply; a trace has the true one under this name")                              \
+    REAL(0x2328, phase_imbalance, enabling.balance.imbalance, "", UNTRACED, ratio, "",             \
+         "by what share phase a's resistance, as measured, is above that of both, and b's below")  \
     COUNT(0x2305, reference_underruns, planner.underruns, "underruns", UNTRACED,                   \
           "sines and set-points whose continuation came too late")                                 \
     COUNT(                                                                                         \

@@ -3,8 +3,6 @@
 #include <stdatomic.h>
 #include <stddef.h>
 
-/* Acceleration is shown through 32 bits of 2^-38 turn; profile_plan keeps it below 2^31 of them. */
-#define ACCELERATION_SHIFT 26
 #define ACCELERATION_SCALE 64.0 /* turns_from_angle takes them for 2^-32 turn */
 #define JERK_SCALE         1024.0
 
@@ -26,20 +24,6 @@ struct reference_params reference_design(const struct per_unit *base, double per
     return params;
 }
 
-static struct reference_sample sample_of(const struct reference *r,
-                                         const struct reference_params *params)
-{
-    num_t speed = turns_from_angle((int32_t)(r->at.speed >> 32));
-    num_t acceleration = turns_from_angle((int32_t)(r->at.acceleration >> ACCELERATION_SHIFT));
-
-    return (struct reference_sample){
-        .position = {.turns = r->at.turns, .fraction = (angle_t)(r->at.fraction >> 32)},
-        .speed = num_mul_coef_fine(speed, params->speed, params->speed_remainder),
-        .acceleration = num_mul_coef(acceleration, params->acceleration),
-        .moving = r->phase > REFERENCE_LOADED && r->phase < REFERENCE_REST,
-    };
-}
-
 static void place(struct reference *r, struct position position)
 {
     r->at.turns = position.turns;
@@ -56,6 +40,7 @@ void reference_reset(struct reference *r, struct position position)
     r->stop_requested = false;
     r->at.speed = 0;
     r->at.acceleration = 0;
+    r->jerks = false;
     r->jerk = 0;
     r->jerk_sixth = 0;
     r->epoch++;
@@ -81,20 +66,9 @@ void reference_stop(struct reference *r)
     if (r->phase == REFERENCE_QUEUED || r->phase == REFERENCE_LOADED) {
         r->phase = REFERENCE_REST;
         r->at.speed = 0;
+        r->next.speed = NUM(0.0);
     }
     r->stop_requested = r->phase != REFERENCE_REST;
-}
-
-static void advance(struct reference *r)
-{
-    const int64_t travel = r->at.speed + (r->at.acceleration >> 1) + r->jerk_sixth;
-    const uint64_t fraction = r->at.fraction + (uint64_t)travel;
-
-    r->at.turns += (int32_t)(travel >> 63) + (fraction < r->at.fraction ? 1 : 0);
-    r->at.fraction = fraction;
-    r->at.speed += r->at.acceleration + (r->jerk >> 1);
-    r->at.acceleration += r->jerk;
-    r->periods_left--;
 }
 
 /*
@@ -138,6 +112,7 @@ static void begin(struct reference *r, enum reference_phase phase, uint32_t peri
     r->phase = phase;
     r->periods_left = periods;
     r->at.acceleration = acceleration;
+    r->jerks = false;
     r->jerk = 0;
     r->jerk_sixth = 0;
 }
@@ -148,6 +123,7 @@ static void begin_jerk(struct reference *r, enum reference_phase phase, int64_t 
 {
     r->phase = phase;
     r->periods_left = r->profile->jerk_periods;
+    r->jerks = true;
     r->jerk = jerk;
     r->jerk_sixth = jerk_sixth;
 }
@@ -198,6 +174,7 @@ __attribute__((noinline)) static void begin_next_segment(struct reference *r)
     }
     segment = &r->plan->segment[r->segment++];
     begin(r, REFERENCE_PLANNED, segment->periods, segment->acceleration);
+    r->jerks = segment->jerk_sixth != 0;
     r->jerk_sixth = segment->jerk_sixth;
     r->jerk = 2 * segment->jerk_sixth + 4 * segment->jerk_sixth; /* no library call on a M0+ */
 }
@@ -231,7 +208,6 @@ static inline __attribute__((always_inline)) void begin_next_phase_of_profile(st
     }
 }
 
-/* In place: the interrupt has no cycles to spare for a call where a phase of a profile begins. */
 static inline __attribute__((always_inline)) void begin_next_phase(struct reference *r)
 {
     if (r->phase == REFERENCE_PLANNED) {
@@ -239,6 +215,7 @@ static inline __attribute__((always_inline)) void begin_next_phase(struct refere
     } else {
         begin_next_phase_of_profile(r);
     }
+    r->next.moving = r->phase < REFERENCE_REST;
 }
 
 bool reference_take_over(struct reference *r, const struct motion_plan *plan)
@@ -285,33 +262,17 @@ void reference_skip(struct reference *r, uint32_t periods)
     }
 }
 
-/* Rests or creeps: with a rotor that is held, its ramps too, in motion the cruise alone. */
-static inline bool is_slow(const struct reference_sample *sample,
-                           const struct reference_params *params, bool creeps, bool held)
+void reference_turn(struct reference *r, const struct reference_params *params)
 {
-    return !sample->moving ||
-           (creeps && num_abs(sample->speed) < params->creep_speed &&
-            num_abs(sample->acceleration) <= (held ? params->creep_acceleration : NUM(0.0)));
-}
-
-void reference_step(struct reference *r, const struct reference_params *params, bool held)
-{
-    if (!is_slow(&r->next, params, r->creeps, held)) {
-        r->slow_periods = 0u;
-    } else if (r->slow_periods < UINT32_MAX) {
-        r->slow_periods++;
-    }
     if (r->periods_left > 0u) {
-        advance(r);
+        reference_advance_with_jerk(r);
     }
-    if (r->phase == REFERENCE_QUEUED) {
-        r->phase = REFERENCE_LOADED;
-    } else if (r->periods_left == 0u && r->phase != REFERENCE_REST) {
+    if (r->periods_left == 0u) {
         begin_next_phase(r);
-    } else if (r->stop_requested && r->phase != REFERENCE_REST) {
+    } else { /* a stop has been asked for */
         cut_short(r);
         r->stop_requested = false;
     }
-    r->now = r->next;
-    r->next = sample_of(r, params);
+    reference_show(r, params);
+    reference_show_acceleration(r, params);
 }

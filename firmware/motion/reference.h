@@ -20,7 +20,9 @@
 #include "firmware/motion/profile.h"
 #include "firmware/motor/per_unit.h"
 
-#define REFERENCE_JERK_SHIFT 22
+/* Acceleration is shown through 32 bits of 2^-38 turn; profile_plan keeps it below 2^31 of them. */
+#define REFERENCE_ACCELERATION_SHIFT 26
+#define REFERENCE_JERK_SHIFT         22
 
 /* Per-unit scales of what a sample shows. */
 struct reference_params {
@@ -65,6 +67,7 @@ struct reference {
     bool creeps;           /* the profile or plan does */
     bool stop_requested;
     bool stopped;           /* comes to rest where it may, not at the target */
+    bool jerks;             /* else both words of jerk are 0 */
     struct motion_state at; /* S(k+1) */
     int64_t jerk;
     int64_t jerk_sixth;
@@ -113,8 +116,8 @@ static inline bool reference_busy(const struct reference *reference)
 /* The coming step begins no phase and no stop: it is a short one. */
 static inline bool reference_goes_on(const struct reference *reference)
 {
-    return reference->phase == REFERENCE_REST ||
-           (reference->periods_left > 1u && !reference->stop_requested);
+    return (reference->periods_left > 1u && !reference->stop_requested) ||
+           reference->phase == REFERENCE_REST;
 }
 
 /*
@@ -156,7 +159,109 @@ static inline void reference_count_as_slow(struct reference *reference)
     reference->slow_periods = UINT32_MAX;
 }
 
-/* One control period on; `held`: the rotor is, and stays so while the reference creeps. */
-void reference_step(struct reference *reference, const struct reference_params *params, bool held);
+/* The rest of a step that begins a phase or a stop. */
+void reference_turn(struct reference *reference, const struct reference_params *params);
+
+static inline void reference_travel(struct reference *r, int64_t travel)
+{
+    const uint64_t fraction = r->at.fraction + (uint64_t)travel;
+
+    r->at.turns += (int32_t)(travel >> 63) + (fraction < r->at.fraction ? 1 : 0);
+    r->at.fraction = fraction;
+    r->periods_left--;
+}
+
+/* Through a phase without jerk. */
+static inline void reference_advance(struct reference *r)
+{
+    const int64_t travel = r->at.speed + (r->at.acceleration >> 1);
+
+    r->at.speed += r->at.acceleration;
+    reference_travel(r, travel);
+}
+
+static inline void reference_advance_with_jerk(struct reference *r)
+{
+    const int64_t travel = r->at.speed + (r->at.acceleration >> 1) + r->jerk_sixth;
+
+    r->at.speed += r->at.acceleration + (r->jerk >> 1);
+    r->at.acceleration += r->jerk;
+    reference_travel(r, travel);
+}
+
+/* Of the sample what changes in each period of motion. */
+static inline void reference_show(struct reference *r, const struct reference_params *params)
+{
+    const num_t speed = turns_from_angle((int32_t)(r->at.speed >> 32));
+
+    r->next.position.turns = r->at.turns;
+    r->next.position.fraction = (angle_t)(r->at.fraction >> 32);
+    r->next.speed = num_mul_coef_fine(speed, params->speed, params->speed_remainder);
+}
+
+/* The rest of it, constant but for a jerk. */
+static inline void reference_show_acceleration(struct reference *r,
+                                               const struct reference_params *params)
+{
+    const num_t acceleration =
+        turns_from_angle((int32_t)(r->at.acceleration >> REFERENCE_ACCELERATION_SHIFT));
+
+    r->next.acceleration = num_mul_coef(acceleration, params->acceleration);
+}
+
+/* Rests or creeps: with a rotor that is held, its ramps too, in motion the cruise alone. */
+static inline bool reference_is_slow(const struct reference *r,
+                                     const struct reference_params *params, bool held)
+{
+    const struct reference_sample *sample = &r->next;
+
+    return !sample->moving ||
+           (RARE(r->creeps) && num_abs(sample->speed) < params->creep_speed &&
+            num_abs(sample->acceleration) <= (held ? params->creep_acceleration : NUM(0.0)));
+}
+
+static inline void reference_count_slow(struct reference *r, const struct reference_params *params,
+                                        bool held)
+{
+    if (!reference_is_slow(r, params, held)) {
+        r->slow_periods = 0u;
+    } else if (r->slow_periods < UINT32_MAX) {
+        r->slow_periods++;
+    }
+}
+
+/* Not in the middle of a phase. A profile that has been loaded rests for a period more. */
+static inline bool reference_begins(struct reference *r)
+{
+    if (r->phase == REFERENCE_QUEUED) {
+        r->phase = REFERENCE_LOADED;
+        return false;
+    }
+    return r->phase != REFERENCE_REST;
+}
+
+/* One control period on; `held`: the rotor is, and stays so while the reference creeps. true: a
+   phase or a stop begins, reference_turn is to follow. */
+static inline bool reference_step(struct reference *r, const struct reference_params *params,
+                                  bool held)
+{
+    reference_count_slow(r, params, held);
+    r->now.position.turns = r->at.turns;
+    r->now.position.fraction = (angle_t)(r->at.fraction >> 32);
+    r->now.speed = r->next.speed;
+    r->now.acceleration = r->next.acceleration;
+    r->now.moving = r->next.moving;
+    if (RARE(r->periods_left <= 1u || r->stop_requested)) {
+        return reference_begins(r);
+    }
+    if (RARE(r->jerks)) {
+        reference_advance_with_jerk(r);
+        reference_show_acceleration(r, params);
+    } else {
+        reference_advance(r);
+    }
+    reference_show(r, params);
+    return false;
+}
 
 #endif

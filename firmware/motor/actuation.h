@@ -5,6 +5,10 @@
  * that measurement and the command that was in force is the bridge's loss: dead time, diodes and
  * switch resistance. It turns slowly against the control period, so the last one measured serves
  * both to know the voltage in force and to compensate the next command.
+ *
+ *   at S(k):  surprise = u - v,   loss += surprise,   v = command + loss
+ *
+ * with u measured over S(k-1)...S(k), and v the voltage that is expected over a period.
  */
 #ifndef STEADYSTEP_ACTUATION_H
 #define STEADYSTEP_ACTUATION_H
@@ -15,25 +19,29 @@
 #define ACTUATION_LOSS_MAX NUM(0.1)
 
 struct actuation {
-    struct phases present; /* commanded for S(k)...S(k+1) */
-    struct phases past;    /* commanded for S(k-1)...S(k) */
-    struct phases loss;    /* measured minus commanded */
+    struct phases command;  /* for S(k)...S(k+1); once modulated, for the period behind it */
+    struct phases in_force; /* what is expected of it, less the loss */
+    struct phases loss;     /* measured minus commanded */
 };
 
 static inline void actuation_reset(struct actuation *actuation)
 {
     const struct phases none = {NUM(0.0), NUM(0.0)};
 
-    actuation->present = none;
-    actuation->past = none;
+    actuation->command = none;
+    actuation->in_force = none;
     actuation->loss = none;
 }
 
-/* Takes the mean voltage measured over S(k-1)...S(k). */
-static inline void actuation_observe(struct actuation *actuation, struct phases measured)
+/* Takes the mean voltage measured over S(k-1)...S(k): by how much it is another than expected. */
+static inline struct phases actuation_observe(struct actuation *actuation, struct phases measured)
 {
-    actuation->loss.a = num_limit(measured.a - actuation->past.a, ACTUATION_LOSS_MAX);
-    actuation->loss.b = num_limit(measured.b - actuation->past.b, ACTUATION_LOSS_MAX);
+    const struct phases surprise = {measured.a - actuation->in_force.a,
+                                    measured.b - actuation->in_force.b};
+
+    actuation->loss.a = num_limit(actuation->loss.a + surprise.a, ACTUATION_LOSS_MAX);
+    actuation->loss.b = num_limit(actuation->loss.b + surprise.b, ACTUATION_LOSS_MAX);
+    return surprise;
 }
 
 /* What was measured before counts, where a measurement shows something else. */
@@ -42,12 +50,23 @@ static inline void actuation_preset_loss(struct actuation *actuation, struct pha
     actuation->loss = loss;
 }
 
-/* The voltage in force over S(k)...S(k+1). */
-static inline struct phases actuation_in_force(const struct actuation *actuation)
+/* Behind the loss: the command comes in force. Returns the voltage expected of it. */
+static inline struct phases actuation_act(struct actuation *actuation)
 {
-    const struct phases voltage = {actuation->present.a + actuation->loss.a,
-                                   actuation->present.b + actuation->loss.b};
+    const struct phases voltage = {actuation->command.a + actuation->loss.a,
+                                   actuation->command.b + actuation->loss.b};
+
+    actuation->in_force = voltage;
     return voltage;
+}
+
+/* The command in force. */
+static inline struct phases actuation_commanded(const struct actuation *actuation)
+{
+    const struct phases command = {actuation->in_force.a - actuation->loss.a,
+                                   actuation->in_force.b - actuation->loss.b};
+
+    return command;
 }
 
 /* What to command so that the motor gets `wanted`. */
@@ -59,17 +78,10 @@ static inline struct phases actuation_compensate(const struct actuation *actuati
     return command;
 }
 
-/* Without a delay the command committed last is what the next measurement shows. */
-static inline void actuation_commit_past(struct actuation *actuation)
-{
-    actuation->past = actuation->present;
-}
-
 /* The command of S(k), as it was modulated. */
 static inline void actuation_commit(struct actuation *actuation, struct phases command)
 {
-    actuation->past = actuation->present;
-    actuation->present = command;
+    actuation->command = command;
 }
 
 #endif

@@ -55,34 +55,36 @@ __attribute__((cold)) struct motor_model_params motor_model_design(const struct 
 void winding_set_resistance(struct winding *winding, const struct motor_model_params *params,
                             num_t resistance);
 
-/* Electrical angle by which a rotor at this speed turns in half a period, below an eighth turn. */
-static inline int32_t half_period_rotation(const struct motor_model_params *params, num_t speed)
+/* Electrical turns of a rotor at this speed in half a period, below an eighth. */
+static inline num_t half_period_turns(const struct motor_model_params *params, num_t speed)
 {
-    return angle_from_turns(num_mul_coef(speed, params->half_turns_per_speed));
+    return num_mul_coef(speed, params->half_turns_per_speed);
 }
 
-/* Phase currents one period on if no voltage acted: decay and back-EMF. */
-static inline struct phases free_current(const struct motor_model_params *params,
-                                         const struct winding *winding, struct phases current,
-                                         num_t speed, struct sincos mid_period)
+/* Phase currents one period on under a mean voltage over it. */
+static inline struct phases predict_current(const struct motor_model_params *params,
+                                            const struct winding *winding, struct phases current,
+                                            num_t speed, struct sincos mid_period,
+                                            struct phases voltage)
 {
     const num_t droop = num_mul_coef(num_mul(speed, speed), params->emf_droop);
     const num_t emf = speed - num_mul(droop, speed);
-    const num_t drop_a =
-        num_mul(current.a, winding->resistance) - num_mul_unit(emf, mid_period.sin);
-    const num_t drop_b =
-        num_mul(current.b, winding->resistance) + num_mul_unit(emf, mid_period.cos);
-    const struct phases next = {current.a - num_mul(drop_a, winding->admittance),
-                                current.b - num_mul(drop_b, winding->admittance)};
+    const num_t across_a =
+        voltage.a - num_mul(current.a, winding->resistance) + num_mul_unit(emf, mid_period.sin);
+    const num_t across_b =
+        voltage.b - num_mul(current.b, winding->resistance) - num_mul_unit(emf, mid_period.cos);
+    const struct phases next = {current.a + num_mul(across_a, winding->admittance),
+                                current.b + num_mul(across_b, winding->admittance)};
     return next;
 }
 
-/* The same under a mean voltage over the period. */
-static inline struct phases forced_current(const struct winding *winding, struct phases free,
-                                           struct phases voltage)
+/* The same under a voltage that differs by `more` over the period. To nearest: little else corrects
+   what a floor would leave of each small difference. */
+static inline struct phases forced_current(const struct winding *winding, struct phases predicted,
+                                           struct phases more)
 {
-    const struct phases next = {free.a + num_mul(voltage.a, winding->admittance),
-                                free.b + num_mul(voltage.b, winding->admittance)};
+    const struct phases next = {predicted.a + num_mul_nearest(more.a, winding->admittance),
+                                predicted.b + num_mul_nearest(more.b, winding->admittance)};
     return next;
 }
 

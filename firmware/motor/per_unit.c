@@ -13,6 +13,7 @@ struct per_unit per_unit_base(const struct motor_params *motor, double period_s)
     base.resistance_ohm = base.voltage_V / base.current_A;
     base.rad_per_turn = two_pi / (double)motor->rotor_teeth;
     base.turns_per_period = base.speed_rad_s * period_s / base.rad_per_turn;
+    base.ratio = 1.0;
     return base;
 }
 

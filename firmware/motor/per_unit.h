@@ -17,6 +17,7 @@ struct per_unit {
     double resistance_ohm;      /* voltage_V / current_A */
     double rad_per_turn;        /* mechanical rad of one electrical turn, 2 pi / N */
     double turns_per_period;    /* electrical turns per control period at base speed */
+    double ratio;               /* 1: of what has no unit */
 };
 
 struct per_unit per_unit_base(const struct motor_params *motor, double period_s);

@@ -45,7 +45,7 @@ static inline num_t position_difference(struct position a, struct position b)
     const int32_t whole = (int32_t)(difference >> 32);
 
     /* One comparison: what is below -limit wraps to a large number. */
-    if ((uint32_t)whole + (uint32_t)limit >= 2u * (uint32_t)limit) {
+    if (RARE((uint32_t)whole + (uint32_t)limit >= 2u * (uint32_t)limit)) {
         difference = (whole < 0 ? -(int64_t)limit : (int64_t)limit) * ((int64_t)1 << 32);
     }
 #if STEADYSTEP_NUM == NUM_FIXED

@@ -22,6 +22,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/rare.h"
+
 #define NUM_FLOAT  1
 #define NUM_FIXED  2
 #define NUM_DOUBLE 3
@@ -38,7 +40,7 @@
 typedef int32_t num_t;
 typedef int32_t unit_t;
 typedef struct {
-    int16_t mantissa; /* value = mantissa 2^(left - right - 16) */
+    _Alignas(4) int16_t mantissa; /* value = mantissa 2^(left - right - 16) */
     uint8_t left;
     uint8_t right;
 } coef_t;
@@ -86,9 +88,64 @@ static inline num_t num_mul_unit_nearest(num_t a, unit_t u)
 #endif
 }
 
+/*
+ * In Arm code a gain is one word, loaded at once; a shift takes its count from the lowest byte of a
+ * register, whatever stands above it.
+ */
 static inline num_t num_mul_coef(num_t a, coef_t k)
 {
+#if defined(__ARM_ARCH_6M__)
+    const union {
+        coef_t coef;
+        uint32_t word;
+    } gain = {k};
+    int32_t product = a >> 16;
+    int32_t mantissa = (int16_t)gain.word;
+    int32_t low = a & 0xffff;
+    uint32_t count = gain.word >> 16;
+
+    product = product * mantissa + ((low * mantissa) >> 16);
+#if defined(__arm__)
+    __asm__(".syntax unified\n\tlsls %0, %0, %1\n\tlsrs %1, %1, #8\n\tasrs %0, %0, %1"
+            : "+l"(product), "+l"(count)
+            :
+            : "cc");
+    return product;
+#else /* the product is tested on the host, too */
+    return num_shift_left(product, count & 0xffu) >> (count >> 8);
+#endif
+#elif defined(__ARM_FEATURE_DSP)
+    const union {
+        coef_t coef;
+        uint32_t word;
+    } gain = {k};
+    int32_t product;
+    uint32_t count = gain.word >> 16;
+
+    __asm__("smulwb %0, %1, %2" : "=r"(product) : "r"(a), "r"(gain.word));
+    __asm__("lsl %0, %0, %1\n\tlsr %1, %1, #8\n\tasr %0, %0, %1" : "+r"(product), "+r"(count));
+    return product;
+#else
     return num_shift_left(num_mul_high16(a, k.mantissa), k.left) >> k.right;
+#endif
+}
+
+/* k (1 + more), for |more| < 1/2 and a gain below 2^14. */
+static inline coef_t coef_more(coef_t k, num_t more)
+{
+    const int32_t factor = (more >> (NUM_FRACTION_BITS - 15)) + (1 << 15);
+    int32_t mantissa = (k.mantissa * factor + (1 << 14)) >> 15;
+
+    if (mantissa > INT16_MAX || mantissa < INT16_MIN) {
+        mantissa = (mantissa + 1) >> 1;
+        if (k.right > 0u) {
+            k.right--;
+        } else {
+            k.left++;
+        }
+    }
+    k.mantissa = (int16_t)mantissa;
+    return k;
 }
 
 static inline num_t num_mul_coef_nearest(num_t a, coef_t k)
@@ -111,6 +168,19 @@ static inline num_t num_mul(num_t a, num_t b)
            ((int32_t)(((uint32_t)a & 0xffffu) * (uint32_t)factor) >> 14);
 #else
     return (num_t)(((int64_t)a * factor) >> 14);
+#endif
+}
+
+/* The same to nearest. */
+static inline num_t num_mul_nearest(num_t a, num_t b)
+{
+    const int32_t factor = b >> (NUM_FRACTION_BITS - 14);
+
+#if defined(__ARM_ARCH_6M__)
+    return num_shift_left((a >> 16) * factor, 2) +
+           ((int32_t)(((uint32_t)a & 0xffffu) * (uint32_t)factor + 0x2000u) >> 14);
+#else
+    return (num_t)(((int64_t)a * factor + 0x2000) >> 14);
 #endif
 }
 
@@ -207,7 +277,17 @@ static inline num_t num_mul_coef_nearest(num_t a, coef_t k)
     return a * k;
 }
 
+static inline coef_t coef_more(coef_t k, num_t more)
+{
+    return k + k * more;
+}
+
 static inline num_t num_mul(num_t a, num_t b)
+{
+    return a * b;
+}
+
+static inline num_t num_mul_nearest(num_t a, num_t b)
 {
     return a * b;
 }
@@ -349,10 +429,10 @@ static inline num_t num_clamp(num_t a, num_t low, num_t high)
 /* -limit...limit, for a limit above zero; a NaN becomes the lower bound. */
 static inline num_t num_limit(num_t a, num_t limit)
 {
-    if (num_abs(a) < limit) {
-        return a;
+    if (RARE(!(num_abs(a) < limit))) {
+        return a > NUM(0.0) ? limit : -limit;
     }
-    return a > NUM(0.0) ? limit : -limit;
+    return a;
 }
 
 /* A gain that 16 bits are too coarse for: k and what it leaves over. */

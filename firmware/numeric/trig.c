@@ -55,6 +55,16 @@
 static const struct sincos table[] = {QUARTER_TURN(FIRST) QUARTER_TURN(SECOND) QUARTER_TURN(THIRD)
                                           QUARTER_TURN(FOURTH)};
 
+/*
+ * Of up to an eighth of a turn, with the least largest error relative to x^2:
+ *   sin = x (s1 + x^2 (s3 + x^2 s5)),   cos = 1 + x^2 (c2 + x^2 (c4 + x^2 c6))
+ */
+#define SMALL_S3 (-41.335927203572254)
+#define SMALL_S5 80.12112079926058
+#define SMALL_C2 (-19.739201717459647)
+#define SMALL_C4 64.93121440317827
+#define SMALL_C6 (-84.05645428205922)
+
 #if STEADYSTEP_NUM == NUM_FIXED
 
 /* A coefficient for x in 2^-23 turn, which is 16 bits; the cube is below half a bit. */
@@ -72,6 +82,23 @@ static struct sincos turn_on(struct sincos from, int32_t rest)
     return to;
 }
 
+/* In eighths of a turn everything is below one, and Q15. */
+#define EIGHTHS(x, power) Q((x) / (double)(1 << (3 * (power))), 15)
+
+struct sincos sincos_of_small(num_t turns)
+{
+    const int32_t half = 1 << 14;
+    const int32_t x = (turns + (1 << (NUM_FRACTION_BITS - 19))) >> (NUM_FRACTION_BITS - 18);
+    const int32_t x2 = (x * x) >> 15;
+    const int32_t s = EIGHTHS(SMALL_S3, 3) + ((x2 * EIGHTHS(SMALL_S5, 5)) >> 15);
+    const int32_t c = EIGHTHS(SMALL_C4, 4) + ((x2 * EIGHTHS(SMALL_C6, 6)) >> 15);
+    const struct sincos to = {UNIT(1.0) +
+                                  ((x2 * (EIGHTHS(SMALL_C2, 2) + ((x2 * c) >> 15)) + half) >> 15),
+                              (x * (EIGHTHS(S1, 1) + ((x2 * s) >> 15)) + half) >> 15};
+
+    return to;
+}
+
 #else
 
 static struct sincos turn_on(struct sincos from, int32_t rest)
@@ -82,6 +109,17 @@ static struct sincos turn_on(struct sincos from, int32_t rest)
     const num_t c = x2 * NUM(C2);
     const struct sincos to = {from.cos + (from.cos * c - from.sin * s),
                               from.sin + (from.sin * c + from.cos * s)};
+
+    return to;
+}
+
+struct sincos sincos_of_small(num_t turns)
+{
+    const num_t x = turns;
+    const num_t x2 = x * x;
+    const struct sincos to = {UNIT(1.0) +
+                                  x2 * (NUM(SMALL_C2) + x2 * (NUM(SMALL_C4) + x2 * NUM(SMALL_C6))),
+                              x * (NUM(S1) + x2 * (NUM(SMALL_S3) + x2 * NUM(SMALL_S5)))};
 
     return to;
 }

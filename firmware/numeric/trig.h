@@ -14,6 +14,12 @@ struct sincos {
  */
 struct sincos sincos_of(angle_t angle);
 
+/*
+ * The same of a rotation of an eighth turn at most, in turns: the series alone, of the same error
+ * in fixed point and below 3e-7 up to a sixteenth turn, 2.3e-6 up to an eighth.
+ */
+struct sincos sincos_of_small(num_t turns);
+
 /* The sum of two angles: four products instead of another look-up. */
 static inline struct sincos sincos_add(struct sincos x, struct sincos y)
 {

@@ -4,6 +4,15 @@ set(STEADYSTEP_MOTOR bendjedia-2012 CACHE STRING
   "Default motor: a file of sil/motors, without .toml, or the path of one of your own")
 set(STEADYSTEP_PIN_MAP ${default_pin_map} CACHE STRING
   "Pin map: a file of the port's pin_maps/, without .h, or the path of one of your own")
+set(STEADYSTEP_CONTROL_kHz 10 CACHE STRING "Control periods per millisecond; of PWM, too")
+if(NOT STEADYSTEP_CONTROL_kHz IN_LIST control_rates_kHz)
+  string(REPLACE ";" ", " known "${control_rates_kHz}")
+  message(FATAL_ERROR "STEADYSTEP_CONTROL_kHz is '${STEADYSTEP_CONTROL_kHz}'; expected, of "
+    "${STEADYSTEP_BOARD}: ${known}${control_rates_reason}")
+endif()
+set(STEADYSTEP_LAWS "${default_laws}" CACHE STRING
+  "Position laws that the image carries, by their names, separated by semicolons; all")
+math(EXPR control_period_us "1000 / ${STEADYSTEP_CONTROL_kHz}")
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 include(Cmsis)
 
@@ -65,6 +74,33 @@ function(find_motor name variable)
   set(${variable} ${path} PARENT_SCOPE)
 endfunction()
 
+# carry_laws(<target of the firmware>): what is not named is left out, and refused by name.
+function(carry_laws target)
+  if(STEADYSTEP_LAWS STREQUAL all)
+    return()
+  endif()
+  file(READ ${PROJECT_SOURCE_DIR}/firmware/control/position_laws.h registry)
+  string(REGEX MATCHALL "LAW\\([A-Z_]+, [a-z_]+, \"[a-z-]+\"\\)" rows "${registry}")
+  list(TRANSFORM rows REPLACE ".*\"(.*)\".*" "\\1" OUTPUT_VARIABLE known)
+  list(TRANSFORM rows REPLACE "LAW\\(([A-Z_]+),.*" "LAW_BIT(\\1)" OUTPUT_VARIABLE bits)
+  set(carried)
+  foreach(law IN LISTS STEADYSTEP_LAWS)
+    list(FIND known "${law}" place)
+    if(place EQUAL -1)
+      string(REPLACE ";" ", " known "${known}")
+      message(FATAL_ERROR "STEADYSTEP_LAWS names '${law}'; expected all, or some of: ${known}")
+    endif()
+    list(GET bits ${place} bit)
+    list(APPEND carried ${bit})
+  endforeach()
+  if(NOT "state-feedback" IN_LIST STEADYSTEP_LAWS)
+    message(FATAL_ERROR "STEADYSTEP_LAWS leaves out state-feedback, with which a drive starts")
+  endif()
+  list(REMOVE_DUPLICATES carried)
+  list(JOIN carried "+" carried)
+  target_compile_definitions(${target} PRIVATE "STEADYSTEP_LAWS=${carried}")
+endfunction()
+
 find_pin_map(${STEADYSTEP_PIN_MAP} pin_map)
 find_motor(${STEADYSTEP_MOTOR} motor)
 
@@ -93,7 +129,8 @@ function(board_program target path)
   target_compile_definitions(${target} PRIVATE
     STEADYSTEP_DEVICE="hal/${STEADYSTEP_BOARD}/device.h"
     STEADYSTEP_FAULTS="hal/${STEADYSTEP_BOARD}/faults.h"
-    STEADYSTEP_PIN_MAP="${path}")
+    STEADYSTEP_PIN_MAP="${path}"
+    STEADYSTEP_CONTROL_PERIOD_us=${control_period_us})
   set_target_properties(${target} PROPERTIES SUFFIX .elf)
   target_link_options(${target} PRIVATE
     -T ${CMAKE_CURRENT_SOURCE_DIR}/memory.ld -Wl,--build-id=none)

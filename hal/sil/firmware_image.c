@@ -25,10 +25,10 @@ static bool image_init(void *drive, const struct hal *board, const struct drive_
 static struct hal_outputs image_control_cycle(void *drive, const struct hal_samples *samples)
 {
     struct instance *self = drive;
-    const struct hal_outputs outputs = application_control_interrupt(&self->application, samples);
+    const struct hal_outputs *outputs = application_control_interrupt(&self->application, samples);
 
-    self->hash = drive_hash_add(self->hash, drive_hash_row(&self->application.drive, &outputs));
-    return outputs;
+    self->hash = drive_hash_add(self->hash, drive_hash_row(&self->application.drive, outputs));
+    return *outputs;
 }
 
 static const char *image_law_gain(enum position_law law, size_t gain)

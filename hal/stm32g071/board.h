@@ -33,6 +33,9 @@ enum {
 /* Largest difference of delay between the two legs of a phase, assumed. */
 #define LEG_DELAY_s 20e-9
 
+/* Around a peak: 1 us of dead time, as much for the amplifiers to settle, and as much behind it. */
+#define LOW_STATE_s 4e-6
+
 /* What calibration leaves of a current's offset, assumed: a code, 0.8 mV, is 6 uV/K at the shunt
    over 10 K behind a gain of 13.75. */
 #define CURRENT_OFFSET_CODES 1.0

@@ -47,8 +47,7 @@ IN_RAM(control_interrupt) void control_interrupt(void)
         samples.flags |= HAL_FLAG_DEADLINE_MISSED; /* began too late, or not at the peak */
     }
 
-    const struct hal_outputs outputs = application_control_interrupt(&application, &samples);
-    bridge_end_period(&outputs);
+    bridge_end_period(application_control_interrupt(&application, &samples));
     const uint32_t end = clock_cycles();
     bridge_deadline_met(end);
     control.end = end;
@@ -56,14 +55,11 @@ IN_RAM(control_interrupt) void control_interrupt(void)
 }
 
 /*
- * Right behind it, and preempted by the next: what it took. Each reading of a counter costs the
- * interrupt a dozen cycles, so reading, control and writing are not told apart.
+ * Right behind it, and preempted by the next: what it took.
  */
 void pend_sv_handler(void)
 {
-    struct control_cycles_of_period cycles = {.stage = {0}};
+    const uint32_t before = BRIDGE_HALF_PERIOD_COUNTS - control.counter_at_start;
 
-    cycles.stage[CONTROL_STAGE_LATENCY] = BRIDGE_HALF_PERIOD_COUNTS - control.counter_at_start;
-    cycles.stage[CONTROL_STAGE_CONTROL] = control.end - control.start;
-    application_count_cycles(&application, &cycles);
+    control_cycles_count(&application.cycles, before + control.end - control.start);
 }

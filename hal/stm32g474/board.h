@@ -48,17 +48,21 @@ enum {
     CORE_Hz = 170000000,
     HSI16_Hz = 16000000,
 
-    PWM_HALF_PERIOD = 8500,                   /* counts; 100 us, valley to valley, at 170 MHz */
-    PWM_PERIOD = 2 * PWM_HALF_PERIOD,         /* core cycles */
-    DEADLINE_CYCLES = CORE_Hz / 1000000 * 90, /* after S(k), for the end of the control interrupt */
-    CONTROL_PERIOD_us = 100,
+    CONTROL_PERIOD_us = STEADYSTEP_CONTROL_PERIOD_us,   /* by the build: 200, 100 or 50 */
+    PWM_PERIOD = CORE_Hz / 1000000 * CONTROL_PERIOD_us, /* core cycles, valley to valley */
+    PWM_HALF_PERIOD = PWM_PERIOD / 2,
+    DEADLINE_CYCLES = PWM_PERIOD / 10 * 9, /* after S(k), for the end of the control interrupt */
 
     CONVERTER_CODES = 4096, /* 12 bits */
 
+    /* Counts from the trigger to the peak, at which the currents are held: 24.5 ADC clocks of
+       sampling and 2 of latency, 106, less 2 so that it is not before. */
+    CURRENT_SAMPLING_LEAD = 104,
+
     /* Leg voltages: groups of conversions in a period, and their results added up in each. */
-    LEG_GROUPS = 17,
-    LEG_GROUP_CYCLES = PWM_PERIOD / LEG_GROUPS,
-    LEG_OVERSAMPLING = 8,
+    LEG_OVERSAMPLING = CONTROL_PERIOD_us >= 100 ? 8 : 4,
+    LEG_GROUP_CYCLES = 125 * LEG_OVERSAMPLING,
+    LEG_GROUPS = PWM_PERIOD / LEG_GROUP_CYCLES, /* 17; 34 at 5 kHz */
 
     WATCHDOG_ms = 50,
 };
@@ -66,6 +70,9 @@ enum {
 /* Largest difference of delay between the two legs of a phase, assumed: drivers of one type and
    lot, and their MOSFETs. */
 #define LEG_DELAY_s 20e-9
+
+/* Around a peak: 1 us of dead time, as much for the amplifiers to settle, and as much behind it. */
+#define LOW_STATE_s 4e-6
 
 /* What calibration leaves of a current's offset, assumed: a code, 0.8 mV, is the amplifier's drift
    of 10 uV/K over 10 K at a gain of 8. */

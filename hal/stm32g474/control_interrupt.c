@@ -4,58 +4,57 @@
 #include "hal/cortex_m/interrupts.h"
 #include "hal/cortex_m/port.h"
 #include "hal/stm32g474/current_sampling.h"
-#include "hal/stm32g474/cycle_counter.h"
 #include "hal/stm32g474/deadline_guard.h"
 #include "hal/stm32g474/encoder.h"
 #include "hal/stm32g474/phase_voltage_sampling.h"
 #include "hal/stm32g474/pwm.h"
 
-static struct application *application;
-static volatile uint32_t period = PORT_NOT_STARTED;
-static volatile bool allowed; /* between bridge_enable and bridge_disable */
-static bool wanted;           /* by the outputs of the last control interrupt */
-
-void control_set_application(struct application *instance)
-{
-    application = instance;
-}
+static struct {
+    volatile uint32_t period;
+    volatile bool allowed; /* between bridge_enable and bridge_disable */
+    bool wanted;           /* by the outputs of the last control interrupt */
+    struct hal_samples samples;
+} control = {.period = PORT_NOT_STARTED};
 
 IN_CCM(port_control_period)
 uint32_t port_control_period(void)
 {
-    return period;
+    return control.period;
 }
 
 bool control_allow_bridge(void)
 {
-    allowed = !pwm_break_latched();
-    return allowed;
+    control.allowed = !pwm_break_latched();
+    return control.allowed;
 }
 
 IN_CCM(control_forbid_bridge)
 void control_forbid_bridge(void)
 {
-    allowed = false; /* first: a control interrupt in between must not close it again */
+    control.allowed = false; /* first: a control interrupt in between must not close it again */
     pwm_open_bridge();
     pwm_clear_break();
 }
 
-static inline void sample(struct hal_samples *samples, uint32_t since_peak)
+/* The converters take 0.7 us from the peak: what they give is read last. */
+static inline void take_samples(struct hal_samples *samples)
 {
-    if (!current_sampling_read(samples)) {
-        board_fault(BOARD_FAULT_CURRENT_SAMPLES);
+    uint32_t flags = 0;
+
+    if (__builtin_expect(pwm_begin_period(), false)) {
+        flags = HAL_FLAG_OVERCURRENT_TRIP;
+        control.allowed = false;
     }
-    if (!phase_voltage_sampling_read(samples, since_peak)) {
+    if (!phase_voltage_sampling_read(samples)) {
         board_fault(BOARD_FAULT_LEG_SAMPLES);
     }
-    samples->encoder_count = encoder_count();
-    samples->flags = 0;
-    if (pwm_break_latched()) {
-        samples->flags |= HAL_FLAG_OVERCURRENT_TRIP;
-        allowed = false;
+    if (__builtin_expect(deadline_guard_take_missed(), false)) {
+        flags |= HAL_FLAG_DEADLINE_MISSED;
     }
-    if (deadline_guard_take_missed()) {
-        samples->flags |= HAL_FLAG_DEADLINE_MISSED;
+    samples->flags = flags;
+    samples->encoder_count = encoder_count(samples->encoder_count);
+    if (!current_sampling_read(samples)) {
+        board_fault(BOARD_FAULT_CURRENT_SAMPLES);
     }
 }
 
@@ -66,42 +65,35 @@ static inline void sample(struct hal_samples *samples, uint32_t since_peak)
  */
 static inline void actuate(const struct hal_outputs *outputs)
 {
-    const bool on = outputs->bridge_on && allowed;
+    const bool on = outputs->bridge_on && control.allowed;
 
     pwm_write(outputs->high_counts);
     if (!on) {
         pwm_open_bridge();
-    } else if (wanted && !pwm_bridge_closed()) {
+    } else if (control.wanted && !pwm_bridge_closed()) {
         __disable_irq();
-        if (!deadline_guard_has_missed()) {
+        if (!deadline_guard.missed) {
             pwm_close_bridge();
         }
         __enable_irq();
     }
-    wanted = on;
+    control.wanted = on;
+}
+
+static inline void have_actuated(uint32_t peak)
+{
+    deadline_guard_met();
+    control_cycles_count(&application.cycles, deadline_guard_now() - peak);
 }
 
 IN_CCM(control_interrupt)
 void control_interrupt(void)
 {
-    const uint32_t begin = cycle_counter_read();
-    const uint32_t latency = pwm_cycles_since_peak();
-    struct hal_samples samples;
-    struct control_cycles_of_period cycles;
+    control.period++;
+    take_samples(&control.samples);
 
-    period++;
-    sample(&samples, latency);
+    const uint32_t peak = deadline_guard_sampling_instant();
 
-    const uint32_t sampled = cycle_counter_read();
-    const struct hal_outputs outputs = application_control_interrupt(application, &samples);
-    const uint32_t controlled = cycle_counter_read();
-
-    actuate(&outputs);
-    deadline_guard_met();
-
-    cycles.stage[CONTROL_STAGE_LATENCY] = latency;
-    cycles.stage[CONTROL_STAGE_READ] = sampled - begin;
-    cycles.stage[CONTROL_STAGE_CONTROL] = controlled - sampled;
-    cycles.stage[CONTROL_STAGE_WRITE] = cycle_counter_read() - controlled;
-    application_count_cycles(application, &cycles);
+    actuate(application_control_interrupt(&application, &control.samples));
+    have_actuated(peak);
 }

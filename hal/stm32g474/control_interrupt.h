@@ -6,13 +6,14 @@
 
 #include "firmware/application/application.h"
 
-/* Whose interrupt it is; before it is raised. */
-void control_set_application(struct application *application);
+/* The one of this image; linked by name, which costs the interrupt no load of a pointer. */
+extern struct application application;
 
 /* Whether the gates may follow the outputs; hal.h. */
 bool control_allow_bridge(void);
 void control_forbid_bridge(void);
 
+/* TIM1's update: the peak. */
 void control_interrupt(void);
 
 #endif

@@ -1,6 +1,5 @@
 #include "hal/stm32g474/current_sampling.h"
 
-#include "hal/cortex_m/interrupts.h"
 #include "hal/cortex_m/wait.h"
 #include "hal/stm32g474/adc.h"
 #include "hal/stm32g474/board.h"
@@ -18,20 +17,20 @@ static inline void start_amplifier(struct opamp_registers *amplifier, uint32_t i
     amplifier->csr = csr | OPAMP_CSR_OPAMPEN;
 }
 
-/* Two conversions of 24.5 + 12.5 ADC clocks: 1.74 us. The amplifier asks for 0.4 us of sampling. */
+/*
+ * A current takes 24.5 + 12.5 ADC clocks, as the amplifier asks for 0.4 us of sampling; what is
+ * slow and has 10 nF at its pin 2.5 + 12.5: 1.22 us in all.
+ */
 static void set_sequence(struct adc_registers *adc, uint32_t current, uint32_t slow)
 {
     struct {
         uint32_t low, high; /* channels 0...9, 10...18 */
     } times = {0, 0};
-    const uint32_t channels[2] = {current, slow};
 
-    for (int rank = 0; rank < 2; rank++) {
-        if (channels[rank] < 10) {
-            times.low |= ADC_SMPR_SMP(channels[rank], ADC_SAMPLE_24_5);
-        } else {
-            times.high |= ADC_SMPR_SMP(channels[rank] - 10, ADC_SAMPLE_24_5);
-        }
+    if (current < 10) {
+        times.low = ADC_SMPR_SMP(current, ADC_SAMPLE_24_5); /* of all others ADC_SAMPLE_2_5 */
+    } else {
+        times.high = ADC_SMPR_SMP(current - 10, ADC_SAMPLE_24_5);
     }
     adc->smpr = times.low;
     adc->smpr2 = times.high;
@@ -63,8 +62,6 @@ void current_sampling_start(void)
 {
     ADC1->isr = ADC_ISR_JEOS | ADC_ISR_JEOC;
     ADC2->isr = ADC_ISR_JEOS | ADC_ISR_JEOC;
-    ADC1->ier = ADC_IER_JEOSIE;
-    interrupt_enable(ADC1_2_IRQn, PRIORITY_CONTROL);
     ADC2->cr = ADC_CR_ADVREGEN | ADC_CR_JADSTART;
     ADC1->cr = ADC_CR_ADVREGEN | ADC_CR_JADSTART;
 }

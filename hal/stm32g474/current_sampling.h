@@ -1,7 +1,8 @@
 /*
  * Both phase currents at S(k), simultaneous, and behind them bus voltage and temperature: injected
- * sequences of ADC1 and ADC2, started by the PWM timer at the peak. The end of the sequence of ADC1
- * raises the control interrupt.
+ * sequences of ADC1 and ADC2. The PWM timer starts them ahead of the peak, so that the currents are
+ * held at the peak; they have ended when the control interrupt, which the peak raises, has formed
+ * the voltage means.
  */
 #ifndef STEADYSTEP_STM32G474_CURRENT_SAMPLING_H
 #define STEADYSTEP_STM32G474_CURRENT_SAMPLING_H
@@ -13,21 +14,21 @@
 
 /* Amplifiers and converters. */
 void current_sampling_configure(void);
-/* From the next peak on, with the control interrupt. */
+/* From the next peak on. */
 void current_sampling_start(void);
 
-/* Results of this S(k); false: one converter has not converted. */
+/* Results of this S(k); false: a converter has none. Reading the last of a converter clears JEOC.
+ */
 static inline bool current_sampling_read(struct hal_samples *samples)
 {
-    const uint32_t done = ADC1->isr & ADC2->isr;
+    const uint32_t both = ADC_CSR_JEOC_MST | ADC_CSR_JEOC_SLV;
+    const bool done = (~ADC12_COMMON->csr & both) == 0;
 
-    ADC1->isr = ADC_ISR_JEOS | ADC_ISR_JEOC;
-    ADC2->isr = ADC_ISR_JEOS | ADC_ISR_JEOC;
     samples->current_a = (uint16_t)ADC1->jdr[0];
     samples->current_b = (uint16_t)ADC2->jdr[0];
     samples->bus_voltage = (uint16_t)ADC1->jdr[1];
     samples->temperature = (uint16_t)ADC2->jdr[1];
-    return (done & ADC_ISR_JEOS) != 0;
+    return done;
 }
 
 #endif

@@ -3,7 +3,7 @@
 #include "hal/cortex_m/interrupts.h"
 #include "hal/stm32g474/pwm.h"
 
-static volatile bool missed;
+struct deadline_guard deadline_guard;
 
 void deadline_guard_configure(void)
 {
@@ -20,7 +20,8 @@ void deadline_guard_start(void)
 {
     const uint32_t count = TIM2->cnt;
 
-    TIM2->ccr[0] = count - count % PWM_PERIOD + PWM_PERIOD + DEADLINE_CYCLES;
+    deadline_guard.deadline = count - count % PWM_PERIOD + PWM_PERIOD + DEADLINE_CYCLES;
+    TIM2->ccr[0] = deadline_guard.deadline;
     TIM2->sr = 0;
     TIM2->dier = TIM_DIER_CC1IE;
     interrupt_enable(TIM2_IRQn, PRIORITY_GUARD);
@@ -31,22 +32,24 @@ void deadline_guard_interrupt(void)
 {
     pwm_open_bridge();
     TIM2->sr = ~TIM_SR_CC1IF;
-    missed = true;
+    deadline_guard.missed = true;
+    deadline_guard.out_of_step = true;
     __DSB(); /* the flag is down before the interrupt ends */
 }
 
-IN_CCM(deadline_guard_take_missed)
-bool deadline_guard_take_missed(void)
+/*
+ * Behind an interrupt that ended too late, did not come, or a halt in which TIM2 alone went on. A
+ * peak that has come meanwhile has its interrupt still before it, which has to end in time.
+ */
+IN_CCM(deadline_guard_find_step)
+void deadline_guard_find_step(void)
 {
-    if (!missed) {
-        return false;
-    }
-    missed = false;
-    return true;
-}
+    const uint32_t since_peak = pwm_cycles_since_peak();
+    const uint32_t peak = TIM2->cnt - since_peak;
+    const bool follows = pwm_peak_pending();
+    const bool in_time = since_peak < DEADLINE_CYCLES;
 
-IN_CCM(deadline_guard_has_missed)
-bool deadline_guard_has_missed(void)
-{
-    return missed;
+    deadline_guard.out_of_step = follows && !in_time;
+    deadline_guard.deadline = peak + (follows && in_time ? 0 : PWM_PERIOD) + DEADLINE_CYCLES;
+    TIM2->ccr[0] = deadline_guard.deadline;
 }

@@ -17,8 +17,8 @@ typedef enum {
     DebugMonitor_IRQn = -4,
     PendSV_IRQn = -2,
     SysTick_IRQn = -1,
-    ADC1_2_IRQn = 18,
     TIM1_BRK_TIM15_IRQn = 24,
+    TIM1_UP_TIM16_IRQn = 25,
     TIM2_IRQn = 28,
     LPUART1_IRQn = 91,
 } IRQn_Type;

@@ -5,9 +5,22 @@
 
 #include <stdint.h>
 
+#include "hal/stm32g474/board.h"
+#include "hal/stm32g474/registers.h"
+
+#define ENCODER PERIPHERAL(TIM, ENCODER_TIMER)
+
 void encoder_configure(void);
 
-/* Count since start-up. To be called at least once in 32,767 counts; the control interrupt does. */
-int32_t encoder_count(void);
+/* Count since start-up, from that of the last control interrupt, 32,767 counts ago at most. Its
+   lower half is the timer's. */
+static inline int32_t encoder_count(int32_t before)
+{
+#if ENCODER_TIMER != 0
+    return before + (int16_t)(ENCODER->cnt - (uint32_t)before);
+#else
+    return before;
+#endif
+}
 
 #endif

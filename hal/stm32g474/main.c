@@ -17,7 +17,7 @@
 #include "hal/stm32g474/pwm.h"
 #include "hal/stm32g474/watchdog.h"
 
-static struct application application;
+struct application application;
 
 /* The gates are held low, by pull-downs until the timer drives them, from reset on. */
 static void start_board(void)
@@ -38,7 +38,6 @@ static void start_board(void)
  */
 static void start_control(void)
 {
-    control_set_application(&application);
     current_sampling_configure();
     phase_voltage_sampling_configure();
     deadline_guard_configure();
@@ -46,6 +45,7 @@ static void start_control(void)
     pwm_watch_fault();
     deadline_guard_start();
     current_sampling_start();
+    pwm_raise_control();
 }
 
 static _Noreturn void stay_off(void)

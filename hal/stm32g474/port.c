@@ -16,6 +16,7 @@ const struct hal_facts port_facts = {
     .pwm_half_period_counts = PWM_HALF_PERIOD,
     .dead_time_s = BRIDGE_DEAD_TIME_s,
     .leg_delay_s = LEG_DELAY_s,
+    .low_state_s = LOW_STATE_s,
     .converter_codes = CONVERTER_CODES,
     .current_A_per_code = CURRENT_A_PER_CODE,
     .current_zero_code = CURRENT_ZERO_CODE,

@@ -27,9 +27,9 @@ void pwm_configure(void)
         TIM1->ccmr_output[pair] = TIM_CCMR_OC1M(TIM_PWM_MODE_1) | TIM_CCMR_OC1PE |
                                   TIM_CCMR_OC2M(TIM_PWM_MODE_1) | TIM_CCMR_OC2PE;
     }
-    /* Channel 5 rises in the count before the peak: it starts the injected conversions. */
+    /* Channel 5 rises ahead of the peak: it starts the injected conversions. */
     TIM1->ccmr3 = TIM_CCMR3_OC5M(TIM_PWM_MODE_2);
-    TIM1->ccr5 = PWM_HALF_PERIOD - 1;
+    TIM1->ccr5 = PWM_HALF_PERIOD - CURRENT_SAMPLING_LEAD;
     TIM1->cr2 = TIM_CR2_MMS(TIM_TRGO_UPDATE) | TIM_CR2_MMS2(TIM_TRGO2_OC5REF); /* idle: all low */
     TIM1->ccer = HIGH_SIDES | (BRIDGE == BRIDGE_OF_GATES ? LOW_SIDES : 0);
 
@@ -49,6 +49,7 @@ void pwm_configure(void)
     TIM1->rcr = 0; /* see pwm_start */
     TIM1->egr = TIM_EGR_UG;
     TIM1->sr = 0;
+    TIM1->dier = TIM_DIER_UIE; /* the line is enabled by pwm_raise_control */
 }
 
 /* The next update, and that the count was at its peak. */
@@ -80,6 +81,12 @@ void pwm_start(void)
     see_update_at_peak();
 }
 
+void pwm_raise_control(void)
+{
+    TIM1->sr = ~TIM_SR_UIF;
+    interrupt_enable(TIM1_UP_TIM16_IRQn, PRIORITY_CONTROL);
+}
+
 #if BRIDGE == BRIDGE_INTEGRATED
 
 void pwm_watch_fault(void)
@@ -92,7 +99,7 @@ IN_CCM(pwm_fault_interrupt)
 void pwm_fault_interrupt(void)
 {
     pwm_open_bridge();
-    TIM1->dier = 0;
+    TIM1->dier = TIM_DIER_UIE;
     __DSB(); /* the request is down before the interrupt ends */
 }
 

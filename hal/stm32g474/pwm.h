@@ -1,7 +1,8 @@
 /*
  * The PWM timer TIM1: four half-bridges with dead time, centre-aligned, 170 MHz, 10 kHz. Legs are
  * high around the valley; compares load at the peak alone. The peak, S(k), starts the injected
- * conversions (TRGO2, from channel 5) and, once, the timers that keep step (TRGO, update).
+ * conversions (TRGO2, from channel 5), raises the control interrupt (update) and starts, once, the
+ * timers that keep step (TRGO, update).
  *
  * The gates follow the compares while MOE is set, and the reset of an integrated bridge is high. It
  * is cleared by software, by a comparator (overcurrent_trip.h) or the fault output of an integrated
@@ -22,6 +23,8 @@
 void pwm_configure(void);
 /* Starts the counter, and returns at a peak, having seen that compares load there. */
 void pwm_start(void);
+/* Every peak from the next one on raises the control interrupt. */
+void pwm_raise_control(void);
 /* Forgets what the break input saw before the pins were connected; from here on the fault of an
    integrated bridge is followed. */
 void pwm_watch_fault(void);
@@ -62,6 +65,21 @@ static inline void pwm_write(const uint16_t high_counts[HAL_LEGS])
     TIM1->ccr[CHANNEL_B_MINUS - 1] = high_counts[HAL_LEG_B_MINUS];
 }
 
+/* The control interrupt has begun; whether a break is latched. */
+static inline bool pwm_begin_period(void)
+{
+    const uint32_t flags = TIM1->sr;
+
+    TIM1->sr = ~TIM_SR_UIF;
+    return (flags & PWM_BREAK_FLAGS) != 0;
+}
+
+/* Whether a control interrupt is to follow, as a peak has come in this one. */
+static inline bool pwm_peak_pending(void)
+{
+    return (TIM1->sr & TIM_SR_UIF) != 0;
+}
+
 static inline bool pwm_break_latched(void)
 {
     return (TIM1->sr & PWM_BREAK_FLAGS) != 0;
@@ -92,7 +110,7 @@ static inline void pwm_clear_break(void)
 {
     TIM1->sr = ~PWM_BREAK_FLAGS;
 #if BRIDGE == BRIDGE_INTEGRATED
-    TIM1->dier = TIM_DIER_BIE;
+    TIM1->dier = TIM_DIER_UIE | TIM_DIER_BIE;
 #endif
 }
 

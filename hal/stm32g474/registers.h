@@ -185,6 +185,7 @@ struct tim_registers {
 #define TIM_CR2_MMS2(value)   FIELD(value, 20, 4)
 #define TIM_SMCR_SMS(value)   FIELD(value, 0, 3)
 #define TIM_SMCR_TS(value)    FIELD(value, 4, 3)
+#define TIM_DIER_UIE          BIT(0)
 #define TIM_DIER_CC1IE        BIT(1)
 #define TIM_DIER_BIE          BIT(7)
 #define TIM_SR_UIF            BIT(0)
@@ -261,7 +262,6 @@ struct adc_registers {
 #define ADC_ISR_OVR                  BIT(4)
 #define ADC_ISR_JEOC                 BIT(5)
 #define ADC_ISR_JEOS                 BIT(6)
-#define ADC_IER_JEOSIE               BIT(6)
 #define ADC_CR_ADEN                  BIT(0)
 #define ADC_CR_ADSTART               BIT(2)
 #define ADC_CR_JADSTART              BIT(3)
@@ -295,14 +295,16 @@ struct adc_common_registers {
 #define ADC12_COMMON  ((struct adc_common_registers *)0x50000300u)
 #define ADC345_COMMON ((struct adc_common_registers *)0x50000700u)
 
+#define ADC_CSR_JEOC_MST      BIT(5)
+#define ADC_CSR_JEOC_SLV      BIT(21)
 #define ADC_CCR_CKMODE(value) FIELD(value, 16, 2)
 
-enum { ADC_CLOCK_HCLK_DIV4 = 3 };                 /* CKMODE */
-enum { ADC_TRIGGER_RISING = 1 };                  /* EXTEN, JEXTEN */
-enum { ADC_TRIGGER_TIM3_TRGO = 4 };               /* EXTSEL of ADC3, 4, 5 */
-enum { ADC_TRIGGER_TIM1_TRGO2 = 8 };              /* JEXTSEL of ADC1 and ADC2 */
-enum { ADC_OVERSAMPLE_8 = 2 };                    /* OVSR */
-enum { ADC_SAMPLE_2_5 = 0, ADC_SAMPLE_24_5 = 3 }; /* SMP, in ADC clocks */
+enum { ADC_CLOCK_HCLK_DIV4 = 3 };                    /* CKMODE */
+enum { ADC_TRIGGER_RISING = 1 };                     /* EXTEN, JEXTEN */
+enum { ADC_TRIGGER_TIM3_TRGO = 4 };                  /* EXTSEL of ADC3, 4, 5 */
+enum { ADC_TRIGGER_TIM1_TRGO2 = 8 };                 /* JEXTSEL of ADC1 and ADC2 */
+enum { ADC_OVERSAMPLE_4 = 1, ADC_OVERSAMPLE_8 = 2 }; /* OVSR */
+enum { ADC_SAMPLE_2_5 = 0, ADC_SAMPLE_24_5 = 3 };    /* SMP, in ADC clocks */
 
 /* ---- Operational amplifiers ---- */
 struct opamp_registers {

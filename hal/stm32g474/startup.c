@@ -30,11 +30,10 @@ __attribute__((section(".ccm.vectors"), used, aligned(512))) const struct {
     .core = {[0] = reset_handler, [1] = nmi_exception, [2 ... CORE_VECTORS - 2] = crash_exception},
     .interrupts =
         {
-            [0 ... ADC1_2_IRQn - 1] = crash_exception,
-            [ADC1_2_IRQn] = control_interrupt,
-            [ADC1_2_IRQn + 1 ... TIM1_BRK_TIM15_IRQn - 1] = crash_exception,
+            [0 ... TIM1_BRK_TIM15_IRQn - 1] = crash_exception,
             [TIM1_BRK_TIM15_IRQn] = FAULT_OF_BRIDGE,
-            [TIM1_BRK_TIM15_IRQn + 1 ... TIM2_IRQn - 1] = crash_exception,
+            [TIM1_UP_TIM16_IRQn] = control_interrupt,
+            [TIM1_UP_TIM16_IRQn + 1 ... TIM2_IRQn - 1] = crash_exception,
             [TIM2_IRQn] = deadline_guard_interrupt,
             [TIM2_IRQn + 1 ... LPUART1_IRQn - 1] = crash_exception,
             [LPUART1_IRQn] = serial_line_interrupt,

@@ -24,6 +24,7 @@ hal_facts facts_of(const plant::Config &config)
     facts.dead_time_s =
         config.bridge.model == plant::BridgeModel::switched ? config.bridge.dead_time_s : 0.0;
     facts.leg_delay_s = 20e-9; /* as the reference board, although the plant has none */
+    facts.low_state_s = config.sensors.low_state_s;
     facts.converter_codes = static_cast<std::uint32_t>(plant::converter_codes(config.sensors));
     facts.current_A_per_code = plant::current_A_per_code(config.sensors);
     facts.current_zero_code = static_cast<std::uint16_t>(plant::current_zero_code(config.sensors));
@@ -144,7 +145,7 @@ void Board::short_circuit(int, double current_A)
 
 void Board::stall_control_interrupt(double until_s)
 {
-    impl_->stalled = until_s > control_deadline_s;
+    impl_->stalled = until_s > control_deadline_share * impl_->hal.facts.control_period_s;
 }
 
 void Board::type(const std::string &line)

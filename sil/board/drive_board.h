@@ -16,10 +16,10 @@
 namespace sil
 {
 
-/* Of the reference board (hal/stm32g474: pin map, board.h): trip of its comparators, and the time
-   that its deadline guard leaves the control interrupt. */
+/* Of the reference board (hal/stm32g474: pin map, board.h): trip of its comparators, and the share
+   of a period that its deadline guard leaves the control interrupt. */
 constexpr double comparator_trip_A = 7.0;
-constexpr double control_deadline_s = 90e-6;
+constexpr double control_deadline_share = 0.9;
 
 class DriveBoard
 {
@@ -39,7 +39,7 @@ class DriveBoard
        behind S(k), whatever the firmware does. */
     virtual void short_circuit(int leg, double current_A) = 0;
     /* Something holds the control interrupt up, its samples read, until then behind S(k): beyond
-       control_deadline_s the bridge opens before the period is over. On a board whose interrupt
+       the deadline the bridge opens before the period is over. On a board whose interrupt
        takes time its rest follows, and counts. */
     virtual void stall_control_interrupt(double until_s) = 0;
 

@@ -28,7 +28,7 @@ std::uint32_t typed_delay(drive_command_kind kind, double control_period_s)
     }
     const bool planned = drive_command_is(kind, DRIVE_AHEAD);
     const double lead = std::floor(DRIVE_LEAD_s / control_period_s + 0.5);
-    return DRIVE_TYPED_DELAY_PERIODS +
+    return drive_typed_delay_periods(control_period_s) +
            (planned ? static_cast<std::uint32_t>(std::max(lead, 3.0)) : 0);
 }
 

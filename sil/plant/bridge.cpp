@@ -33,19 +33,25 @@ Bridge::Bridge(const BridgeConfig &config) : config_(config)
         dead_counts_ = whole;
     }
 
-    set_voltages();
-    for (Leg &leg : legs_) {
-        leg = {low_, false, false, 0};
-    }
+    tabulate();
+}
+
+Bridge::PhaseVoltage Bridge::between(const LegVoltage &first, const LegVoltage &second)
+{
+    return {first.leaves - second.enters, first.enters - second.leaves, first.diode + second.diode};
 }
 
 /* In dead time the lower diode carries a current that leaves the leg, the upper one that enters
    it. */
-void Bridge::set_voltages()
+void Bridge::tabulate()
 {
-    low_ = {0.0, 0.0, 0.0};
-    high_ = {config_.bus_V, config_.bus_V, 0.0};
-    dead_ = {-config_.diode_drop_V, config_.bus_V + config_.diode_drop_V, config_.diode_drop_V};
+    const double bus_V = config_.bus_V, drop_V = config_.diode_drop_V;
+    const LegVoltage on_low = {0.0, 0.0, 0.0}, on_high = {bus_V, bus_V, 0.0};
+    const LegVoltage in_dead_time = {-drop_V, bus_V + drop_V, drop_V};
+    const LegVoltage of_leg[leg_states] = {on_low, on_high, in_dead_time, in_dead_time};
+    for (unsigned state = 0; state < phase_states; state++) {
+        table_[state] = between(of_leg[state % leg_states], of_leg[state / leg_states]);
+    }
 }
 
 void Bridge::set_levels(double bus_V, double diode_drop_V)
@@ -53,10 +59,7 @@ void Bridge::set_levels(double bus_V, double diode_drop_V)
     config_.bus_V = bus_V;
     config_.diode_drop_V = diode_drop_V;
     require_bridge(config_);
-    set_voltages();
-    for (Leg &leg : legs_) {
-        leg.voltage_V = leg.dead ? dead_ : (leg.commanded_high ? high_ : low_);
-    }
+    tabulate();
 }
 
 const Timetable &Bridge::period(const Duties &duties)
@@ -72,29 +75,25 @@ const Timetable &Bridge::period(const Duties &duties)
     return timetable_;
 }
 
-/* All gates off: every leg in dead time for ever. */
+/* All gates off: every leg in dead time for ever. Once allowed, the low switches turn on at once.
+ */
 void Bridge::off()
 {
-    for (Leg &leg : legs_) {
-        leg.voltage_V = dead_;
-    }
-    dead_legs_ = legs;
-    append(2.0 * config_.half_period_counts);
-    for (Leg &leg : legs_) {
-        leg = {low_, false, false, 0}; /* once allowed, the low switches turn on at once */
-    }
-    dead_legs_ = 0;
+    append(2.0 * config_.half_period_counts, all_dead);
+    state_ = all_low;
     pending_count_ = 0;
 }
 
 void Bridge::averaged(const Duties &duties)
 {
     const double V_per_count = config_.bus_V / config_.half_period_counts;
+    LegVoltage mean[legs];
     for (int leg = 0; leg < legs; leg++) {
         const double mean_V = V_per_count * duties.high_counts[leg];
-        legs_[leg].voltage_V = {mean_V, mean_V, 0.0};
+        mean[leg] = {mean_V, mean_V, 0.0};
     }
-    append(2.0 * config_.half_period_counts);
+    append(2.0 * config_.half_period_counts, between(mean[0], mean[1]), between(mean[2], mean[3]),
+           false);
 }
 
 void Bridge::switched(const Duties &duties)
@@ -108,41 +107,49 @@ void Bridge::switched(const Duties &duties)
     /* Two queues in one list: the edges, and the ends of their dead times. */
     int issued = pending_count_;
     int ended = 0;
+    unsigned state = state_;
     double now = 0.0;
     for (;;) {
         const double next_edge = edges[issued].time;
         const double next_end = ended < issued ? edges[ended].time + dead_counts_ : never;
-        const double next = next_end <= next_edge ? next_end : next_edge;
+        const bool ends = next_end <= next_edge;
+        const double next = ends ? next_end : next_edge;
         if (next >= end) {
             break;
         }
         if (next > now) {
-            append(next - now);
+            append(next - now, state);
             now = next;
         }
-        if (next_end <= next_edge) {
-            Leg &leg = legs_[edges[ended].leg];
-            if (leg.latest_edge == ended) { /* a later edge restarts the dead time */
-                end_dead_time(leg);
+        if (ends) {
+            const Edge &edge = edges[ended];
+            if (latest_edge_[edge.leg] == ended) { /* a later edge restarts the dead time */
+                state &= ~(dead << (leg_bits * edge.leg));
             }
             ended++;
         } else {
-            Leg &leg = legs_[edges[issued].leg];
-            leg.commanded_high = edges[issued].high;
-            leg.latest_edge = issued;
-            start_dead_time(leg);
+            const Edge &edge = edges[issued];
+            const unsigned place = leg_bits * edge.leg;
+            latest_edge_[edge.leg] = issued;
+            state = (state & ~(high << place)) | ((edge.level | dead) << place);
             issued++;
         }
     }
-    append(end - now);
+    append(end - now, state);
+    state_ = state;
+    keep_pending(edges, ended, issued);
+}
 
+/* The edges first...last - 1, as seen from the next period, where their dead time ends. */
+void Bridge::keep_pending(const Edge *edges, int first, int last)
+{
     pending_count_ = 0;
-    for (; ended < issued; ended++) {
-        Leg &leg = legs_[edges[ended].leg];
-        if (leg.latest_edge == ended) {
-            leg.latest_edge = pending_count_;
-            pending_[pending_count_] = edges[ended];
-            pending_[pending_count_].time -= end;
+    for (int edge = first; edge < last; edge++) {
+        int &latest = latest_edge_[edges[edge].leg];
+        if (latest == edge) {
+            latest = pending_count_;
+            pending_[pending_count_] = edges[edge];
+            pending_[pending_count_].time -= 2.0 * config_.half_period_counts;
             pending_count_++;
         }
     }
@@ -152,66 +159,54 @@ void Bridge::switched(const Duties &duties)
 int Bridge::list_edges(const Duties &duties, Edge *edges) const
 {
     const int half = config_.half_period_counts;
-    int high_counts[legs];
-    int order[legs]; /* longest high first */
-    for (int leg = 0; leg < legs; leg++) {
-        high_counts[leg] = duties.high_counts[leg] < half ? duties.high_counts[leg] : half;
-        int place = leg;
-        for (; place > 0 && high_counts[order[place - 1]] < high_counts[leg]; place--) {
-            order[place] = order[place - 1];
-        }
-        order[place] = leg;
-    }
-
     int count = 0;
     for (; count < pending_count_; count++) {
         edges[count] = pending_[count];
     }
-    for (int leg = 0; leg < legs; leg++) {
-        const bool full = high_counts[leg] == half; /* high all through: no edge at the peak */
-        if (full != legs_[leg].commanded_high) {
+
+    struct Pulse {
+        int high_counts;
+        unsigned leg;
+    } pulses[legs]; /* longest first */
+    int pulse_count = 0;
+    for (unsigned leg = 0; leg < legs; leg++) {
+        const int high_counts = duties.high_counts[leg];
+        const unsigned full = high_counts >= half; /* high all through: no edge at the peak */
+        if (full != ((state_ >> (leg_bits * leg)) & high)) {
             edges[count++] = {0.0, leg, full};
         }
-    }
-    for (int place = 0; place < legs; place++) {
-        const int leg = order[place];
-        if (high_counts[leg] > 0 && high_counts[leg] < half) {
-            edges[count++] = {static_cast<double>(half - high_counts[leg]), leg, true};
+        if (high_counts > 0 && high_counts < half) {
+            int place = pulse_count++;
+            for (; place > 0 && pulses[place - 1].high_counts < high_counts; place--) {
+                pulses[place] = pulses[place - 1];
+            }
+            pulses[place] = {high_counts, leg};
         }
     }
-    for (int place = legs - 1; place >= 0; place--) {
-        const int leg = order[place];
-        if (high_counts[leg] > 0 && high_counts[leg] < half) {
-            edges[count++] = {static_cast<double>(half + high_counts[leg]), leg, false};
-        }
+    for (int n = 0; n < pulse_count; n++) {
+        edges[count++] = {static_cast<double>(half - pulses[n].high_counts), pulses[n].leg, high};
+    }
+    for (int n = pulse_count - 1; n >= 0; n--) {
+        edges[count++] = {static_cast<double>(half + pulses[n].high_counts), pulses[n].leg, 0};
     }
     return count;
 }
 
-void Bridge::start_dead_time(Leg &leg)
+void Bridge::append(double duration_counts, const PhaseVoltage &a, const PhaseVoltage &b,
+                    bool dead_time)
 {
-    dead_legs_ += leg.dead ? 0 : 1;
-    leg.voltage_V = dead_;
-    leg.dead = true;
-}
-
-void Bridge::end_dead_time(Leg &leg)
-{
-    dead_legs_--;
-    leg.dead = false;
-    leg.voltage_V = leg.commanded_high ? high_ : low_;
-}
-
-void Bridge::append(double duration_counts)
-{
-    const LegVoltage &a_plus = legs_[0].voltage_V, &a_minus = legs_[1].voltage_V;
-    const LegVoltage &b_plus = legs_[2].voltage_V, &b_minus = legs_[3].voltage_V;
     Segment &segment = timetable_.segments[timetable_.count++];
     segment.duration_s = duration_counts * count_s_;
-    segment.if_positive_V = Phases{a_plus.leaves - a_minus.enters, b_plus.leaves - b_minus.enters};
-    segment.if_negative_V = Phases{a_plus.enters - a_minus.leaves, b_plus.enters - b_minus.leaves};
-    segment.diode_V = Phases{a_plus.diode + a_minus.diode, b_plus.diode + b_minus.diode};
-    segment.dead_time = dead_legs_ > 0;
+    segment.if_positive_V = Phases{a.if_positive_V, b.if_positive_V};
+    segment.if_negative_V = Phases{a.if_negative_V, b.if_negative_V};
+    segment.diode_V = Phases{a.diode_V, b.diode_V};
+    segment.dead_time = dead_time;
+}
+
+void Bridge::append(double duration_counts, unsigned state)
+{
+    append(duration_counts, table_[state % phase_states], table_[state / phase_states],
+           (state & all_dead) != 0);
 }
 
 } // namespace plant

@@ -53,40 +53,46 @@ class Bridge
     const Timetable &period(const Duties &duties);
 
   private:
-    static constexpr int legs = 4;
+    static constexpr int legs = 4;             /* A+, A-, B+, B- */
     static constexpr int max_edges = 4 * legs; /* pending, at the peak, rising, falling */
+
+    /* The states of all legs are the bits of one number, two for each: what is commanded, and
+       whether it is in dead time. A phase's current leaves its first leg and enters its second. */
+    static constexpr unsigned high = 1, dead = 2, leg_bits = 2, leg_states = 4;
+    static constexpr unsigned phase_bits = 2 * leg_bits, phase_states = leg_states * leg_states;
+    static constexpr unsigned all_low = 0x00, all_dead = 0xaa;
 
     struct Edge {
         double time; /* counts from S(k) */
-        int leg;
-        bool high;
+        unsigned leg;
+        unsigned level; /* high or 0 */
     };
     /* Of a leg: its voltage while current leaves or enters it, and the drop of its diodes. */
     struct LegVoltage {
         double leaves, enters, diode;
     };
-    struct Leg {
-        LegVoltage voltage_V;
-        bool dead;
-        bool commanded_high;
-        int latest_edge; /* its index in the period's list */
+    /* Of a phase, as in Segment. */
+    struct PhaseVoltage {
+        double if_positive_V, if_negative_V, diode_V;
     };
 
-    void set_voltages();
+    static PhaseVoltage between(const LegVoltage &first, const LegVoltage &second);
+    void tabulate();
     void off();
     void averaged(const Duties &duties);
     void switched(const Duties &duties);
     int list_edges(const Duties &duties, Edge *edges) const;
-    void start_dead_time(Leg &leg);
-    void end_dead_time(Leg &leg);
-    void append(double duration_counts);
+    void keep_pending(const Edge *edges, int first, int last);
+    void append(double duration_counts, const PhaseVoltage &a, const PhaseVoltage &b,
+                bool dead_time);
+    void append(double duration_counts, unsigned state);
 
     BridgeConfig config_;
     double count_s_;
     double dead_counts_;
-    LegVoltage low_, high_, dead_;
-    Leg legs_[legs]; /* A+, A-, B+, B-: a phase's current leaves the first and enters the second */
-    int dead_legs_ = 0;
+    PhaseVoltage table_[phase_states];
+    unsigned state_ = all_low;
+    int latest_edge_[legs] = {0, 0, 0, 0}; /* its index in the period's list */
     Edge pending_[legs]; /* edges of the last period whose dead time reaches into this one */
     int pending_count_ = 0;
     Timetable timetable_;

@@ -70,6 +70,14 @@ double falling_exponential(double x)
     return exponential * power;
 }
 
+Decay::Span Decay::decay(double time_s) const
+{
+    constexpr double forgotten = 50.0; /* time constants */
+    const double age = time_s * rate_per_s_;
+    return {time_s, age < forgotten ? falling_exponential(-age) : 0.0,
+            (1.0 / rate_per_s_) / time_s};
+}
+
 double natural_logarithm(double x)
 {
     /* x = 2^exponent m with m in [sqrt(1/2), sqrt(2)): the exponent field is read from the bits. */

@@ -5,6 +5,9 @@
 #ifndef STEADYSTEP_PLANT_ELEMENTARY_H
 #define STEADYSTEP_PLANT_ELEMENTARY_H
 
+#include <cstdint>
+#include <cstring>
+
 #include "sil/plant/phases.h"
 
 namespace plant
@@ -35,6 +38,43 @@ double nearest_whole(double x);
 
 /* e^x, -700 < x <= 0; relative error below 1e-15. */
 double falling_exponential(double x);
+
+/*
+ * What an exponential decay leaves after a span of time. Keeps the last answers: in a period most
+ * dead times are alike, and what stands before the valley of the carrier comes again behind it.
+ */
+class Decay
+{
+  public:
+    explicit Decay(double rate_per_s) : rate_per_s_(rate_per_s)
+    {
+    }
+
+    struct Span {
+        double time_s = 0.0;
+        double left = 1.0;      /* of 1; less than e^-50: nothing */
+        double constants = 0.0; /* 1 / (rate x time) */
+    };
+    const Span &over(double time_s)
+    {
+        constexpr std::uint64_t golden = 0x9e3779b97f4a7c15U;
+        std::uint64_t bits = 0;
+        std::memcpy(&bits, &time_s, sizeof bits);
+        Span &span = kept_[(bits * golden) >> (64 - kept_bits)];
+        if (span.time_s != time_s) {
+            span = decay(time_s);
+        }
+        return span;
+    }
+
+  private:
+    static constexpr int kept_bits = 6;
+
+    Span decay(double time_s) const;
+
+    double rate_per_s_;
+    Span kept_[1 << kept_bits];
+};
 
 /* Natural logarithm of x, 1e-300 < x < 1e300; relative error below 4e-15. */
 double natural_logarithm(double x);

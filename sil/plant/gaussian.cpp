@@ -30,10 +30,14 @@ double uniform(std::uint64_t bits)
 
 } // namespace
 
-Phases gaussian_pair(std::uint64_t seed, std::uint64_t channel, std::uint64_t period)
+std::uint64_t gaussian_key(std::uint64_t seed, std::uint64_t channel)
 {
-    /* Counter mode: the key of (seed, channel), then one number per period and deviate. */
-    const std::uint64_t key = scatter(scatter(seed + golden) + channel);
+    return scatter(scatter(seed + golden) + channel);
+}
+
+Phases gaussian_pair(std::uint64_t key, std::uint64_t period)
+{
+    /* Counter mode: one number per period and deviate. */
     const double radius_uniform = uniform(scatter(key + 2 * period));
     const double angle_uniform = uniform(scatter(key + 2 * period + 1));
     const double radius = std::sqrt(-2.0 * natural_logarithm(radius_uniform));

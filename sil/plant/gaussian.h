@@ -12,8 +12,11 @@
 namespace plant
 {
 
+/* What seed and channel come to: constant for a run. */
+std::uint64_t gaussian_key(std::uint64_t seed, std::uint64_t channel);
+
 /* Two independent standard normal deviates (Box and Muller 1958). */
-Phases gaussian_pair(std::uint64_t seed, std::uint64_t channel, std::uint64_t period);
+Phases gaussian_pair(std::uint64_t key, std::uint64_t period);
 
 } // namespace plant
 

@@ -73,15 +73,17 @@ void Motor::set_parameters(const MotorConfig &config)
         const Phases both = {1.0, 1.0};
         coefficients_.share[k].resistance = both * (-per_L * config.resistance_ohm);
         coefficients_.share[k].emf = both * (-per_L * config.torque_constant_Nm_A);
-        coefficients_.share[k].teeth = both * (share * config.rotor_teeth);
-        coefficients_.share[k].torque = per_J * config.torque_constant_Nm_A;
-        coefficients_.share[k].friction = -per_J * config.viscous_friction_Nms_rad;
+        coefficients_.share[k].quarter_turn = Phases{-1.0, 1.0} * (share * config.rotor_teeth);
+        coefficients_.share[k].torque = both * (per_J * config.torque_constant_Nm_A);
+        coefficients_.share[k].friction = both * (-per_J * config.viscous_friction_Nms_rad);
     }
+    set_load_torque(coefficients_.load_torque);
 }
 
 void Motor::set_load_torque(double load_torque_Nm)
 {
     coefficients_.load_torque = load_torque_Nm;
+    coefficients_.deceleration = in_both_lanes(coefficients_.inverse_inertia * load_torque_Nm);
 }
 
 void Motor::begin_period()

@@ -41,12 +41,12 @@ struct MotorCoefficients {
     double resistance, torque_constant, friction; /* R, Km, Kv */
     double inverse_inductance, inverse_inertia;   /* 1/L, 1/J */
     double teeth, load_torque;                    /* N, T_L */
+    Phases deceleration;                          /* T_L/J, in both lanes as all that follows */
 
-    /* -R/L, -Km/L, N, Km/J and -Kv/J over k + 1: from Taylor coefficient k to k + 1. */
+    /* -R/L, -Km/L, N (-1, 1), Km/J and -Kv/J over k + 1: from Taylor coefficient k to k + 1. */
     static constexpr int highest_order = 5;
     struct Share {
-        Phases resistance, emf, teeth;
-        double torque, friction;
+        Phases resistance, emf, quarter_turn, torque, friction;
     } share[highest_order];
 };
 

@@ -10,6 +10,11 @@ namespace plant
 
 typedef double Phases __attribute__((vector_size(16)));
 
+inline Phases in_both_lanes(double x)
+{
+    return Phases{x, x};
+}
+
 inline double dot(Phases x, Phases y)
 {
     const Phases product = x * y;
@@ -26,6 +31,12 @@ inline Phases quarter_turn(Phases x)
 inline Phases exchanged(Phases x)
 {
     return __builtin_shufflevector(x, x, 1, 0);
+}
+
+/* a + b, twice */
+inline Phases sum_in_both_lanes(Phases x)
+{
+    return x + exchanged(x);
 }
 
 inline double magnitude(double x)

@@ -60,6 +60,7 @@ struct BridgeConfig {
 };
 
 struct SensorConfig {
+    double low_state_s = 4e-6;    /* for which currents are to be seen around each S(k) */
     bool exact = false;           /* true: no noise, no offset, and codes of 16 bits, not 12 */
     double current_range_A = 6.0; /* +- full scale */
     double current_noise_rms_A = 3e-3;

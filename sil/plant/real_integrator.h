@@ -37,22 +37,23 @@ constexpr double no_current_A = 1e-12;     /* what rounding leaves of a current 
 /*
  * The unknowns as power series in the time since the start of the step. Functions of the rotor
  * angle are series of psi, the angle turned since: F(psi(t)) = sum F_j psi(t)^j, and psi^j starts
- * with t^j, so that the sum is finite for every coefficient.
+ * with t^j, so that the sum is finite for every coefficient. What is no vector stands in both
+ * lanes, so that it multiplies vectors as it is.
  */
 template <int order> struct Series {
     Phases flux[order + 1]; /* x */
     Phases flux_squared[order + 1];
     Phases current[order + 1];
-    double omega[order + 1];
-    double acceleration[order]; /* without Coulomb friction */
-    double bus[order + 1];
+    Phases omega[order + 1];
+    Phases acceleration[order]; /* without Coulomb friction */
+    Phases bus[order + 1];
     Phases slope[order];                 /* f */
-    double turned[order + 1][order + 1]; /* [j][n]: coefficient j + n of psi^j, j > 0 */
+    Phases turned[order + 1][order + 1]; /* [j][n]: coefficient j + n of psi^j, j > 0 */
 
     /* Taylor coefficients in psi: of m, of f, and of the detent torque. */
     Phases magnet_at[order + 1];
     Phases slope_at[order];
-    double detent_at[order];
+    Phases detent_at[order];
 };
 
 /* Which of its cases each part is in during a step. */
@@ -76,6 +77,7 @@ struct Course {
     const RealCoefficients &motor;
     RealMotorState &state;
     MotorIntegrals &integrals;
+    Decay &filter, &source; /* of the voltage filter, and of the bus towards the source */
 };
 
 /* Sum of F_j times coefficient k of psi^j. */
@@ -105,10 +107,11 @@ template <int k, int j, int order> [[gnu::always_inline]] inline void raise(Seri
     }
 }
 
-template <int k, int order> [[gnu::always_inline]] inline void turn(Series<order> &x, double teeth)
+template <int k, int order>
+[[gnu::always_inline]] inline void turn(Series<order> &x, const RealCoefficients &motor)
 {
     if constexpr (k > 0) {
-        x.turned[1][k - 1] = (teeth * (1.0 / k)) * x.omega[k - 1];
+        x.turned[1][k - 1] = motor.share[k - 1].teeth * x.omega[k - 1];
         raise<k, 2>(x);
     }
 }
@@ -134,43 +137,43 @@ template <bool floating, bool turning, int k, int order>
     constexpr double part = 1.0 / (k + 1);
 
     if constexpr (turning && !floating) {
-        turn<k>(x, magnetics.teeth);
+        turn<k>(x, motor);
     }
     magnetise<turning, k>(x, magnetics);
     if constexpr (floating) {
         x.current[k] *= mode.conducting;
     }
     x.slope[k] = x.slope_at[0];
-    double acceleration = 0.0;
+    Phases acceleration = {0.0, 0.0};
     if constexpr (turning) {
         x.slope[k] = composed<k>(x.slope_at, x.turned);
         const Phases pull = cauchy_product<k>(x.slope, x.flux);
-        acceleration = motor.torque * (pull[0] + pull[1]) - composed<k>(x.detent_at, x.turned) -
+        acceleration = motor.torque * sum_in_both_lanes(pull) - composed<k>(x.detent_at, x.turned) -
                        motor.friction * x.omega[k];
     } else {
-        acceleration = motor.torque * dot(x.slope_at[0], x.flux[k]);
+        acceleration = motor.torque * sum_in_both_lanes(x.slope_at[0] * x.flux[k]);
         if constexpr (k == 0) {
             acceleration -= x.detent_at[0];
         }
     }
     Phases voltage_V = mode.share * x.bus[k];
-    double bus = -(mode.source_rate + mode.brake_rate) * x.bus[k] -
-                 mode.per_capacitance * dot(mode.share, x.current[k]);
-    double coulomb = 0.0;
+    Phases bus = -(mode.source_rate + mode.brake_rate) * x.bus[k] -
+                 mode.per_capacitance * sum_in_both_lanes(mode.share * x.current[k]);
+    Phases coulomb = {0.0, 0.0};
     if constexpr (k == 0) {
         acceleration -= motor.load;
-        coulomb = mode.sliding * motor.coulomb;
+        coulomb = in_both_lanes(mode.sliding * motor.coulomb);
         voltage_V += mode.drop_V;
-        bus += mode.source_rate * motor.supply.source_V;
+        bus += in_both_lanes(mode.source_rate * motor.supply.source_V);
     }
     x.acceleration[k] = acceleration;
-    x.omega[k + 1] = turning ? part * (acceleration - coulomb) : 0.0;
+    x.omega[k + 1] = turning ? part * (acceleration - coulomb) : Phases{0.0, 0.0};
     x.bus[k + 1] = part * bus;
     Phases flux = share.voltage * voltage_V + share.resistance * x.current[k];
     if constexpr (floating) { /* current 0: (1 + 3 b x^2) dx/dt = I_f dm/dt, divided */
         Phases rest = {0.0, 0.0};
         if constexpr (turning) {
-            turn<k + 1>(x, magnetics.teeth);
+            turn<k + 1>(x, motor);
             rest = magnetics.magnet_A * composed<k + 1>(x.magnet_at, x.turned);
         }
         for (int j = 1; j <= k; j++) {
@@ -193,13 +196,14 @@ template <int j, int order>
 {
     if constexpr (j < order) {
         const RealCoefficients::InAngle &share = motor.in_angle[j];
-        constexpr int lane = 1 - j % 2; /* a sine and its derivatives */
-        const Phases third = exchanged(axes.thrice);
-        x.slope_at[j] = share.once * (j % 2 == 0 ? quarter_turn(axes.once) : -axes.once) +
-                        share.thrice * (j % 2 == 0 ? third : -quarter_turn(third));
+        constexpr bool even = j % 2 == 0;
+        constexpr int lane = even ? 1 : 0; /* a sine and its derivatives */
+        x.slope_at[j] = share.once * (even ? exchanged(axes.once) : axes.once) +
+                        share.thrice * (even ? exchanged(axes.thrice) : axes.thrice);
         x.magnet_at[j + 1] = x.slope_at[j] * (1.0 / (j + 1));
-        x.detent_at[j] = share.detent_4 * axes.four_times[lane] +
-                         share.detent_2 * axes.twice[lane] + share.detent_1 * axes.once[lane];
+        x.detent_at[j] =
+            in_both_lanes(share.detent_4 * axes.four_times[lane] +
+                          share.detent_2 * axes.twice[lane] + share.detent_1 * axes.once[lane]);
         differentiate<j + 1>(x, motor, axes);
     }
 }
@@ -212,8 +216,8 @@ template <int order>
     const Magnetics &magnetics = motor.magnetics;
     const Axes axes = axes_of(state.axis);
     x.flux[0] = state.flux;
-    x.omega[0] = state.omega_rad_s;
-    x.bus[0] = state.bus_V;
+    x.omega[0] = in_both_lanes(state.omega_rad_s);
+    x.bus[0] = in_both_lanes(state.bus_V);
 
     x.magnet_at[0] = magnetics.magnet_axis(axes.once, axes.thrice);
     differentiate<0>(x, motor, axes);
@@ -224,7 +228,7 @@ template <int order>
 template <int order>
 double open_circuit_V(const Series<order> &x, const Magnetics &magnetics, int phase)
 {
-    return magnetics.torque * x.omega[0] * x.slope_at[0][phase] /
+    return magnetics.torque * x.omega[0][0] * x.slope_at[0][phase] /
            (1.0 + 3.0 * magnetics.saturation * x.flux_squared[0][phase]);
 }
 
@@ -271,13 +275,13 @@ template <int order>
     mode.stuck = false;
     if (motor.coulomb == 0.0) {
         mode.sliding = 0.0;
-    } else if (x.omega[0] == 0.0) {
+    } else if (x.omega[0][0] == 0.0) {
         const double acceleration =
-            motor.torque * dot(x.slope_at[0], x.flux[0]) - x.detent_at[0] - motor.load;
+            motor.torque[0] * dot(x.slope_at[0], x.flux[0]) - x.detent_at[0][0] - motor.load[0];
         mode.stuck = !state.released && magnitude(acceleration) <= motor.coulomb;
         mode.sliding = mode.stuck ? 0.0 : (acceleration > 0.0 ? 1.0 : -1.0);
     } else {
-        mode.sliding = x.omega[0] > 0.0 ? 1.0 : -1.0;
+        mode.sliding = x.omega[0][0] > 0.0 ? 1.0 : -1.0;
     }
 }
 
@@ -358,14 +362,15 @@ template <int order>
     const Supply &supply = motor.supply;
     MotorIntegrals &integrals = course.integrals;
     const double inertia = 1.0 / motor.inverse_inertia;
-    const Phases charge = integral<order>(x.current, h);
+    const Phases span_s = in_both_lanes(h);
+    const Phases charge = integral<order>(x.current, span_s);
     const Phases current_squared = integral_of_square<order>(x.current, h);
-    const double way = integral<order>(x.omega, h);
+    const double way = integral<order>(x.omega, span_s)[0];
     integrals.diode_J += motor.diode_drop * (segment.diode_V[0] * magnitude(charge[0]) +
                                              segment.diode_V[1] * magnitude(charge[1]));
     integrals.copper_J += motor.resistance * (current_squared[0] + current_squared[1]);
-    integrals.friction_J += motor.friction * inertia * integral_of_square<order>(x.omega, h);
-    integrals.load_J += motor.load * inertia * way;
+    integrals.friction_J += motor.friction[0] * inertia * integral_of_square<order>(x.omega, h)[0];
+    integrals.load_J += motor.load[0] * inertia * way;
     integrals.coulomb_J += mode.sliding * motor.coulomb * inertia * way;
     if (supply.stiff()) {
         integrals.supplied_J += supply.source_V * dot(mode.share, charge);
@@ -373,7 +378,7 @@ template <int order>
     }
     double below[order + 1]; /* Vs - V */
     for (int k = 0; k <= order; k++) {
-        below[k] = -x.bus[k];
+        below[k] = -x.bus[k][0];
     }
     below[0] += supply.source_V;
     const double source_A_per_V = mode.source_rate * supply.capacitance_F;
@@ -381,7 +386,7 @@ template <int order>
     integrals.supplied_J += supply.source_V * source_A_per_V * integral<order - 1>(below, h);
     integrals.source_J += source_A_per_V * integral_of_square<order>(below, h);
     integrals.brake_J +=
-        mode.brake_rate * supply.capacitance_F * integral_of_square<order>(x.bus, h);
+        mode.brake_rate * supply.capacitance_F * integral_of_square<order>(x.bus, h)[0];
 }
 
 /* The bus without a load goes to the source's voltage. */
@@ -390,7 +395,7 @@ template <bool track_energy>
 {
     const Supply &supply = course.motor.supply;
     const double below_V = supply.source_V - course.state.bus_V;
-    const double left_V = below_V * falling_exponential(-supply.source_rate * h);
+    const double left_V = below_V * course.source.over(h).left;
     course.state.bus_V = supply.source_V - left_V;
     if constexpr (track_energy) {
         const double capacitance_F = supply.capacitance_F;
@@ -420,18 +425,18 @@ template <int order> Phases induced_V(const Series<order> &x, const Magnetics &m
     return magnetics.inductance * rate;
 }
 
-/* Voltage at the bridge of the phases at t = h. */
+/* Voltage at the bridge of the phases at t = h, where the bus has bus_V. */
 template <int order>
 [[gnu::always_inline]] inline Phases terminal_V(const Course &course, const Series<order> &x,
-                                                const Segment &segment, const Mode &mode, double h)
+                                                const Segment &segment, const Mode &mode, double h,
+                                                Phases bus_V)
 {
-    const double bus_V = value<order>(x.bus, h);
     Phases voltage_V = mode.share * bus_V + mode.drop_V;
     if (mode.floating) {
         voltage_V += (1.0 - mode.conducting) * induced_V(x, course.motor.magnetics, h);
         for (int phase = 0; phase < 2; phase++) {
             if (course.state.open[phase]) {
-                voltage_V[phase] = between_legs(segment, phase) * bus_V;
+                voltage_V[phase] = between_legs(segment, phase) * bus_V[phase];
             }
         }
     }
@@ -440,18 +445,16 @@ template <int order>
 
 /* Behind the filter at t = h, of a voltage that is taken as a straight line within the step. */
 template <int order>
-[[gnu::noinline]] void filter(const Course &course, const Series<order> &x, const Segment &segment,
-                              const Mode &mode, double h)
+[[gnu::always_inline]] inline void filter(const Course &course, const Series<order> &x,
+                                          const Segment &segment, const Mode &mode, double h,
+                                          Phases bus_V)
 {
-    const double constant_s = 1.0 / course.motor.filter_rate;
-    const Phases first_V = terminal_V(course, x, segment, mode, 0.0);
-    const Phases last_V = terminal_V(course, x, segment, mode, h);
-    const Phases lag_V = (constant_s / h) * (last_V - first_V);
-    constexpr double forgotten = 50.0; /* time constants */
-    const double age = h * course.motor.filter_rate;
-    const double left = age < forgotten ? falling_exponential(-age) : 0.0;
+    const Phases first_V = terminal_V(course, x, segment, mode, 0.0, x.bus[0]);
+    const Phases last_V = terminal_V(course, x, segment, mode, h, bus_V);
+    const Decay::Span &span = course.filter.over(h);
+    const Phases lag_V = span.constants * (last_V - first_V);
     Phases &filtered_V = course.state.filtered_V;
-    filtered_V = last_V - lag_V + left * (filtered_V - first_V + lag_V);
+    filtered_V = last_V - lag_V + span.left * (filtered_V - first_V + lag_V);
 }
 
 /* The state at the end of the step. */
@@ -460,21 +463,25 @@ template <bool track_energy, bool turning, int order>
                                           const Segment &segment, const Mode &mode, double h)
 {
     RealMotorState &state = course.state;
-    course.integrals.voltage_Vs += mode.share * integral<order>(x.bus, h) + mode.drop_V * h;
+    const Phases span_s = in_both_lanes(h);
+    const Phases bus_V = value<order>(x.bus, span_s);
+    course.integrals.voltage_Vs +=
+        mode.share * integral<order>(x.bus, span_s) + mode.drop_V * span_s;
     if (course.motor.filter_rate > 0.0) {
-        filter(course, x, segment, mode, h);
+        filter(course, x, segment, mode, h, bus_V);
     }
     if constexpr (track_energy) {
         add_energies(course, x, segment, mode, h);
     }
-    state.flux = value<order>(x.flux, h);
+    state.flux = value<order>(x.flux, span_s);
     if constexpr (turning) {
-        const double turned_rad = course.motor.magnetics.teeth * integral<order>(x.omega, h);
-        state.omega_rad_s = value<order>(x.omega, h);
+        const double turned_rad =
+            course.motor.magnetics.teeth * integral<order>(x.omega, span_s)[0];
+        state.omega_rad_s = value<order>(x.omega, span_s)[0];
         state.electrical_rad += turned_rad;
         state.axis = turned_by_little<order>(state.axis, turned_rad);
     }
-    state.bus_V = value<order>(x.bus, h);
+    state.bus_V = bus_V[0];
     if (mode.relaxing) {
         relax<track_energy>(course, h);
     }
@@ -511,7 +518,7 @@ Margin<order> margin_of_phase(int phase, const Series<order> &x, const RealCoeff
     const double share =
         negative ? -(segment.if_positive_V[phase] + drops) : segment.if_negative_V[phase] - drops;
     for (int k = 0; k < order; k++) {
-        margin.coefficient[k] = sign * emf[k] + share * x.bus[k];
+        margin.coefficient[k] = sign * emf[k] + share * x.bus[k][0];
     }
     margin.coefficient[0] += drops * motor.diode_drop;
     return margin;
@@ -525,13 +532,13 @@ Margin<order> margin_of_friction(const Series<order> &x, const RealCoefficients 
     Margin<order> margin = {};
     if (!mode.stuck) {
         for (int k = 0; k <= order; k++) {
-            margin.coefficient[k] = mode.sliding * x.omega[k];
+            margin.coefficient[k] = mode.sliding * x.omega[k][0];
         }
         return margin;
     }
-    const double sign = value<order - 1>(x.acceleration, h) < 0.0 ? 1.0 : -1.0;
+    const double sign = value<order - 1>(x.acceleration, in_both_lanes(h))[0] < 0.0 ? 1.0 : -1.0;
     for (int k = 0; k < order; k++) {
-        margin.coefficient[k] = sign * x.acceleration[k];
+        margin.coefficient[k] = sign * x.acceleration[k][0];
     }
     margin.coefficient[0] += motor.coulomb;
     return margin;
@@ -544,10 +551,17 @@ Margin<order> margin_of_bus(const Series<order> &x, double threshold_V, bool bel
     Margin<order> margin = {};
     const double sign = below ? -1.0 : 1.0;
     for (int k = 0; k <= order; k++) {
-        margin.coefficient[k] = sign * x.bus[k];
+        margin.coefficient[k] = sign * x.bus[k][0];
     }
     margin.coefficient[0] -= sign * threshold_V;
     return margin;
+}
+
+/* By far more than rounding, so that no margin need be asked. */
+inline bool clear_of(double bus_V, double threshold_V, bool below)
+{
+    const double distance_V = below ? threshold_V - bus_V : bus_V - threshold_V;
+    return distance_V > 1e-9 * threshold_V;
 }
 
 /* The first end of a mode within a step. */
@@ -588,8 +602,11 @@ Event first_event(const Series<order> &x, const RealCoefficients &motor,
                   const RealMotorState &state, const Segment &segment, const Mode &mode, double h)
 {
     Event first = {h};
+    const Phases span_s = in_both_lanes(h);
+    const Phases along = mode.direction * value<order>(x.current, span_s);
     for (int phase = 0; phase < 2; phase++) {
-        if (segment.diode_V[phase] != 0.0 && !state.open[phase]) {
+        const bool goes_on = mode.conducting[phase] != 0.0 && !(along[phase] < 0.0);
+        if (segment.diode_V[phase] != 0.0 && !state.open[phase] && !goes_on) {
             const End current = phase == 0 ? End::of_current_a : End::of_current_b;
             consider(first, mode.conducting[phase] != 0.0 ? current : End::of_floating,
                      margin_of_phase(phase, x, motor, segment, mode, h), h);
@@ -600,14 +617,13 @@ Event first_event(const Series<order> &x, const RealCoefficients &motor,
                  margin_of_friction(x, motor, mode, h), h);
     }
     const Supply &supply = motor.supply;
-    if (!supply.stiff()) {
+    const double bus_V = value<order>(x.bus, span_s)[0];
+    if (!supply.stiff() && !clear_of(bus_V, supply.source_V, mode.source_conducts)) {
         consider(first, End::of_source, margin_of_bus(x, supply.source_V, mode.source_conducts), h);
     }
-    if (supply.brake_rate > 0.0) {
-        consider(first, End::of_brake,
-                 margin_of_bus(x, state.braking ? supply.brake_off_V : supply.brake_on_V,
-                               !state.braking),
-                 h);
+    const double brake_V = state.braking ? supply.brake_off_V : supply.brake_on_V;
+    if (supply.brake_rate > 0.0 && !clear_of(bus_V, brake_V, !state.braking)) {
+        consider(first, End::of_brake, margin_of_bus(x, brake_V, !state.braking), h);
     }
     return first;
 }
@@ -628,12 +644,13 @@ template <bool turning, bool dead_time, int order>
                                              double h)
 {
     const Supply &supply = motor.supply;
-    if (turning ? mode.sliding * value<order>(x.omega, h) < 0.0
-                : magnitude(value<order - 1>(x.acceleration, h)) > motor.coulomb) {
+    const Phases span_s = in_both_lanes(h);
+    if (turning ? mode.sliding * value<order>(x.omega, span_s)[0] < 0.0
+                : magnitude(value<order - 1>(x.acceleration, span_s)[0]) > motor.coulomb) {
         return true;
     }
     if constexpr (dead_time) {
-        const Phases along = mode.direction * value<order>(x.current, h);
+        const Phases along = mode.direction * value<order>(x.current, span_s);
         if (along[0] < 0.0 || along[1] < 0.0) {
             return true;
         }
@@ -641,7 +658,7 @@ template <bool turning, bool dead_time, int order>
     if (supply.stiff()) {
         return false;
     }
-    const double bus_V = value<order>(x.bus, h);
+    const double bus_V = value<order>(x.bus, span_s)[0];
     if (mode.source_conducts ? bus_V > supply.source_V : bus_V < supply.source_V) {
         return true;
     }
@@ -657,7 +674,7 @@ template <bool floating, bool turning, bool whole_current, int order>
     expand<floating, turning, 0>(x, motor, mode);
     if constexpr (whole_current) {
         if constexpr (turning && !floating) {
-            turn<order>(x, motor.magnetics.teeth);
+            turn<order>(x, motor);
         }
         magnetise<turning, order>(x, motor.magnetics);
         if constexpr (floating) {
@@ -700,8 +717,8 @@ template <int order, bool track_energy>
     Phases floating_Vs = (1.0 - mode.conducting) * magnetics.inductance * (state.flux - before);
     for (int phase = 0; phase < 2; phase++) {
         if (state.open[phase]) {
-            floating_Vs[phase] =
-                between_legs(segment, phase) * integral<order>(x.bus, event.time_s);
+            floating_Vs[phase] = between_legs(segment, phase) *
+                                 integral<order>(x.bus, in_both_lanes(event.time_s))[0];
         }
     }
     course.integrals.voltage_Vs += floating_Vs;

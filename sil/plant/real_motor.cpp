@@ -29,7 +29,8 @@ void require_coulomb_friction(double share)
 } // namespace
 
 RealMotor::RealMotor(const Config &config)
-    : imperfections_(config.imperfections), track_energy_(config.track_energy)
+    : imperfections_(config.imperfections), filter_(0.0), source_(0.0),
+      track_energy_(config.track_energy)
 {
     constexpr double slowest_filter_s = 1e-3, fastest_filter_s = 1e-7;
     const double filter_s = imperfections_.phase_voltage_filter_s;
@@ -38,10 +39,12 @@ RealMotor::RealMotor(const Config &config)
     require(filter_s == 0.0 || (filter_s >= fastest_filter_s && filter_s <= slowest_filter_s),
             "phase_voltage_filter_s", filter_s, "0 (none) or 1e-7...1e-3 s");
     coefficients_.filter_rate = filter_s > 0.0 ? 1.0 / filter_s : 0.0;
+    filter_ = Decay(coefficients_.filter_rate);
     require(imperfections_.bridge_resistance_ohm >= 0.0 &&
                 imperfections_.bridge_resistance_ohm <= 1e4,
             "bridge_resistance_ohm", imperfections_.bridge_resistance_ohm, "0...1e4 ohm");
     coefficients_.supply = supply_of(config.supply, config.bridge.bus_V);
+    source_ = Decay(coefficients_.supply.source_rate);
     coefficients_.diode_drop = config.bridge.diode_drop_V;
     state_.omega_rad_s = config.initial_omega_rad_s;
     state_.electrical_rad = config.motor.rotor_teeth * config.initial_theta_rad;
@@ -76,11 +79,12 @@ void RealMotor::set_parameters(const MotorConfig &config)
     motor_ = config;
     const Magnetics &magnetics = motor.magnetics;
     const double per_J = 1.0 / config.inertia_kgm2;
-    motor.load *= per_J / (motor.inverse_inertia > 0.0 ? motor.inverse_inertia : per_J);
+    motor.load *=
+        in_both_lanes(per_J / (motor.inverse_inertia > 0.0 ? motor.inverse_inertia : per_J));
     motor.inverse_inertia = per_J;
     motor.resistance = config.resistance_ohm + imperfections_.bridge_resistance_ohm;
-    motor.torque = magnetics.torque * per_J;
-    motor.friction = config.viscous_friction_Nms_rad * per_J;
+    motor.torque = in_both_lanes(magnetics.torque * per_J);
+    motor.friction = in_both_lanes(config.viscous_friction_Nms_rad * per_J);
     motor.coulomb =
         (imperfections_.coulomb_friction * holding_torque_Nm(config, imperfections_) + jam_Nm_) *
         per_J;
@@ -89,15 +93,18 @@ void RealMotor::set_parameters(const MotorConfig &config)
     const double detent_1 = magnetics.detent_1 * per_J;
     motor.stiffness = magnetics.teeth *
                       (4.0 * magnitude(detent_4) + 2.0 * magnitude(detent_2) + magnitude(detent_1));
-    RealCoefficients::InAngle in_angle = {1.0, -magnetics.harmonic, detent_4, detent_2, detent_1};
+    double once = 1.0, thrice = -magnetics.harmonic;
+    RealCoefficients::InAngle in_angle = {{}, {}, detent_4, detent_2, detent_1};
     for (int k = 0; k < MotorCoefficients::highest_order; k++) {
         const double next = 1.0 / (k + 1);
         const Phases per_L = Phases{next, next} / magnetics.inductance;
-        motor.share[k] = {per_L * -motor.resistance, per_L};
+        motor.share[k] = {per_L * -motor.resistance, per_L, in_both_lanes(magnetics.teeth * next)};
+        in_angle.once = once * (k % 2 == 0 ? Phases{-1.0, 1.0} : Phases{-1.0, -1.0});
+        in_angle.thrice = thrice * (k % 2 == 0 ? Phases{1.0, 1.0} : Phases{1.0, -1.0});
         motor.in_angle[k] = in_angle;
         const double turned = k % 2 == 0 ? next : -next;
-        in_angle.once *= turned;
-        in_angle.thrice *= 3.0 * turned;
+        once *= turned;
+        thrice *= 3.0 * turned;
         in_angle.detent_4 *= 4.0 * turned;
         in_angle.detent_2 *= 2.0 * turned;
         in_angle.detent_1 *= turned;
@@ -119,6 +126,7 @@ void RealMotor::set_coulomb_friction(double share)
 void RealMotor::set_bus(const SupplyConfig &config, double source_V)
 {
     coefficients_.supply = supply_of(config, source_V);
+    source_ = Decay(coefficients_.supply.source_rate);
     if (coefficients_.supply.stiff()) {
         state_.bus_V = source_V;
     }
@@ -154,7 +162,7 @@ void RealMotor::open_phase(int phase, bool open)
 
 void RealMotor::set_load_torque(double load_torque_Nm)
 {
-    coefficients_.load = load_torque_Nm * coefficients_.inverse_inertia;
+    coefficients_.load = in_both_lanes(load_torque_Nm * coefficients_.inverse_inertia);
 }
 
 void RealMotor::begin_period()
@@ -170,7 +178,7 @@ void RealMotor::begin_period()
     const double most = magnitude(state_.flux[0]) + magnitude(state_.flux[1]);
     const double per_L = (1.0 + 3.0 * magnetics.saturation * most * most) / magnetics.inductance;
     const double stiffness =
-        motor.torque * (magnetics.torque * per_L + magnetics.teeth * most) + motor.stiffness;
+        motor.torque[0] * (magnetics.torque * per_L + magnetics.teeth * most) + motor.stiffness;
     const double rate = magnetics.teeth * magnitude(state_.omega_rad_s) + motor.resistance * per_L +
                         std::sqrt(stiffness + 2.0 * per_L * motor.supply.per_capacitance);
     rate_ = rate < fastest_rate ? rate : fastest_rate; /* also if not a number */
@@ -178,7 +186,7 @@ void RealMotor::begin_period()
 
 void RealMotor::advance(const Timetable &timetable)
 {
-    const real_integrator::Course course = {coefficients_, state_, integrals_};
+    const real_integrator::Course course = {coefficients_, state_, integrals_, filter_, source_};
     if (track_energy_) {
         real_integrator::follow<true>(course, timetable, rate_);
     } else {

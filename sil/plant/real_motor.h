@@ -18,6 +18,7 @@
 #define STEADYSTEP_PLANT_REAL_MOTOR_H
 
 #include "sil/plant/bridge.h"
+#include "sil/plant/elementary.h"
 #include "sil/plant/magnetics.h"
 #include "sil/plant/motor.h"
 #include "sil/plant/phases.h"
@@ -47,19 +48,22 @@ struct RealCoefficients {
     Supply supply;
     double resistance = 0.0, diode_drop = 0.0;
     double inverse_inertia = 0.0;
-    double torque = 0.0, friction = 0.0, load = 0.0, coulomb = 0.0; /* Kx, Kv, T_L, Tc over J */
+    double coulomb = 0.0;                                                 /* Tc over J */
+    Phases torque = {0.0, 0.0}, friction = {0.0, 0.0}, load = {0.0, 0.0}; /* Kx, Kv and T_L over J,
+                                                                              in both lanes */
     double stiffness = 0.0;   /* of the detent, 1/s^2: the greatest slope over J */
     double filter_rate = 0.0; /* 1 / tf, 1/s; 0: no filter */
 
-    /* -R/L0 and 1/L0 over k + 1: from Taylor coefficient k to k + 1. */
+    /* -R/L0, 1/L0 and N over k + 1: from Taylor coefficient k to k + 1. */
     struct Share {
-        Phases resistance, voltage;
+        Phases resistance, voltage, teeth;
     } share[MotorCoefficients::highest_order];
 
     /* Taylor coefficient j in N theta: 1, -h 3^j, D4 4^j, Td2 2^j and Td1 over j!, with the signs
-       + + - - + of the derivatives of a sine. */
+       + + - - + of the derivatives of a sine; once and thrice with those of the two phases. */
     struct InAngle {
-        double once, thrice, detent_4, detent_2, detent_1;
+        Phases once, thrice;
+        double detent_4, detent_2, detent_1;
     } in_angle[MotorCoefficients::highest_order];
 };
 
@@ -109,6 +113,7 @@ class RealMotor
     RealCoefficients coefficients_;
     RealMotorState state_;
     MotorIntegrals integrals_;
+    Decay filter_, source_; /* of the voltage filter, and of the bus towards its source */
     bool track_energy_;
     double rate_ = 0.0; /* 1/s: how fast the solution can change, bounds the step */
     double jam_Nm_ = 0.0;

@@ -89,7 +89,9 @@ double bus_V_per_code(const SensorConfig &config)
     return config.bus_range_V / converter_codes(config);
 }
 
-Sensors::Sensors(const SensorConfig &config, std::uint64_t seed) : seed_(seed)
+Sensors::Sensors(const SensorConfig &config, std::uint64_t seed)
+    : seed_(seed), current_noise_(gaussian_key(seed, current_stream)),
+      phase_voltage_noise_(gaussian_key(seed, phase_voltage_stream))
 {
     set(config);
 }
@@ -162,10 +164,10 @@ Samples Sensors::sample(std::uint64_t period, const True &now) const
     if (!config_.exact) {
         const int on = now.bridge_on ? 1 : 0;
         current_A = current_gain_ * current_A + current_offset_A_[on] +
-                    config_.current_noise_rms_A * gaussian_pair(seed_, current_stream, period);
+                    config_.current_noise_rms_A * gaussian_pair(current_noise_, period);
         phase_voltage_V +=
             phase_voltage_offset_V_[on] +
-            config_.phase_voltage_noise_rms_V * gaussian_pair(seed_, phase_voltage_stream, period);
+            config_.phase_voltage_noise_rms_V * gaussian_pair(phase_voltage_noise_, period);
     }
     const Phases current = current_A * codes_per_A_ + middle_code_;
     const Phases voltage = phase_voltage_V * codes_per_phase_V_ + middle_code_;
@@ -223,7 +225,8 @@ void Sensors::apply_faults(Samples &samples, std::uint64_t period) const
             write(samples, channel, fault.code);
         } else if (fault.noise_rms > 0.0) {
             const std::uint64_t stream = fault_stream + static_cast<std::uint64_t>(n);
-            const double noise = fault.noise_rms * gaussian_pair(seed_, stream, period)[0];
+            const double noise =
+                fault.noise_rms * gaussian_pair(gaussian_key(seed_, stream), period)[0];
             write(samples, channel,
                   code_of(samples, channel) + static_cast<int>(nearest_whole(noise)));
         }

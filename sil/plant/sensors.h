@@ -54,7 +54,7 @@ class Sensors
     std::int32_t encoder_count(double theta_rad) const;
 
     SensorConfig config_;
-    std::uint64_t seed_;
+    std::uint64_t seed_, current_noise_, phase_voltage_noise_; /* the latter two are keys of it */
     /* With the bridge off and on. */
     Phases current_offset_A_[2], phase_voltage_offset_V_[2];
     Phases current_gain_;

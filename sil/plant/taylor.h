@@ -32,28 +32,44 @@ template <int k, typename X> inline auto cauchy_square(const X *x)
     }
 }
 
-/* The series at t = h. Ascending: each term is added as soon as it is known. */
-template <int order, typename X> inline X value(const X *x, double h)
+/*
+ * The sum of x[k] power and what follows, power being h^k. Ascending: each term is added as soon as
+ * it is known. A recursion, because a compiler unrolls a loop only at its highest level.
+ */
+template <int order, int k, typename X, typename Time>
+[[gnu::always_inline]] inline X terms_from(X total, const X *x, Time h, Time power)
 {
-    X total = x[0];
-    double power = h;
-    for (int k = 1; k <= order; k++) {
-        total += x[k] * power;
-        power *= h;
+    total += x[k] * power;
+    if constexpr (k < order) {
+        return terms_from<order, k + 1>(total, x, h, power * h);
+    } else {
+        return total;
     }
-    return total;
+}
+
+/* The series at t = h. */
+template <int order, typename X, typename Time>
+[[gnu::always_inline]] inline X value(const X *x, Time h)
+{
+    return terms_from<order, 1>(x[0], x, h, h);
+}
+
+template <int order, int k, typename X, typename Time>
+[[gnu::always_inline]] inline X integrals_from(X total, const X *x, Time h, Time power)
+{
+    total += x[k] * (power * (1.0 / (k + 1)));
+    if constexpr (k < order) {
+        return integrals_from<order, k + 1>(total, x, h, power * h);
+    } else {
+        return total;
+    }
 }
 
 /* Its integral over 0...h. */
-template <int order, typename X> inline X integral(const X *x, double h)
+template <int order, typename X, typename Time>
+[[gnu::always_inline]] inline X integral(const X *x, Time h)
 {
-    X total = x[0] * h;
-    double power = h;
-    for (int k = 1; k <= order; k++) {
-        power *= h;
-        total += x[k] * (power * (1.0 / (k + 1)));
-    }
-    return total;
+    return integrals_from<order, 1>(x[0] * h, x, h, h * h);
 }
 
 /* The integral of its square over 0...h, to the order of the series. */

@@ -11,6 +11,9 @@
 
 #include <unistd.h>
 
+#include "sil/scenario/interruption.h"
+#include "sil/scenario/text.h"
+
 namespace scenario
 {
 
@@ -65,7 +68,7 @@ class Progress
 struct Shared {
     std::mutex mutex;
     std::condition_variable changed;
-    std::size_t next = 0, finished = 0;
+    std::size_t next = 0, finished = 0, delivered = 0;
     std::vector<bool> done;
     std::exception_ptr error;
 };
@@ -89,6 +92,16 @@ void work_through(Shared &shared, const std::function<void(std::size_t)> &work)
         shared.done[i] = true;
         ++shared.finished;
         shared.changed.notify_one();
+    }
+}
+
+[[noreturn]] void rethrow(const Shared &shared)
+{
+    try {
+        std::rethrow_exception(shared.error);
+    } catch (const Interrupted &) {
+        throw Interrupted(format("%zu of %zu runs are reported, no file is left half-written",
+                                 shared.delivered, shared.done.size()));
     }
 }
 
@@ -116,6 +129,7 @@ void deliver_in_order(Shared &shared, Progress &progress,
         if (error) {
             shared.error = error;
         }
+        ++shared.delivered;
     }
 }
 
@@ -136,7 +150,7 @@ void run_batch(std::size_t count, unsigned workers, const std::function<void(std
         thread.join();
     }
     if (shared.error) {
-        std::rethrow_exception(shared.error);
+        rethrow(shared);
     }
 }
 

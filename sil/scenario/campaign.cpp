@@ -49,11 +49,11 @@ CampaignRun refused(const CampaignKind &kind, std::uint64_t seed, const std::str
 
 CampaignRun executed(const CampaignOrder &order, const Scenario &scenario, std::uint64_t seed)
 {
-    Record record(1);
-    const Result result = execute(scenario, *image_of(order.numeric), scenario.seed, record);
+    const std::unique_ptr<CampaignWatch> watch = order.kind->watch(scenario);
+    const Result result = execute(scenario, *image_of(order.numeric), scenario.seed, {watch.get()});
     CampaignRun run;
     run.seed = seed;
-    run.outcome = order.kind->judge(result, record);
+    run.outcome = watch->judge(result);
     run.failure = result.not_as_described();
     run.trace_hash = result.trace_hash;
     run.drive_hash = result.drive_hash;

@@ -8,6 +8,7 @@
 #define STEADYSTEP_SCENARIO_CAMPAIGN_H
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -59,13 +60,23 @@ struct Drawn {
                                     which the scenario expects beside itself; else "" */
 };
 
+/* Sees a run of a campaign as it goes, and judges it when it has ended. */
+class CampaignWatch : public RowReader
+{
+  public:
+    void read(const Record &, const Row &) override
+    {
+    }
+    virtual CampaignOutcome judge(const Result &result) const = 0;
+};
+
 struct CampaignKind {
     const char *name, *description;
     double duration_s; /* of one run, unless told */
     std::vector<CampaignFigure> figures;
     /* The same on every machine (random_scenario.h). */
     Drawn (*draw)(std::uint64_t seed, double duration_s, const CampaignMotor &motor);
-    CampaignOutcome (*judge)(const Result &result, const Record &record);
+    std::unique_ptr<CampaignWatch> (*watch)(const Scenario &scenario);
     bool draws_motor = false; /* then a refusal by the drive is a verdict, not bad input */
 };
 

@@ -176,21 +176,31 @@ Drawn draw_long_run(std::uint64_t seed, double duration_s, const CampaignMotor &
     return {text.finish(), "", ""};
 }
 
-CampaignOutcome judge_long_run(const Result &result, const Record &)
+/* Goes by the metrics alone. */
+class LongRun : public CampaignWatch
 {
-    const Metrics &all = result.all.metrics;
-    const double teeth = result.scenario->motor.params.rotor_teeth;
-    const double degrees = teeth * 180 / pi; /* electrical, per rad */
-    CampaignOutcome outcome;
-    /* What a drive in fault refuses is a failure, too: the fault is the reason. */
-    outcome.verdict = all.fault != "none"                  ? "fault " + all.fault
-                      : all.slip_full_steps > 0            ? "slipped"
-                      : !result.not_as_described().empty() ? "failed"
-                                                           : "held";
-    outcome.figures = {std::floor(all.estimate_error_final_rad * degrees / 90 + 0.5),
-                       all.estimate_error_max_rad, all.estimate_error_max_rad * degrees,
-                       all.estimate_error_rms_rad * degrees, all.position_error_max_rad};
-    return outcome;
+  public:
+    CampaignOutcome judge(const Result &result) const override
+    {
+        const Metrics &all = result.all.metrics;
+        const double teeth = result.scenario->motor.params.rotor_teeth;
+        const double degrees = teeth * 180 / pi; /* electrical, per rad */
+        CampaignOutcome outcome;
+        /* What a drive in fault refuses is a failure, too: the fault is the reason. */
+        outcome.verdict = all.fault != "none"                  ? "fault " + all.fault
+                          : all.slip_full_steps > 0            ? "slipped"
+                          : !result.not_as_described().empty() ? "failed"
+                                                               : "held";
+        outcome.figures = {std::floor(all.estimate_error_final_rad * degrees / 90 + 0.5),
+                           all.estimate_error_max_rad, all.estimate_error_max_rad * degrees,
+                           all.estimate_error_rms_rad * degrees, all.position_error_max_rad};
+        return outcome;
+    }
+};
+
+std::unique_ptr<CampaignWatch> watch_long_run(const Scenario &)
+{
+    return std::make_unique<LongRun>();
 }
 
 } // namespace
@@ -206,7 +216,7 @@ const CampaignKind long_run_campaign = {
      {"estimate_error_rms_deg_electrical", false},
      {"position_error_max_rad", false}},
     draw_long_run,
-    judge_long_run,
+    watch_long_run,
 };
 
 } // namespace scenario

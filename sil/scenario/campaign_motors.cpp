@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sil/scenario/hold_yield.h"
 #include "sil/scenario/random_scenario.h"
 #include "sil/scenario/text.h"
 
@@ -203,46 +202,6 @@ Drawn draw_any_motors(std::uint64_t seed, double duration_s, const CampaignMotor
     return draw_run(seed, duration_s, true);
 }
 
-/* Rows first...last - 1. */
-double largest(const Record &record, std::size_t first, std::size_t last, Column from, Column to)
-{
-    double most = 0;
-    for (std::size_t row = first; row < last; ++row) {
-        const double error = std::fabs(record.at(row, from) - record.at(row, to));
-        most = error <= most ? most : error; /* what is not finite counts */
-    }
-    return most;
-}
-
-/* The first row in which the drive is in fault, or behind the last: what it estimates then says
-   nothing. */
-std::size_t end_of_operation(const Record &record)
-{
-    std::size_t row = record.time_zero_row();
-    while (row < record.rows() && record.at(row, DRIVE_STATE) != double(DRIVE_FAULT)) {
-        ++row;
-    }
-    return row;
-}
-
-/* What a run has shown, angles of the rotor. */
-struct Errors {
-    double ready_rad, commutation_rad, position_rad;
-};
-
-Errors errors_of(const Record &record)
-{
-    const auto periods = [&](double time_s) {
-        return static_cast<std::size_t>(std::floor(time_s / record.period_s() + 0.5));
-    };
-    const std::size_t ready = record.time_zero_row(), end = end_of_operation(record);
-    const std::size_t judged = std::min(end - ready, periods(judged_s));
-    return {largest(record, ready, std::min(end, ready + 1 + periods(ready_window_s)), THETA,
-                    THETA_EST),
-            largest(record, ready, end, THETA, THETA_EST),
-            largest(record, end - judged, end, THETA_REF, THETA)};
-}
-
 /* Instead of becoming ready the drive says that it cannot tell where the rotor is. */
 bool not_found(const std::string &failure)
 {
@@ -250,7 +209,53 @@ bool not_found(const std::string &failure)
            std::string::npos;
 }
 
-CampaignOutcome judge_motors(const Result &result, const Record &record)
+/* What a run shows until the drive is in fault: what it estimates then says nothing. */
+class MotorsWatch : public CampaignWatch
+{
+  public:
+    explicit MotorsWatch(const Scenario &scenario)
+        : ready_rows_(1 + rows(ready_window_s, scenario)),
+          position_rad_(std::max<std::size_t>(1, rows(judged_s, scenario)))
+    {
+    }
+
+    void read(const Record &record, const Row &row) override
+    {
+        if (record.rows() < record.time_zero_row()) {
+            return;
+        }
+        ended_ = ended_ || row[DRIVE_STATE] == double(DRIVE_FAULT);
+        if (ended_) {
+            return;
+        }
+        const double commutation_rad = std::fabs(row[THETA] - row[THETA_EST]);
+        widen(commutation_rad_, commutation_rad);
+        if (rows_ < ready_rows_) {
+            widen(ready_rad_, commutation_rad);
+        }
+        position_rad_[rows_ % position_rad_.size()] = std::fabs(row[THETA_REF] - row[THETA]);
+        ++rows_;
+    }
+
+    CampaignOutcome judge(const Result &result) const override;
+
+  private:
+    static std::size_t rows(double time_s, const Scenario &scenario)
+    {
+        return static_cast<std::size_t>(std::floor(time_s / row_period_s(scenario) + 0.5));
+    }
+    static void widen(double &most, double error)
+    {
+        most = error <= most ? most : error; /* what is not finite counts */
+    }
+
+    std::size_t ready_rows_, rows_ = 0;
+    bool ended_ = false;
+    double ready_rad_ = 0, commutation_rad_ = 0; /* largest errors */
+    std::vector<double> position_rad_;           /* of the latest rows */
+};
+
+CampaignOutcome MotorsWatch::judge(const Result &result) const
 {
     const Scenario &scenario = *result.scenario;
     const double teeth = scenario.motor.params.rotor_teeth, degrees = teeth * 180 / pi;
@@ -258,25 +263,33 @@ CampaignOutcome judge_motors(const Result &result, const Record &record)
     const int counts = scenario.plant.sensors.encoder_counts_per_turn;
     const double count_rad = counts > 0 ? 2 * pi / counts : 0;
     const bool detent = scenario.plant.imperfections.detent_4 != 0;
-    const Errors errors = errors_of(record);
-    const double commutation_deg = errors.commutation_rad * degrees;
+    double position_rad = 0; /* at the end */
+    for (const double error_rad : position_rad_) {
+        widen(position_rad, error_rad);
+    }
+    const double commutation_deg = commutation_rad_ * degrees;
     const double allowed_rad = (detent ? 1.0 / 5 : 1.0 / 16) * full_step_rad + count_rad;
     const double zero_rad = std::max(3 / degrees, 0.75 * count_rad);
     const std::string &fault = result.all.metrics.fault;
     CampaignOutcome outcome;
-    outcome.verdict = counts > 0 && !(errors.ready_rad <= zero_rad) ? "wrong ready"
-                      : fault != "none"                             ? "fault " + fault
-                      : not_found(result.failure)                   ? "refused: position-not-found"
-                      : !result.failure.empty()                     ? "failed"
-                      : !(commutation_deg <= 90)                    ? "lost silently"
-                      : !(commutation_deg <= 45)           ? "commutation beyond 45 degrees"
-                      : errors.position_rad <= allowed_rad ? "held"
-                      : errors.position_rad <= hold_yield_rad(scenario, record).value_or(0)
+    outcome.verdict = counts > 0 && !(ready_rad_ <= zero_rad) ? "wrong ready"
+                      : fault != "none"                       ? "fault " + fault
+                      : not_found(result.failure)             ? "refused: position-not-found"
+                      : !result.failure.empty()               ? "failed"
+                      : !(commutation_deg <= 90)              ? "lost silently"
+                      : !(commutation_deg <= 45)              ? "commutation beyond 45 degrees"
+                      : position_rad <= allowed_rad           ? "held"
+                      : position_rad <= result.hold_yield_rad.value_or(0)
                           ? "within its computed limit"
                           : "position at the end";
-    outcome.figures = {commutation_deg, counts > 0 ? errors.ready_rad * degrees : Metrics::none,
-                       fault == "none" ? errors.position_rad / full_step_rad : Metrics::none};
+    outcome.figures = {commutation_deg, counts > 0 ? ready_rad_ * degrees : Metrics::none,
+                       fault == "none" ? position_rad / full_step_rad : Metrics::none};
     return outcome;
+}
+
+std::unique_ptr<CampaignWatch> watch_motors(const Scenario &scenario)
+{
+    return std::make_unique<MotorsWatch>(scenario);
 }
 
 CampaignKind kind_of(const char *name, const char *description,
@@ -289,7 +302,7 @@ CampaignKind kind_of(const char *name, const char *description,
              {"ready_error_deg_electrical", false},
              {"position_error_end_full_steps", false}},
             draw,
-            judge_motors,
+            watch_motors,
             true};
 }
 

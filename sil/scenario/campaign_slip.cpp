@@ -24,83 +24,106 @@ constexpr double pi = 3.14159265358979323846;
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 constexpr double latest_s = 0.02; /* behind a slip, for it to be told */
 
-/* What a record shows; the first rows of each, `none` if there is none. */
-struct Course {
-    std::size_t slip = none, fault = none, doubt = none;
-    std::size_t stalled = none, lost = none; /* warnings or faults */
-    std::size_t told = none;                 /* of the slip, by what tells it */
-    double largest_before_loss_deg = 0;      /* in the 100 ms that end with it */
+/* When something happens for the first time. */
+struct First {
+    std::size_t row = none;
+    double time_s = 0;
+
+    bool came() const
+    {
+        return row != none;
+    }
+    void note(const Record &record, bool happens)
+    {
+        if (!came() && happens) {
+            row = record.rows();
+            time_s = record.time_s(row);
+        }
+    }
 };
 
-void note(std::size_t &first, std::size_t row, bool happens)
+/* Up to the fault, if one comes. */
+class SlipWatch : public CampaignWatch
 {
-    if (first == none && happens) {
-        first = row;
+  public:
+    explicit SlipWatch(const Scenario &scenario)
+        : degrees_(scenario.motor.params.rotor_teeth * 180 / pi),
+          off_deg_(1 + static_cast<std::size_t>(
+                           std::floor(before_loss_s / row_period_s(scenario) + 0.5)))
+    {
     }
-}
 
-Course course_of(const Record &record, double teeth)
-{
-    const double degrees = teeth * 180 / pi, half_period_s = record.period_s() / 2;
-    const auto off = [&](std::size_t row) {
-        return std::fabs(record.at(row, THETA) - record.at(row, THETA_EST)) * degrees;
-    };
-    Course course;
-    for (std::size_t row = record.time_zero_row(); row < record.rows() && course.fault == none;
-         ++row) {
-        const auto synchronism = static_cast<drive_synchronism>(record.at(row, SYNCHRONISM));
-        const bool fault = record.at(row, DRIVE_STATE) == double(DRIVE_FAULT);
-        note(course.fault, row, fault);
-        note(course.slip, row, !fault && off(row) > 90);
-        note(course.doubt, row, synchronism > DRIVE_SYNCHRONISM_SURE);
-        note(course.stalled, row, synchronism == DRIVE_SYNCHRONISM_STALLED);
-        note(course.lost, row, synchronism == DRIVE_SYNCHRONISM_LOST);
-        if (course.slip != none) {
-            const double behind_s = record.time_s(row) - record.time_s(course.slip);
-            const bool late = behind_s > latest_s - half_period_s;
-            note(course.told, row,
-                 fault || synchronism == DRIVE_SYNCHRONISM_LOST ||
-                     (late && synchronism == DRIVE_SYNCHRONISM_STALLED));
+    void read(const Record &record, const Row &row) override
+    {
+        last_s_ = record.time_s(record.rows());
+        if (record.rows() < record.time_zero_row() || fault_.came()) {
+            return;
+        }
+        const auto synchronism = static_cast<drive_synchronism>(row[SYNCHRONISM]);
+        const bool fault = row[DRIVE_STATE] == double(DRIVE_FAULT);
+        const double off_deg = std::fabs(row[THETA] - row[THETA_EST]) * degrees_;
+        off_deg_[record.rows() % off_deg_.size()] = off_deg;
+        fault_.note(record, fault);
+        slip_.note(record, !fault && off_deg > 90);
+        doubt_.note(record, synchronism > DRIVE_SYNCHRONISM_SURE);
+        stalled_.note(record, synchronism == DRIVE_SYNCHRONISM_STALLED);
+        if (!lost_.came() && synchronism == DRIVE_SYNCHRONISM_LOST) {
+            lost_.note(record, true);
+            for (const double before_deg : off_deg_) {
+                largest_before_loss_deg_ = std::max(largest_before_loss_deg_, before_deg);
+            }
+        }
+        if (slip_.came()) {
+            const double behind_s = last_s_ - slip_.time_s;
+            const bool late = behind_s > latest_s - record.period_s() / 2;
+            told_.note(record, fault || synchronism == DRIVE_SYNCHRONISM_LOST ||
+                                   (late && synchronism == DRIVE_SYNCHRONISM_STALLED));
         }
     }
-    if (course.lost != none) {
-        const auto before = static_cast<std::size_t>(std::floor(0.1 / record.period_s() + 0.5));
-        for (std::size_t row = course.lost > before ? course.lost - before : 0; row <= course.lost;
-             ++row) {
-            course.largest_before_loss_deg = std::max(course.largest_before_loss_deg, off(row));
-        }
-    }
-    return course;
-}
 
-CampaignOutcome judge_slip(const Result &result, const Record &record)
-{
-    CampaignOutcome outcome;
-    outcome.figures.assign(7, Metrics::none);
-    const Course course = course_of(record, result.scenario->motor.params.rotor_teeth);
-    if (!result.not_as_described().empty() && course.fault == none) { /* or it may refuse moves */
-        outcome.verdict = "failed";
+    CampaignOutcome judge(const Result &result) const override
+    {
+        CampaignOutcome outcome;
+        outcome.figures.assign(7, Metrics::none);
+        if (!result.not_as_described().empty() && !fault_.came()) { /* or it may refuse moves */
+            outcome.verdict = "failed";
+            return outcome;
+        }
+        const bool slipped = slip_.came(), told = told_.came();
+        const double delay_s = slipped ? (told ? told_.time_s : last_s_) - slip_.time_s : 0;
+        const bool lost = lost_.came(), stalled = stalled_.came();
+        const bool reported = fault_.came() || lost || stalled;
+        outcome.verdict = delay_s > latest_s + row_period_s(*result.scenario) / 2 ? "missed"
+                          : lost && largest_before_loss_deg_ < 45                 ? "false alarm"
+                                                                                  : "held";
+        const auto counted = [](bool what) { return what ? 1.0 : 0.0; };
+        outcome.figures = {
+            counted(slipped),
+            counted(lost),
+            counted(stalled && !lost),
+            counted(reported && !lost && !stalled),
+            counted(reported && !slip_is_provoked(result.seed)),
+            counted(slipped && doubt_.row < slip_.row),
+            slipped && told ? delay_s * 1e3 : Metrics::none,
+        };
         return outcome;
     }
-    const bool slipped = course.slip != none, told = course.told != none;
-    const std::size_t last = told ? course.told : record.rows() - 1;
-    const double delay_s = slipped ? record.time_s(last) - record.time_s(course.slip) : 0;
-    const bool lost = course.lost != none, stalled = course.stalled != none;
-    const bool reported = course.fault != none || lost || stalled;
-    outcome.verdict = delay_s > latest_s + record.period_s() / 2    ? "missed"
-                      : lost && course.largest_before_loss_deg < 45 ? "false alarm"
-                                                                    : "held";
-    const auto counted = [](bool what) { return what ? 1.0 : 0.0; };
-    outcome.figures = {
-        counted(slipped),
-        counted(lost),
-        counted(stalled && !lost),
-        counted(reported && !lost && !stalled),
-        counted(reported && !slip_is_provoked(result.seed)),
-        counted(slipped && course.doubt < course.slip),
-        slipped && told ? delay_s * 1e3 : Metrics::none,
-    };
-    return outcome;
+
+  private:
+    static constexpr double before_loss_s = 0.1;
+
+    double degrees_;
+    First slip_, fault_, doubt_;
+    First stalled_, lost_;        /* warnings or faults */
+    First told_;                  /* the slip, by what tells it */
+    std::vector<double> off_deg_; /* of the latest rows */
+    double largest_before_loss_deg_ = 0;
+    double last_s_ = 0;
+};
+
+std::unique_ptr<CampaignWatch> watch_slip(const Scenario &scenario)
+{
+    return std::make_unique<SlipWatch>(scenario);
 }
 
 } // namespace
@@ -117,7 +140,7 @@ const CampaignKind slip_campaign = {
      {"slips_doubted_before", true},
      {"delay_ms", false}},
     draw_slip,
-    judge_slip,
+    watch_slip,
 };
 
 } // namespace scenario

@@ -1,6 +1,7 @@
 #include "sil/scenario/catalogue.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "sil/scenario/document.h"
 #include "sil/scenario/table_reader.h"
@@ -52,15 +53,27 @@ std::string set_name(const fs::path &file)
 }
 
 /* The file of `name` in the first folder that has it. */
+std::optional<fs::path> file_of(const std::string &name, const std::vector<fs::path> &folders)
+{
+    std::error_code error;
+    for (const fs::path &folder : folders) {
+        const fs::path file = folder / (name + ".toml");
+        if (fs::is_regular_file(file, error)) {
+            return file;
+        }
+    }
+    return {};
+}
+
 fs::path look_up(const char *what, const std::string &name, const std::string &asked_by,
                  const std::vector<fs::path> &folders)
 {
+    if (const std::optional<fs::path> file = file_of(name, folders)) {
+        return *file;
+    }
     std::vector<std::string> known;
     for (const fs::path &folder : folders) {
         for (const fs::path &file : toml_files(folder)) {
-            if (file.stem() == name) {
-                return file;
-            }
             known.push_back(file.stem().string());
         }
     }
@@ -116,12 +129,13 @@ fs::path Catalogue::parameters(const std::string &name, const std::string &asked
     if (fs::path(name).extension() == ".toml") {
         return folder / name;
     }
+    const std::optional<fs::path> file = file_of(name, parameters_);
+    if (file && set_name(*file) == name) {
+        return *file;
+    }
     std::vector<std::string> known;
-    for (const fs::path &file : parameters()) {
-        known.push_back(set_name(file));
-        if (known.back() == name) {
-            return file;
-        }
+    for (const fs::path &other : parameters()) {
+        known.push_back(set_name(other));
     }
     refuse_name("parameter set", name, asked_by, known);
 }

@@ -33,29 +33,29 @@ double us(double cycles)
 void check_image(const Scenario &scenario, const std::string &numeric)
 {
     try {
-        virtual_board::require_image_facts(
-            scenario.plant, virtual_board::VirtualBoard::numeric_of(scenario.given.image), numeric);
+        virtual_board::VirtualBoard::require(scenario.given.image, scenario.plant, numeric);
     } catch (const std::invalid_argument &refusal) {
         throw InputError(scenario.locate(refusal.what()) + refusal.what());
     }
 }
 
-ImageRun run_image(const Scenario &scenario, const std::string &numeric, std::uint64_t seed)
+ImageRun run_image(const Scenario &scenario, const std::string &numeric, std::uint64_t seed,
+                   Record &record)
 {
     virtual_board::VirtualBoard board(plant_of(scenario, seed), scenario.given.image, numeric,
                                       scenario.drive);
-    ImageRun result{run_typed(scenario, board), board.report()};
-    /* From S(k), as hal.h counts the 90 us. */
+    ImageRun result{run_typed(scenario, board, record), board.report()};
+    /* From S(k), as hal.h counts the deadline. */
     const virtual_board::InterruptAccount::Summary &interrupt = result.board.interrupt;
     const std::uint64_t worst = interrupt.latency.worst + interrupt.total.worst.worst;
     const bool stalled = std::any_of(scenario.events.begin(), scenario.events.end(),
                                      [](const Event &event) { return event.stall_us.has_value(); });
-    if (result.run.failure.empty() && !stalled && worst > virtual_board::control_interrupt_budget) {
+    if (result.run.failure.empty() && !stalled && worst > result.board.budget_cycles) {
         result.run.failure =
             format("the control interrupt ends %llu cycles behind S(k) in the worst column; "
-                   "%llu are 90 us",
+                   "%llu are 90 %% of the period",
                    static_cast<unsigned long long>(worst),
-                   static_cast<unsigned long long>(virtual_board::control_interrupt_budget));
+                   static_cast<unsigned long long>(result.board.budget_cycles));
     }
     return result;
 }
@@ -76,7 +76,7 @@ std::string interrupt_table(const virtual_board::BoardReport &board, double cpu_
     const double least_us = us(static_cast<double>(latency.least));
     text += format("  of %llu interrupts; budget %llu from S(k); %llu instructions outside "
                    "CCM\n",
-                   count(interrupt.interrupts), count(virtual_board::control_interrupt_budget),
+                   count(interrupt.interrupts), count(board.budget_cycles),
                    count(interrupt.outside_fast_code));
     text += format("  start after S(k): least %llu, mean %.1f, worst %llu cycles (%.3f, %.3f, %.3f "
                    "us); jitter %.3f us\n",

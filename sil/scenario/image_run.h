@@ -21,7 +21,8 @@ struct ImageRun {
 
 /* As run_typed. What the virtual board refuses of the firmware, and a control interrupt beyond its
    budget, is the run's failure. */
-ImageRun run_image(const Scenario &scenario, const std::string &numeric, std::uint64_t seed);
+ImageRun run_image(const Scenario &scenario, const std::string &numeric, std::uint64_t seed,
+                   Record &record);
 
 /* What the console shows of it. */
 std::string interrupt_table(const virtual_board::BoardReport &board, double cpu_s);

@@ -9,6 +9,7 @@
 #include <exception>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <set>
 #include <sstream>
 #include <string>
@@ -22,6 +23,8 @@
 #include "sil/scenario/batch.h"
 #include "sil/scenario/campaign.h"
 #include "sil/scenario/image_run.h"
+#include "sil/scenario/interruption.h"
+#include "sil/scenario/junit.h"
 #include "sil/scenario/motor_plausibility.h"
 #include "sil/scenario/motor_report.h"
 #include "sil/scenario/output.h"
@@ -31,6 +34,7 @@
 #include "sil/scenario/pages.h"
 #include "sil/scenario/sweep.h"
 #include "sil/scenario/text.h"
+#include "sil/scenario/trace.h"
 
 namespace fs = std::filesystem;
 using namespace scenario;
@@ -45,9 +49,9 @@ struct Options {
     CommandLine given;
     std::string sweep = "bendjedia-robustness";
     std::string campaign, scenario_file; /* --write-scenario */
-    std::string settings_to;             /* --write-settings */
+    std::string settings_to, junit;      /* --write-settings, --junit */
     double campaign_duration_s = 0;      /* 0: the kind's own */
-    std::string numeric, seed, seeds, out, folder;
+    std::string numeric, seed, seeds, out, trace = "csv", folder;
     bool json = false;
     unsigned jobs = default_workers();
     fs::path program;
@@ -100,25 +104,35 @@ Seeds seeds_of(const Options &options, std::uint64_t default_seed)
     return {first, last - first + 1};
 }
 
-/* Folder of one run below --out. */
-fs::path folder_of(const Options &options, const Result &result)
-{
-    const std::string suffix = options.seeds.empty() ? "" : "-seed" + std::to_string(result.seed);
-    return fs::path(options.out) / (result.scenario->name + suffix);
-}
-
-void write_run(const Options &options, const Result &result, const Record &record)
-{
-    const fs::path folder = folder_of(options, result);
-    write_file(folder / "trace.csv", trace_csv(record));
-    write_file(folder / "summary.json", summary_json(result));
-    write_file(folder / "serial.txt", result.serial);
-}
-
 /* The format asked for, or else the first that the scenario names. */
 const firmware_image &image(const Options &options, const Scenario &scenario)
 {
     return *image_of(options.numeric.empty() ? scenario.numerics.front() : options.numeric);
+}
+
+/* Folder of one run below --out. */
+fs::path folder_of(const Options &options, const Scenario &scenario, std::uint64_t seed)
+{
+    const std::string suffix = options.seeds.empty() ? "" : "-seed" + std::to_string(seed);
+    return fs::path(options.out) / (scenario.name + suffix);
+}
+
+/* Runs it, and writes what comes of it. */
+Result write_run(const Options &options, const Scenario &scenario, std::uint64_t seed)
+{
+    const fs::path folder = folder_of(options, scenario, seed);
+    const std::vector<std::unique_ptr<Trace>> traces = traces_of(options.trace, folder);
+    std::vector<RowReader *> readers;
+    for (const std::unique_ptr<Trace> &trace : traces) {
+        readers.push_back(trace.get());
+    }
+    Result result = execute(scenario, image(options, scenario), seed, readers);
+    for (const std::unique_ptr<Trace> &trace : traces) {
+        trace->finish();
+    }
+    write_file(folder / "summary.json", summary_json(result));
+    write_file(folder / "serial.txt", result.serial);
+    return result;
 }
 
 /* What stands out in the motor files, unless they say why: often a slip of a unit. */
@@ -177,12 +191,9 @@ void run_all(const Options &options, const Scenarios &scenarios, bool write, Del
     run_batch(
         items.size(), options.jobs,
         [&](std::size_t i) {
-            Record record(1);
             const Scenario &scenario = *scenarios[items[i].scenario];
-            results[i] = execute(scenario, image(options, scenario), items[i].seed, record);
-            if (write) {
-                write_run(options, results[i], record);
-            }
+            results[i] = write ? write_run(options, scenario, items[i].seed)
+                               : execute(scenario, image(options, scenario), items[i].seed);
         },
         [&](std::size_t i) {
             of_scenario.push_back(std::move(results[i]));
@@ -220,16 +231,23 @@ int run_command(Options options)
     }
     std::size_t failed = 0;
     std::vector<Result> all;
+    std::vector<std::vector<Result>> by_scenario;
     run_all(options, pointers, !options.out.empty(),
             [&](std::size_t, const std::vector<Result> &results) {
                 const Report one = report(results);
                 failed += one.passed ? 0 : 1;
+                if (!options.junit.empty()) {
+                    by_scenario.push_back(results);
+                }
                 if (options.json) {
                     all.insert(all.end(), results.begin(), results.end());
                 } else {
                     print(one.text + "\n");
                 }
             });
+    if (!options.junit.empty()) {
+        write_file(options.junit, junit_xml(by_scenario));
+    }
     if (options.json) {
         print(summaries_json(all));
     } else {
@@ -482,6 +500,13 @@ int run_program(int argc, char **argv)
     run->add_option("--write-settings", options.settings_to,
                     "file that receives the settings given to the drive")
         ->check(not_empty());
+    run->add_option("--junit", options.junit,
+                    "file that receives the verdicts as JUnit XML, a case per run")
+        ->check(not_empty());
+    run->add_option("--trace", options.trace,
+                    "traces that --out receives: text, or doubles as NumPy keeps them")
+        ->check(CLI::IsMember({"csv", "npy", "both", "none"}))
+        ->capture_default_str();
     run->add_flag("--json", options.json, "one array of summaries on standard output, no report");
     add_run_options(*run, options);
     CLI::App *sweep = app.add_subcommand("sweep", "run a table of plant parameters");
@@ -552,8 +577,12 @@ void require_standard_output()
 int main(int argc, char **argv)
 {
     try {
+        note_signals();
         require_standard_output();
         return run_program(argc, argv);
+    } catch (const Interrupted &interrupted) {
+        std::fprintf(stderr, "steadystep-sil: interrupted: %s\n", interrupted.what());
+        end_by_signal();
     } catch (const std::exception &error) { /* InputError, and what the machine refuses */
         std::fprintf(stderr, "steadystep-sil: %s\n", in_one_line(error.what()).c_str());
         return bad_input;

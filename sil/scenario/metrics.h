@@ -1,5 +1,5 @@
 /*
- * Figures of merit of a record over a window of time.
+ * Figures of merit of a run over a window of time; evaluation.h finds them.
  *
  * Position error is reference - true, estimate error true - estimate, speed and load torque errors
  * true - estimate. `max` and `final` are magnitudes; `final` belongs to the last row of the window.
@@ -13,50 +13,13 @@
 #include <string>
 #include <vector>
 
-#include "sil/board/board.h"
-#include "sil/scenario/record.h"
-
 namespace scenario
 {
 
-/* A window as an expectation names it. */
-struct Window {
-    /*
-     * move: time zero to the end of the last profile. A step ends with the first row from which
-     *       |omega| < 0.1 rad/s for 10 ms.
-     * rest: what follows. all: both. times: begin_s...end_s, rounded to periods, both ends in.
-     */
-    enum class Kind { move, rest, all, times };
-
-    Kind kind = Kind::all;
-    double begin_s = 0, end_s = 0;
-
-    std::string name() const; /* "move", "rest", "all" or "0.5...0.7" */
-};
-
-/* Rows first...last - 1. */
-struct RowRange {
-    std::size_t first = 0, last = 0;
-
-    bool empty() const
-    {
-        return first >= last;
-    }
-};
-
-RowRange rows_of(const Record &record, const Window &window);
-
-/* Whether a time lies in the window; what comes before time zero belongs to what it is followed
-   by. */
-bool contains(const Record &record, const Window &window, double time_s);
-
-/* What the figures need to know besides the record. */
+/* What the figures need to know besides the rows. */
 struct MetricSettings {
     int rotor_teeth = 50;
     double settling_band_rad = 2e-3;
-    double enabling_time_s = 0;
-    double enabling_motion_max_rad = 0;
-    double enabling_displacement_rad = 0;
 };
 
 struct Metrics {
@@ -92,12 +55,13 @@ struct Metrics {
     double slip_full_steps = none; /* largest change of the estimate error since the window began,
                                       in full steps (90 degrees electrical), rounded */
     double resistance_estimate_error_ratio = none; /* |R^ - R| / R in the last row */
-    double synchronism_worst = none;       /* 0 sure, 1 doubtful, 2 stalled, 3 lost; the drive's */
-    double enabling_time_s = none;         /* of the command, as it acts, to the drive ready */
-    double enabling_motion_max_rad = none; /* of the true rotor from where it stood, until then */
+    double synchronism_worst = none; /* 0 sure, 1 doubtful, 2 stalled, 3 lost; the drive's */
+    /* These are of no row: who has seen the run sets them (result.cpp). */
+    double enabling_time_s = none;           /* of the command, as it acts, to the drive ready */
+    double enabling_motion_max_rad = none;   /* of the true rotor from where it stood, until then */
     double enabling_displacement_rad = none; /* what is left of it then */
-    double commands_refused = none;          /* of the timeline: not of the record, so not set by */
-    double commands_dropped = none;          /* evaluate() but by who has seen the run */
+    double commands_refused = none;          /* of the timeline */
+    double commands_dropped = none;
 
     std::string fault = "none"; /* the first in the window, as drive_fault_name spells it */
 };
@@ -109,8 +73,6 @@ struct MetricField {
 
 /* All numbers of Metrics, in order; `fault` is the only text. */
 const std::vector<MetricField> &metric_fields();
-
-Metrics evaluate(const Record &record, RowRange rows, const MetricSettings &settings);
 
 } // namespace scenario
 

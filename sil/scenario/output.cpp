@@ -1,10 +1,8 @@
 #include "sil/scenario/output.h"
 
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 
 #include <nlohmann/json.hpp>
 #include <unistd.h>
@@ -82,21 +80,51 @@ void prepare_folder(const fs::path &folder)
     }
 }
 
-void write_file(const fs::path &file, const std::string &content)
+FileAside::FileAside(const fs::path &file) : file_(file), aside_(file.string() + ".part")
 {
-    const fs::path aside = file.string() + ".part";
     std::error_code error;
     fs::create_directories(file.parent_path(), error);
-    std::ofstream stream(aside, std::ios::binary);
-    stream.write(content.data(), static_cast<std::streamsize>(content.size()));
-    stream.close();
-    if (stream) {
-        fs::rename(aside, file, error);
+    stream_.open(aside_, std::ios::binary);
+}
+
+FileAside::~FileAside()
+{
+    if (!finished_) {
+        stream_.close();
+        std::error_code error;
+        fs::remove(aside_, error);
     }
-    if (!stream || error) {
-        fs::remove(aside, error);
-        throw InputError(file.string() + ": cannot be written");
+}
+
+void FileAside::write(const void *bytes, std::size_t count)
+{
+    stream_.write(static_cast<const char *>(bytes), static_cast<std::streamsize>(count));
+}
+
+void FileAside::rewrite_begin(const void *bytes, std::size_t count)
+{
+    stream_.seekp(0);
+    write(bytes, count);
+}
+
+void FileAside::finish()
+{
+    stream_.close();
+    std::error_code error;
+    if (stream_) {
+        fs::rename(aside_, file_, error);
     }
+    if (!stream_ || error) {
+        throw InputError(file_.string() + ": cannot be written");
+    }
+    finished_ = true;
+}
+
+void write_file(const fs::path &file, const std::string &content)
+{
+    FileAside aside(file);
+    aside.write(content.data(), content.size());
+    aside.finish();
 }
 
 namespace
@@ -123,7 +151,7 @@ Json interrupt_json(const Result &result)
     Json json;
     json["image"] = result.scenario->given.image;
     json["interrupts"] = interrupt.interrupts;
-    json["budget_cycles"] = virtual_board::control_interrupt_budget;
+    json["budget_cycles"] = result.board->budget_cycles;
     json["total_cycles"] = figures_json(interrupt.total);
     for (std::size_t i = 0; i < interrupt.stages.size(); ++i) {
         json["stage_cycles"][interrupt.stage_names[i]] = figures_json(interrupt.stages[i]);
@@ -231,30 +259,6 @@ std::string summaries_json(const std::vector<Result> &results)
         json.push_back(summary(result));
     }
     return json.dump() + "\n";
-}
-
-std::string trace_csv(const Record &record)
-{
-    std::string csv = "time_s";
-    for (std::size_t column = 0; column < COLUMNS; ++column) {
-        csv += ',';
-        csv += column_name(static_cast<Column>(column));
-    }
-    csv += '\n';
-    csv.reserve(csv.size() + record.rows() * COLUMNS * 16);
-    char digits[32];
-    const auto put = [&](double number, char separator) {
-        const std::to_chars_result end = std::to_chars(digits, digits + sizeof digits, number);
-        csv.append(digits, end.ptr);
-        csv += separator;
-    };
-    for (std::size_t row = 0; row < record.rows(); ++row) {
-        put(record.time_s(row), ',');
-        for (std::size_t column = 0; column < COLUMNS; ++column) {
-            put(record.row(row)[column], column + 1 < COLUMNS ? ',' : '\n');
-        }
-    }
-    return csv;
 }
 
 std::string quoted(const std::string &argument)

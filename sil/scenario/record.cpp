@@ -30,6 +30,22 @@ std::vector<const signal_row *> signals_of_columns()
 
 const std::vector<const signal_row *> column_signals = signals_of_columns();
 
+/* Columns of the drive: real numbers, which are most and are copied, and the rest. */
+std::vector<std::size_t> columns_of_drive(bool real)
+{
+    std::vector<std::size_t> columns;
+    for (std::size_t column = 0; column < COLUMNS; ++column) {
+        const signal_row *const signal = column_signals[column];
+        if (signal != nullptr && (signal->type == SIGNAL_REAL) == real) {
+            columns.push_back(column);
+        }
+    }
+    return columns;
+}
+
+const std::vector<std::size_t> real_columns = columns_of_drive(true);
+const std::vector<std::size_t> other_columns = columns_of_drive(false);
+
 } // namespace
 
 const char *column_name(Column column)
@@ -44,10 +60,12 @@ const char *column_name(Column column)
 
 void put_signals(Row &row, const drive_signals &signals)
 {
-    for (std::size_t column = 0; column < COLUMNS; ++column) {
-        if (column_signals[column] != nullptr) {
-            row[column] = signal_get(&signals, column_signals[column]);
-        }
+    const char *const first = reinterpret_cast<const char *>(&signals);
+    for (const std::size_t column : real_columns) {
+        std::memcpy(&row[column], first + column_signals[column]->offset, sizeof(double));
+    }
+    for (const std::size_t column : other_columns) {
+        row[column] = signal_get(&signals, column_signals[column]);
     }
 }
 
@@ -55,12 +73,48 @@ void Record::append(const Row &row)
 {
     constexpr std::uint64_t prime = 0x100000001b3u;
     constexpr std::uint64_t any_nan = 0x7ff8000000000000u;
+    std::uint64_t hash = hash_;
     for (const double value : row) {
         std::uint64_t bits;
         std::memcpy(&bits, &value, sizeof bits);
-        hash_ = (hash_ ^ (value == value ? bits : any_nan)) * prime;
+        hash = (hash ^ (value == value ? bits : any_nan)) * prime;
     }
-    rows_.push_back(row);
+    hash_ = hash;
+    if (started_) {
+        hand_over(row);
+    } else {
+        waiting_.push_back(row);
+    }
+}
+
+void Record::start_time_here()
+{
+    time_zero_row_ = waiting_.size();
+    hand_over_waiting();
+}
+
+void Record::end()
+{
+    if (!started_) {
+        hand_over_waiting();
+    }
+}
+
+void Record::hand_over(const Row &row)
+{
+    for (RowReader *const reader : readers_) {
+        reader->read(*this, row);
+    }
+    ++rows_;
+}
+
+void Record::hand_over_waiting()
+{
+    started_ = true;
+    for (const Row &row : waiting_) {
+        hand_over(row);
+    }
+    waiting_ = {};
 }
 
 double time_of(double periods, double period_s)

@@ -1,6 +1,7 @@
 /*
- * What a run leaves behind: every signal of every period, in memory, hashed as it comes. Values of
- * row k belong to S(k). True values come from the plant, `_est` and `_ref` from the drive.
+ * What a run leaves behind: every signal of every period, hashed as it comes and handed to whoever
+ * reads it; nothing is kept, so that a run of any length fits into memory. Values of row k belong
+ * to S(k). True values come from the plant, `_est` and `_ref` from the drive.
  */
 #ifndef STEADYSTEP_SCENARIO_RECORD_H
 #define STEADYSTEP_SCENARIO_RECORD_H
@@ -15,7 +16,7 @@
 namespace scenario
 {
 
-/* In the order of trace.csv: signals of the drive (firmware/interface/signals_table.h), and what is
+/* In the order of a trace: signals of the drive (firmware/interface/signals_table.h), and what is
    true, in the plant. The drive's traced signals that do not stand here follow. */
 #define TRACE_COLUMNS(DRIVE, TRUE, RENAMED)                                                        \
     DRIVE(THETA_REF, theta_ref_rad)                                                                \
@@ -68,7 +69,7 @@ enum Column : std::size_t {
 #undef IS_OF_DRIVE
 #undef IS_TRUE
 
-/* Name with unit, as trace.csv heads the column. */
+/* Name with unit, as a trace heads the column. */
 const char *column_name(Column column);
 
 /* Of a number of periods; the number nearest to the decimal where the rate is one of whole Hz. */
@@ -79,6 +80,17 @@ using Row = std::array<double, COLUMNS>;
 /* What the drive shows. */
 void put_signals(Row &row, const drive_signals &signals);
 
+class Record;
+
+/* Takes the rows of a record, one after another. */
+class RowReader
+{
+  public:
+    virtual ~RowReader() = default;
+    /* Row number record.rows(); the record knows its time zero by now. */
+    virtual void read(const Record &record, const Row &row) = 0;
+};
+
 class Record
 {
   public:
@@ -86,38 +98,31 @@ class Record
     {
     }
 
-    void reserve(std::size_t rows)
+    /* Before the first row; the reader outlives the record. */
+    void add_reader(RowReader &reader)
     {
-        rows_.reserve(rows);
+        readers_.push_back(&reader);
     }
     void append(const Row &row);
-    /* The next row to be appended is S(k0), time 0; rows before it show the enabling. */
-    void start_time_here()
-    {
-        time_zero_row_ = rows_.size();
-    }
+    /* The next row to be appended is S(k0), time 0. Rows before it show the enabling; they wait
+       here until this moment, because only then their times are known. */
+    void start_time_here();
+    /* No row follows. Those of an enabling that has never ended count from the first. */
+    void end();
 
     double period_s() const
     {
         return period_s_;
     }
-    std::size_t rows() const
+    std::size_t rows() const /* that have been read */
     {
-        return rows_.size();
+        return rows_;
     }
     std::size_t time_zero_row() const
     {
         return time_zero_row_;
     }
     double time_s(std::size_t row) const;
-    const Row &row(std::size_t row) const
-    {
-        return rows_[row];
-    }
-    double at(std::size_t row, Column column) const
-    {
-        return rows_[row][column];
-    }
 
     /* FNV-1a over the bits of all values, 64 bits at a time; every NaN counts alike. */
     std::uint64_t hash() const
@@ -126,9 +131,14 @@ class Record
     }
 
   private:
+    void hand_over(const Row &row);
+    void hand_over_waiting();
+
     double period_s_;
-    std::size_t time_zero_row_ = 0;
-    std::vector<Row> rows_;
+    std::vector<RowReader *> readers_;
+    std::vector<Row> waiting_; /* until time zero is known */
+    bool started_ = false;
+    std::size_t rows_ = 0, time_zero_row_ = 0;
     std::uint64_t hash_ = 0xcbf29ce484222325u;
 };
 

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "sil/scenario/evaluation.h"
 #include "sil/scenario/hold_yield.h"
 #include "sil/scenario/image_run.h"
 
@@ -45,32 +46,45 @@ bool holds(const Expectation &expectation, double value)
 }
 
 double count(const std::vector<Incident> &incidents, Incident::Kind kind, const Window &window,
-             const Record &record)
+             const Evaluation &evaluation)
 {
     return static_cast<double>(
         std::count_if(incidents.begin(), incidents.end(), [&](const Incident &incident) {
-            return incident.kind == kind && contains(record, window, incident.time_s);
+            return incident.kind == kind && evaluation.contains(window, incident.time_s);
         }));
 }
 
-WindowResult evaluate_window(const Record &record, const Window &window,
-                             const MetricSettings &settings, const std::vector<Incident> &incidents)
+/* What has come of a run before it is judged. */
+struct Seen {
+    const Record &record;
+    const Evaluation &evaluation;
+    const Run &run;
+    const std::vector<Incident> &incidents;
+};
+
+WindowResult evaluate_window(const Seen &seen, const Window &window)
 {
     WindowResult result;
-    const RowRange rows = rows_of(record, window);
+    const RowRange rows = seen.evaluation.rows_of(window);
+    Metrics &metrics = result.metrics;
+    metrics = seen.evaluation.metrics_of(window);
     if (!rows.empty()) {
-        result.begin_s = record.time_s(rows.first);
-        result.end_s = record.time_s(rows.last - 1);
+        result.begin_s = seen.record.time_s(rows.first);
+        result.end_s = seen.record.time_s(rows.last - 1);
+        metrics.enabling_time_s = seen.run.enabling_time_s;
+        metrics.enabling_motion_max_rad = seen.run.enabling_motion_max_rad;
+        metrics.enabling_displacement_rad = seen.run.enabling_displacement_rad;
     }
-    result.metrics = evaluate(record, rows, settings);
-    for (const Incident &incident : incidents) { /* one too short for the rows that are recorded */
-        if (result.metrics.fault == "none" && incident.kind == Incident::Kind::fault &&
-            contains(record, window, incident.time_s)) {
-            result.metrics.fault = incident.what;
+    for (const Incident &incident : seen.incidents) { /* one too short for the rows recorded */
+        if (metrics.fault == "none" && incident.kind == Incident::Kind::fault &&
+            seen.evaluation.contains(window, incident.time_s)) {
+            metrics.fault = incident.what;
         }
     }
-    result.metrics.commands_refused = count(incidents, Incident::Kind::refused, window, record);
-    result.metrics.commands_dropped = count(incidents, Incident::Kind::dropped, window, record);
+    metrics.commands_refused =
+        count(seen.incidents, Incident::Kind::refused, window, seen.evaluation);
+    metrics.commands_dropped =
+        count(seen.incidents, Incident::Kind::dropped, window, seen.evaluation);
     return result;
 }
 
@@ -80,28 +94,26 @@ bool names(const std::vector<std::string> &faults, const std::string &fault)
 }
 
 /* An expectation of exactly this, in a window that it lies in. How many times, is the bound's. */
-bool expects(const Expectation &expectation, const Incident &incident, const Record &record)
+bool expects(const Expectation &expectation, const Incident &incident, const Evaluation &evaluation)
 {
     return expectation.metric == incident.metric() &&
            (!expectation.of_fault() || names(expectation.equals_text, incident.what)) &&
-           contains(record, expectation.window, incident.time_s);
+           evaluation.contains(expectation.window, incident.time_s);
 }
 
-void judge_incidents(Result &result, const Record &record)
+void judge_incidents(Result &result, const Evaluation &evaluation)
 {
     const std::vector<Expectation> &expectations = result.scenario->expectations;
     for (Incident &incident : result.incidents) {
         incident.expected =
             std::any_of(expectations.begin(), expectations.end(),
-                        [&](const Expectation &one) { return expects(one, incident, record); });
+                        [&](const Expectation &one) { return expects(one, incident, evaluation); });
     }
 }
 
-Observation observe(const Expectation &expectation, const Record &record,
-                    const MetricSettings &settings, const std::vector<Incident> &incidents)
+Observation observe(const Expectation &expectation, const Seen &seen)
 {
-    const Metrics metrics =
-        evaluate_window(record, expectation.window, settings, incidents).metrics;
+    const Metrics metrics = evaluate_window(seen, expectation.window).metrics;
     Observation observation;
     if (expectation.of_fault()) {
         observation.text = metrics.fault;
@@ -113,28 +125,21 @@ Observation observe(const Expectation &expectation, const Record &record,
     return observation;
 }
 
+std::vector<Window> windows_of(const Scenario &scenario)
+{
+    std::vector<Window> windows;
+    for (const std::vector<Expectation> *list : {&scenario.expectations, &scenario.reports}) {
+        for (const Expectation &expectation : *list) {
+            windows.push_back(expectation.window);
+        }
+    }
+    return windows;
+}
+
 /* Rank of the 95th percentile of n sorted values, from 0. */
 std::size_t rank_95(std::size_t n)
 {
     return (95 * n + 99) / 100 - 1;
-}
-
-} // namespace
-
-namespace
-{
-
-/* Whether the reference moves more slowly than that for a tenth of a second, all ramps together. */
-bool creeps_below(double speed_rad_s, const Record &record)
-{
-    double time_s = 0;
-    for (std::size_t row = record.time_zero_row(); row < record.rows(); ++row) {
-        const double speed = std::fabs(record.at(row, OMEGA_REF));
-        if (speed > 0 && speed < speed_rad_s) {
-            time_s += record.period_s();
-        }
-    }
-    return time_s >= 0.1;
 }
 
 } // namespace
@@ -172,48 +177,51 @@ const Incident *Result::unexpected_fault() const
 }
 
 Result execute(const Scenario &scenario, const firmware_image &image, std::uint64_t seed,
-               Record &record)
+               const std::vector<RowReader *> &readers)
 {
     Result result;
     result.scenario = &scenario;
     result.numeric = image.numeric;
     result.seed = seed;
 
+    Record record(row_period_s(scenario));
+    const MetricSettings settings{scenario.motor.params.rotor_teeth, scenario.settling_band_rad};
+    const Evaluation evaluation(record, settings, windows_of(scenario));
+    HoldYield hold_yield(scenario);
+    record.add_reader(hold_yield);
+    for (RowReader *const reader : readers) {
+        record.add_reader(*reader);
+    }
+
     const double start_s = cpu_seconds();
-    Run run{Record(1), 0, 0, 0, 0, 0, "", {}, ""};
+    Run run;
     if (scenario.given.image.empty()) {
-        run = scenario::run(scenario, image, seed);
+        run = scenario::run(scenario, image, seed, record);
     } else {
-        ImageRun on_board = run_image(scenario, result.numeric, seed);
+        ImageRun on_board = run_image(scenario, result.numeric, seed, record);
         run = std::move(on_board.run);
         result.board = std::move(on_board.board);
     }
     result.cpu_s = cpu_seconds() - start_s;
 
-    record = std::move(run.record);
     result.failure = run.failure;
     result.incidents = std::move(run.incidents);
     result.serial = run.serial;
-    if (creeps_below(run.blind_speed_rad_s, record)) {
-        result.blind_below_rad_s = run.blind_speed_rad_s;
-    }
-    result.hold_yield_rad = hold_yield_rad(scenario, record);
+    result.blind_below_rad_s = run.blind_below_rad_s;
+    result.hold_yield_rad = hold_yield.yield_rad();
     result.trace_hash = record.hash();
     result.drive_hash = run.drive_hash;
     result.simulated_s =
         run.time_zero_s +
         static_cast<double>(record.rows() - record.time_zero_row()) * record.period_s();
 
-    const MetricSettings settings{scenario.motor.params.rotor_teeth, scenario.settling_band_rad,
-                                  run.enabling_time_s, run.enabling_motion_max_rad,
-                                  run.enabling_displacement_rad};
-    const std::vector<Incident> &incidents = result.incidents;
-    judge_incidents(result, record);
-    result.move = evaluate_window(record, {Window::Kind::move}, settings, incidents);
-    result.rest = evaluate_window(record, {Window::Kind::rest}, settings, incidents);
-    result.all = evaluate_window(record, {Window::Kind::all}, settings, incidents);
+    judge_incidents(result, evaluation);
+    const Seen seen = {record, evaluation, run, result.incidents};
+    result.move = evaluate_window(seen, {Window::Kind::move});
+    result.rest = evaluate_window(seen, {Window::Kind::rest});
+    result.all = evaluate_window(seen, {Window::Kind::all});
     const auto observed = [&](const Expectation &one) {
-        return result.failure.empty() ? observe(one, record, settings, incidents) : Observation{};
+        return result.failure.empty() ? observe(one, seen) : Observation{};
     };
     for (const Expectation &expectation : scenario.expectations) {
         result.observations.push_back(observed(expectation));

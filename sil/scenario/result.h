@@ -53,9 +53,9 @@ struct Result {
     const Incident *unexpected_fault() const;
 };
 
-/* Runs and evaluates; the record stays with the caller, who may write or drop it. */
+/* Runs and evaluates; the readers read the record, too. */
 Result execute(const Scenario &scenario, const firmware_image &image, std::uint64_t seed,
-               Record &record);
+               const std::vector<RowReader *> &readers = {});
 
 /* Which of a result's observations. */
 using Observations = std::vector<Observation> Result::*;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sil/board/typed_line.h"
+#include "sil/scenario/interruption.h"
 #include "sil/scenario/serial_line.h"
 #include "sil/scenario/tape.h"
 #include "sil/scenario/text.h"
@@ -48,25 +49,50 @@ void hand_over(const Scenario &scenario, const PlantValues &values, PlantPart pa
     }
 }
 
+/* Whether the reference moves more slowly than a drive sees for a tenth of a second, all ramps
+   together. */
+class Creep : public RowReader
+{
+  public:
+    explicit Creep(double blind_speed_rad_s) : blind_speed_rad_s_(blind_speed_rad_s)
+    {
+    }
+
+    void read(const Record &record, const Row &row) override
+    {
+        const double speed = std::fabs(row[OMEGA_REF]);
+        if (record.rows() >= record.time_zero_row() && speed > 0 && speed < blind_speed_rad_s_) {
+            time_s_ += record.period_s();
+        }
+    }
+    std::optional<double> blind_below_rad_s() const
+    {
+        return time_s_ >= 0.1 ? std::optional<double>(blind_speed_rad_s_) : std::nullopt;
+    }
+
+  private:
+    double blind_speed_rad_s_, time_s_ = 0;
+};
+
 /* Steps a board through its timeline and writes the record. */
 class Runner
 {
   public:
     /* `direct`: the same board, to which commands are posted past the serial line; nullptr: they
        are typed. */
-    Runner(const Scenario &scenario, sil::DriveBoard &board, sil::Board *direct)
-        : scenario_(scenario), board_(board), direct_(direct),
+    Runner(const Scenario &scenario, sil::DriveBoard &board, sil::Board *direct, Record &record)
+        : scenario_(scenario), board_(board), direct_(direct), record_(record),
           period_s_(scenario.plant.bridge.period_s), values_(values_of(scenario)),
           motor_(scaled(scenario.motor.params, scenario.scales)),
-          result_{Record(period_s_ * scenario.record_every), 0, 0, 0, 0, 0, "", {}, ""},
-          line_(board), tape_(scenario.events, period_s_)
+          creep_(drive_blind_speed_rad_s(&scenario.drive, &board.facts())), line_(board),
+          tape_(scenario.events, period_s_)
     {
+        record_.add_reader(creep_);
     }
 
     Run run()
     {
         const std::uint32_t last = periods(scenario_.duration_s, period_s_);
-        result_.record.reserve(last / scenario_.record_every + 1);
         try {
             if (enable()) {
                 follow_timeline(last);
@@ -76,8 +102,9 @@ class Runner
         } catch (const std::runtime_error &failure) { /* of a board that the firmware misuses */
             result_.failure = failure.what();
         }
+        record_.end();
         result_.drive_hash = board_.drive_hash();
-        result_.blind_speed_rad_s = drive_blind_speed_rad_s(&scenario_.drive, &board_.facts());
+        result_.blind_below_rad_s = creep_.blind_below_rad_s();
         result_.serial = line_.transcript();
         add_refused_lines();
         return std::move(result_);
@@ -86,6 +113,7 @@ class Runner
   private:
     void control()
     {
+        throw_if_interrupted();
         board_.control();
         line_.listen();
     }
@@ -169,7 +197,7 @@ class Runner
 
     void follow_timeline(std::uint32_t last)
     {
-        result_.record.start_time_here();
+        record_.start_time_here();
         for (std::uint32_t n = 0;; ++n) {
             act(n);
             if (n > 0 || direct_ == nullptr) {
@@ -352,16 +380,18 @@ class Runner
         row[RESISTANCE] =
             motor_.resistance_ohm + scenario_.plant.imperfections.bridge_resistance_ohm;
         row[BUS] = state.bus_V;
-        result_.record.append(row);
+        record_.append(row);
     }
 
     const Scenario &scenario_;
     sil::DriveBoard &board_;
     sil::Board *direct_;
+    Record &record_;
     double period_s_;
     PlantValues values_;
     plant::MotorConfig motor_;
     Run result_;
+    Creep creep_;
     SerialLine line_;
     Tape tape_;
     DriveWatch watch_;
@@ -485,15 +515,20 @@ std::uint32_t typed_shift(double control_period_s)
     return sil::typed_delay(DRIVE_COMMAND_SINE, control_period_s) + 1;
 }
 
-Run run(const Scenario &scenario, const firmware_image &image, std::uint64_t seed)
+double row_period_s(const Scenario &scenario)
 {
-    sil::Board board(plant_of(scenario, seed), image, scenario.drive);
-    return Runner(scenario, board, scenario.given.typed ? nullptr : &board).run();
+    return scenario.plant.bridge.period_s * scenario.record_every;
 }
 
-Run run_typed(const Scenario &scenario, sil::DriveBoard &board)
+Run run(const Scenario &scenario, const firmware_image &image, std::uint64_t seed, Record &record)
 {
-    return Runner(scenario, board, nullptr).run();
+    sil::Board board(plant_of(scenario, seed), image, scenario.drive);
+    return Runner(scenario, board, scenario.given.typed ? nullptr : &board, record).run();
+}
+
+Run run_typed(const Scenario &scenario, sil::DriveBoard &board, Record &record)
+{
+    return Runner(scenario, board, nullptr, record).run();
 }
 
 } // namespace scenario

@@ -3,6 +3,7 @@
 #define STEADYSTEP_SCENARIO_RUNNER_H
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,6 @@ const firmware_image *image_of(const std::string &numeric);
 void check(const Scenario &scenario, const firmware_image &image);
 
 struct Run {
-    Record record;
     double time_zero_s = 0;     /* simulated before the timeline begins */
     double enabling_time_s = 0; /* as metrics.h has it */
     double enabling_motion_max_rad = 0, enabling_displacement_rad = 0; /* magnitudes */
@@ -31,14 +31,18 @@ struct Run {
     std::string failure;             /* why the run ended early; "" if it did not */
     std::vector<Incident> incidents; /* by time; none of them judged yet */
     std::string serial;              /* transcript of the drive's serial line */
-    double blind_speed_rad_s = 0;    /* drive_blind_speed_rad_s of this drive on this board */
+    /* Of a run whose reference creeps where the drive is blind: drive_blind_speed_rad_s. */
+    std::optional<double> blind_below_rad_s;
 };
 
 /* The plant of one run. */
 plant::Config plant_of(const Scenario &scenario, std::uint64_t seed);
 
+/* The period of the rows that a scenario records. */
+double row_period_s(const Scenario &scenario);
+
 /* On the simulated board; with --typed as run_typed does. */
-Run run(const Scenario &scenario, const firmware_image &image, std::uint64_t seed);
+Run run(const Scenario &scenario, const firmware_image &image, std::uint64_t seed, Record &record);
 
 /*
  * On any board, just powered up: every command, the first enable included, goes to the drive as a
@@ -46,7 +50,7 @@ Run run(const Scenario &scenario, const firmware_image &image, std::uint64_t see
  * the drive is ready, so that commands of time zero can be typed before it. After a power cycle, a
  * command that cannot be typed early enough acts as soon as it can.
  */
-Run run_typed(const Scenario &scenario, sil::DriveBoard &board);
+Run run_typed(const Scenario &scenario, sil::DriveBoard &board, Record &record);
 
 /* A line for a planned command of time zero arrives in the first period after the ready one. */
 std::uint32_t typed_shift(double control_period_s);

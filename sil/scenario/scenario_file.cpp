@@ -265,6 +265,7 @@ void read_plant(const Value &table, Scenario &scenario)
     reader.number("dead_time_s", bridge.dead_time_s, 0, 1e-5);
     reader.number("diode_drop_V", bridge.diode_drop_V, 0, 5);
     reader.number("period_s", bridge.period_s, 1e-6, 1e-3);
+    reader.number("low_state_s", sensors.low_state_s, 0, 1e-4);
     reader.integer("half_period_counts", half_period_counts, 1, 65535);
     reader.integer("delay_periods", delay_periods, 0, 1);
     reader.number("current_noise_rms_A", sensors.current_noise_rms_A, 0, 10);

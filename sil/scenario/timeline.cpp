@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "firmware/interface/dictionary.h"
+#include "sil/scenario/metrics.h"
 #include "sil/scenario/text.h"
 
 namespace scenario

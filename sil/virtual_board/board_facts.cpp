@@ -14,10 +14,15 @@ namespace
 {
 
 /* Of the image with the reference wiring: hal/stm32g474/pin_maps/nucleo_g474re.h, board.h. */
-constexpr double period_s = 1e-4, dead_time_s = 1e-6, leg_delay_s = 20e-9;
-constexpr int half_period_counts = 8500;
+constexpr double dead_time_s = 1e-6, leg_delay_s = 20e-9, low_state_s = 4e-6;
+constexpr double counts_per_s = 170e6;
 constexpr double current_A_per_code = 12.0 / 4096, bus_V_per_code = 31.2 / 4096;
 constexpr double phase_voltage_V_per_code = 62.4 / 4096, current_offset_codes = 1;
+
+double period_s(int half_period_counts)
+{
+    return 2.0 * half_period_counts / counts_per_s;
+}
 
 [[noreturn]] void refuse(const char *key, const std::string &given, const std::string &image)
 {
@@ -40,14 +45,15 @@ void require(const char *key, double given, double image)
 
 } // namespace
 
-hal_facts facts_of(const plant::Config &config)
+hal_facts facts_of(const plant::Config &config, int half_period_counts)
 {
     hal_facts facts = {};
     facts.board_name = "virtual board";
-    facts.control_period_s = period_s;
-    facts.pwm_half_period_counts = half_period_counts;
+    facts.control_period_s = period_s(half_period_counts);
+    facts.pwm_half_period_counts = static_cast<std::uint32_t>(half_period_counts);
     facts.dead_time_s = dead_time_s;
     facts.leg_delay_s = leg_delay_s;
+    facts.low_state_s = low_state_s;
     facts.converter_codes = 4096;
     facts.current_A_per_code = current_A_per_code;
     facts.current_zero_code = 2048;
@@ -63,19 +69,20 @@ hal_facts facts_of(const plant::Config &config)
     return facts;
 }
 
-void require_image_facts(const plant::Config &config, const std::string &image_numeric,
+void require_image_facts(const plant::Config &config, const ImageMap &image,
                          const std::string &numeric)
 {
-    if (numeric != image_numeric) {
-        refuse("numeric", numeric, image_numeric);
+    if (numeric != image.numeric) {
+        refuse("numeric", numeric, image.numeric);
     }
     const plant::BridgeConfig &bridge = config.bridge;
     if (bridge.model != plant::BridgeModel::switched) {
         refuse("plant.bridge", "averaged", "switched");
     }
-    require("plant.period_s", bridge.period_s, period_s);
-    require("plant.half_period_counts", bridge.half_period_counts, half_period_counts);
+    require("plant.period_s", bridge.period_s, period_s(image.half_period_counts));
+    require("plant.half_period_counts", bridge.half_period_counts, image.half_period_counts);
     require("plant.dead_time_s", bridge.dead_time_s, dead_time_s);
+    require("plant.low_state_s", config.sensors.low_state_s, low_state_s);
     require("plant.delay_periods", bridge.delay_periods, 1);
     if (config.sensors.exact) {
         refuse("plant.exact_sensors", "true", "codes of 12 bits");

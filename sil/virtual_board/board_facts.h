@@ -8,14 +8,16 @@
 #include "firmware/interface/drive_interface.h"
 #include "hal/hal.h"
 #include "sil/plant/plant.h"
+#include "sil/virtual_board/image_map.h"
 
 namespace virtual_board
 {
 
-hal_facts facts_of(const plant::Config &config);
+/* Of the image whose PWM timer counts so far in half a period. */
+hal_facts facts_of(const plant::Config &config, int half_period_counts);
 
 /* Throws std::invalid_argument: "<key>: <what the scenario has>; the image has <...>". */
-void require_image_facts(const plant::Config &config, const std::string &image_numeric,
+void require_image_facts(const plant::Config &config, const ImageMap &image,
                          const std::string &numeric);
 
 /* Throws std::invalid_argument for a setting that only a simulation asks for. */

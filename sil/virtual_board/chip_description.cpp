@@ -25,7 +25,7 @@ const ChipDescription &stm32g474()
         {0x08000000, 512 * 1024},
         {0x08040000, 256 * 1024}, /* bank 2 */
         {0x10000000, 32 * 1024},
-        18, /* ADC1_2 */
+        25, /* TIM1_UP_TIM16 */
         cycle_of(16'000'000),
     };
     return chip;

@@ -120,8 +120,8 @@ void read_run(const Json &run, const std::vector<InstructionCost> &kinds, ImageM
 
 ImageMap parse(const Json &json, const ElfImage &image)
 {
-    if (json.at("format") != 2) {
-        throw std::invalid_argument("is of another format than 2; tools/image_map writes it");
+    if (json.at("format") != 3) {
+        throw std::invalid_argument("is of another format than 3; tools/image_map writes it");
     }
     if (json.at("identity").at("fnv1a") != identity_of(image)) {
         throw std::invalid_argument("is the map of another image; build both anew");
@@ -138,6 +138,7 @@ ImageMap parse(const Json &json, const ElfImage &image)
     }
     map.core = json.at("core");
     map.numeric = json.at("numeric");
+    map.half_period_counts = json.at("half_period_counts");
     for (const auto &[name, place] : json.at("signals").items()) {
         map.signals[name] = {place.at(0), place.at(1), place.at(2)};
     }

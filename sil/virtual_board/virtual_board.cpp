@@ -20,16 +20,14 @@ namespace
 /* The parameter store: the last four pages of the flash (hal.h, parameters_*). */
 constexpr std::uint32_t parameter_pages = 4;
 
-/* Of a period, after S(k), the last byte of a typed line arrives; the control interrupt is over. */
-constexpr Ticks arrival_in_period = ticks_per_s / 1'000'000 * 60;
-
-/* Where in a period a leg is shorted; the bridge is open so soon behind that, or a deadline. */
-constexpr Ticks short_in_period = ticks_per_s / 1'000'000 * 60;
+/* Of a period, after S(k): the last byte of a typed line arrives, the control interrupt is over; a
+   leg is shorted. The bridge is open so soon behind that, or a deadline. */
+constexpr double arrival_in_period = 0.6, short_in_period = 0.6;
 constexpr Ticks opening_time = ticks_per_s / 1'000'000;
 
 /* Where in a period a control interrupt is held up: it has read its samples. */
-constexpr Ticks stall_in_period = ticks_per_s / 10'000'000 * 65;
-constexpr Ticks first_stall_end = ticks_per_s / 1'000'000 * 89; /* of one beyond the deadline */
+constexpr Ticks stall_in_period = ticks_per_s / 1'000'000 * 3;
+constexpr Ticks before_deadline = ticks_per_s / 1'000'000; /* a stall beyond it comes in pieces */
 constexpr Ticks stall_piece = ticks_per_s / 10'000'000;
 
 /* Longest time without a control interrupt: start-up designs the gains. */
@@ -47,7 +45,7 @@ Stm32g474Config device_config(const plant::Config &plant)
 struct VirtualBoard::Impl {
     Impl(const plant::Config &config, const std::string &image_file)
         : machine(stm32g474()), device(machine, device_config(config)),
-          image(read_image(image_file)), facts(facts_of(config)),
+          image(read_image(image_file)), facts(facts_of(config, image->map.half_period_counts)),
           timeout([this] { machine.fail("no control interrupt for a second"); }),
           trip_check([this] { require_open_bridge("after a leg was shorted"); }),
           deadline_check([this] { require_open_bridge("after the control interrupt's deadline"); }),
@@ -64,6 +62,16 @@ struct VirtualBoard::Impl {
                 machine.fail("erased or programmed the flash outside of the parameter store");
             }
         };
+    }
+
+    Ticks share_of_period(double share) const
+    {
+        return static_cast<Ticks>(
+            share * facts.control_period_s * static_cast<double>(ticks_per_s) + 0.5);
+    }
+    Ticks deadline() const
+    {
+        return share_of_period(sil::control_deadline_share);
     }
 
     /* Where the parameter store begins in the flash. */
@@ -116,7 +124,7 @@ VirtualBoard::VirtualBoard(const plant::Config &plant, const std::string &image_
                            const std::string &numeric, const drive_settings &settings)
     : impl_(std::make_unique<Impl>(plant, image_file))
 {
-    require_image_facts(plant, impl_->image->map.numeric, numeric);
+    require_image_facts(plant, impl_->image->map, numeric);
     std::vector<std::uint8_t> &flash = impl_->device.flash().memory();
     const std::size_t page = impl_->facts.parameter_page_bytes;
     const std::size_t record_at = impl_->store() + SETTINGS_RECORD_FIRST_PAGE * page;
@@ -174,8 +182,8 @@ void VirtualBoard::Impl::hold_up()
     if (now >= stall_end) {
         return;
     }
-    const Ticks before_deadline = std::min(stall_end, sampled_at + first_stall_end);
-    const Ticks piece = now < before_deadline ? before_deadline - now : stall_piece;
+    const Ticks first_end = std::min(stall_end, sampled_at + deadline() - before_deadline);
+    const Ticks piece = now < first_end ? first_end - now : stall_piece;
     machine.stall_control_interrupt(0, piece / machine.core_cycle());
     machine.schedule(stall, now + piece);
 }
@@ -257,7 +265,7 @@ void VirtualBoard::Impl::send_typed()
         return;
     }
     const Ticks byte_time = device.serial_line().byte_time();
-    const Ticks last = std::max(machine.now(), sampled_at + arrival_in_period);
+    const Ticks last = std::max(machine.now(), sampled_at + share_of_period(arrival_in_period));
     device.serial_line().send(last - typed.size() * byte_time, typed);
     typed.clear();
 }
@@ -277,7 +285,8 @@ void VirtualBoard::power_cycle()
 void VirtualBoard::short_circuit(int leg, double current_A)
 {
     Impl &board = *impl_;
-    const Ticks at = std::max(board.machine.now(), board.sampled_at + short_in_period);
+    const Ticks at =
+        std::max(board.machine.now(), board.sampled_at + board.share_of_period(short_in_period));
     board.device.power_stage().short_circuit(at, leg, current_A);
     if (current_A > sil::comparator_trip_A) {
         board.machine.schedule(board.trip_check, at + opening_time);
@@ -292,9 +301,9 @@ void VirtualBoard::stall_control_interrupt(double until_s)
         board.stall_end = board.sampled_at + end;
         board.machine.schedule(board.stall, board.sampled_at + stall_in_period);
     }
-    if (until_s > sil::control_deadline_s) {
-        const auto deadline = static_cast<Ticks>(sil::control_deadline_s * ticks_per_s);
-        board.machine.schedule(board.deadline_check, board.sampled_at + deadline + opening_time);
+    if (end > board.deadline()) {
+        board.machine.schedule(board.deadline_check,
+                               board.sampled_at + board.deadline() + opening_time);
     }
 }
 
@@ -328,6 +337,7 @@ BoardReport VirtualBoard::report() const
     const Machine &machine = impl_->machine;
     BoardReport report;
     report.interrupt = machine.account().summary();
+    report.budget_cycles = impl_->deadline() / machine.core_cycle();
     report.stack_used_bytes = machine.stack_used();
     report.resets = machine.resets();
     report.bytes_received = impl_->device.serial_line().counters.received;
@@ -338,15 +348,30 @@ BoardReport VirtualBoard::report() const
     return report;
 }
 
-std::string VirtualBoard::numeric_of(const std::string &image_file)
+namespace
 {
-    const std::shared_ptr<const ImageFiles> files = read_image(image_file);
-    const ImageMap &map = files->map;
-    if (map.core != "m4f") {
-        throw std::invalid_argument(image_file + ": is for a core " + map.core +
+
+std::shared_ptr<const ImageFiles> image_of_this_board(const std::string &image_file)
+{
+    std::shared_ptr<const ImageFiles> files = read_image(image_file);
+    if (files->map.core != "m4f") {
+        throw std::invalid_argument(image_file + ": is for a core " + files->map.core +
                                     "; the virtual board of scenarios is the STM32G474, m4f");
     }
-    return map.numeric;
+    return files;
+}
+
+} // namespace
+
+std::string VirtualBoard::numeric_of(const std::string &image_file)
+{
+    return image_of_this_board(image_file)->map.numeric;
+}
+
+void VirtualBoard::require(const std::string &image_file, const plant::Config &plant,
+                           const std::string &numeric)
+{
+    require_image_facts(plant, image_of_this_board(image_file)->map, numeric);
 }
 
 Machine &VirtualBoard::machine()

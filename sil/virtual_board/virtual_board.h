@@ -23,6 +23,8 @@ class Stm32g474Device;
 
 /* What is known of the control interrupt and the chip after a run. */
 struct BoardReport {
+    /* Most cycles from S(k) to the end of the control interrupt, in the worst column. */
+    std::uint64_t budget_cycles = 0;
     InterruptAccount::Summary interrupt;
     std::optional<std::uint32_t> stack_used_bytes;
     std::vector<std::string> resets;
@@ -61,6 +63,9 @@ class VirtualBoard : public sil::DriveBoard
     /* Number format that an image was built for. Throws std::invalid_argument: it cannot be read,
        or is for another core than this board's. */
     static std::string numeric_of(const std::string &image_file);
+    /* Throws std::invalid_argument: as board_facts.h, if the image is not for such a plant. */
+    static void require(const std::string &image_file, const plant::Config &plant,
+                        const std::string &numeric);
 
     /* For tests. */
     Machine &machine();
@@ -72,10 +77,6 @@ class VirtualBoard : public sil::DriveBoard
 };
 
 constexpr double core_Hz = 170e6;
-
-/* Most cycles from S(k) to the end of the control interrupt, in the worst column: 90 us at 170 MHz.
- */
-constexpr std::uint64_t control_interrupt_budget = 15300;
 
 } // namespace virtual_board
 

@@ -343,7 +343,7 @@ PLANTED = [
     ),
     ("registers.h", "TIM_CCMR_OC2PE BIT(11)", "TIM_CCMR_OC2PE BIT(10)"),
     ("registers.h", "DAC_SR_DAC2RDY BIT(27)", "DAC_SR_DAC2RDY BIT(12)"),
-    ("device.h", "ADC1_2_IRQn = 18", "ADC1_2_IRQn = 47"),
+    ("device.h", "TIM1_UP_TIM16_IRQn = 25", "TIM1_UP_TIM16_IRQn = 26"),
     ("registers.h", "bdtr, ccr5", "ccr5, bdtr"),
     ("registers.h", "kr, pr, rlr", "kr, rlr, pr"),
     ("registers.h", "#define PWR_SR2_VOSF BIT(10)", "#define PWR_SR2_VOSF (1u << 10)"),

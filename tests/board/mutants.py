@@ -51,7 +51,7 @@ MUTANTS = [
     Mutant(
         "the converters are triggered in the high state",
         "pwm.c",
-        "TIM1->ccr5 = PWM_HALF_PERIOD - 1;",
+        "TIM1->ccr5 = PWM_HALF_PERIOD - CURRENT_SAMPLING_LEAD;",
         "TIM1->ccr5 = 1;",
         MOVE,
         "the current is sampled before the peak",
@@ -84,11 +84,9 @@ MUTANTS = [
     ),
     Mutant(
         "the voltage mean is one period old",
-        "phase_voltage_sampling.c",
-        "    samples->phase_voltage_a = mean(&phase_a.groups[done / LEGS_OF_PHASE]);\n"
-        "    samples->phase_voltage_b = mean(&phase_b.groups[done / LEGS_OF_PHASE]);\n",
-        "    samples->phase_voltage_a = mean(&phase_a.groups[(HALF - done) / LEGS_OF_PHASE]);\n"
-        "    samples->phase_voltage_b = mean(&phase_b.groups[(HALF - done) / LEGS_OF_PHASE]);\n",
+        "phase_voltage_sampling.h",
+        "    done += left_a > LEG_SUMS ? LEG_GROUPS : 0;\n",
+        "    done += left_a > LEG_SUMS ? 0 : LEG_GROUPS;\n",
         MOVE,
         "",
     ),

@@ -62,6 +62,7 @@ def words(compiler, root, cmsis, pin_map, sources=("pin_map_check.c", "pins.c"))
     command = [compiler, *FLAGS, f"-I{root}", f"-isystem{cmsis}"]
     command += [f"-DSTEADYSTEP_DEVICE={device}", f"-DSTEADYSTEP_FAULTS={faults}"]
     command += [f'-DSTEADYSTEP_PIN_MAP="{pin_map}"', "-DENCODER_COUNTS_PER_TURN=0u"]
+    command.append("-DSTEADYSTEP_CONTROL_PERIOD_us=100")
     # The pin map's own file is not the only one that may not compile.
     found = [
         subprocess.run(

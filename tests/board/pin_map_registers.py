@@ -35,6 +35,7 @@ CORE = [(0xE0000000, 0x100000)]
 INSTRUCTIONS = 200_000_000
 RCC, FLASH = 0x40021000, 0x40022000
 ADC = {n: 0x50000000 + at for n, at in enumerate((0x000, 0x100, 0x400, 0x500, 0x600), start=1)}
+ADC12_CSR = 0x50000300
 DAC = {3: 0x50001000, 4: 0x50001400}
 TIMER = {1: 0x40012C00, 4: 0x40000800, 5: 0x40000C00, 8: 0x40013400}
 DMAMUX, LPUART = 0x40020800, 0x40008000
@@ -71,19 +72,12 @@ class Chip:
         """At the peak, all converted; the application, left out, answers with the duties DUTIES."""
 
         def application(core, address, size, data):
-            outputs = core.reg_read(arm_const.UC_ARM_REG_R0)
+            outputs = core.reg_read(arm_const.UC_ARM_REG_R0)  # the application: it is left out
             core.mem_write(outputs, struct.pack("<4H?", *DUTIES.values(), False))
             core.reg_write(arm_const.UC_ARM_REG_PC, core.reg_read(arm_const.UC_ARM_REG_LR))
 
-        def nothing(core, address, size, data):
-            core.reg_write(arm_const.UC_ARM_REG_PC, core.reg_read(arm_const.UC_ARM_REG_LR))
-
-        for name, instead in (
-            ("application_control_interrupt", application),
-            ("application_count_cycles", nothing),
-        ):
-            at = self.image.symbols[name] & ~1
-            self.core.hook_add(unicorn.UC_HOOK_CODE, instead, begin=at, end=at)
+        at = self.image.symbols["application_control_interrupt"] & ~1
+        self.core.hook_add(unicorn.UC_HOOK_CODE, application, begin=at, end=at)
         self.put(TIMER[1], self.get(TIMER[1]) | 1 << 4)  # CR1: counts down
         self.put(TIMER[1] + 0x24, PEAK)
         back = 0x08000000  # where no code is
@@ -105,8 +99,10 @@ class Chip:
             now = now & ~0xC | (now & 3) << 2
         elif address in [base + 0x08 for base in ADC.values()]:  # CR: calibrated
             now &= 0x7FFFFFFF
-        elif address in ADC.values():  # ISR: ready, injected sequence done
-            now |= 1 | 1 << 6
+        elif address in ADC.values():  # ISR: ready
+            now |= 1
+        elif address == ADC12_CSR:  # injected sequences of both done
+            now |= 1 << 5 | 1 << 21
         elif address in [base + 0x34 for base in DAC.values()]:  # SR: ready
             now |= 1 << 11 | 1 << 27
         self.put(address & ~3, now)

@@ -98,7 +98,7 @@ void converter_stops(const ElfImage &image)
 {
     Powered run(image);
     run.run_for(600 * ms);
-    const std::string ready = run.type("enable\n", 350 * ms);
+    const std::string ready = run.type("enable\n", 600 * ms);
     expect(count(ready, "ready:") == 1 && run.board.bridge_on(), "the drive holds the motor");
 
     /* Behind a control interrupt that has ended. */
@@ -167,7 +167,7 @@ void flash_is_written(const ElfImage &image)
     Powered run(image);
     run.run_for(600 * ms);
     expect(count(run.type("store\n", 300 * ms), "ok store") == 1, "store is obeyed, bridge open");
-    expect(count(run.type("enable\n", 350 * ms), "ready:") == 1 && run.board.bridge_on(),
+    expect(count(run.type("enable\n", 600 * ms), "ready:") == 1 && run.board.bridge_on(),
            "the bridge closes behind it");
     const std::string refused = run.type("store\n", 300 * ms);
     expect(count(refused, "error: ") == 1 && run.board.bridge_on(),
@@ -185,7 +185,7 @@ void settings_act(const ElfImage &image)
     run.run_for(600 * ms);
     expect(count(run.type("set hold_current_A 0.8\n", 20 * ms), "acts at the next enable") == 1,
            "a setting waits for the enable");
-    expect(count(run.type("enable\n", 1000 * ms), "ready:") == 1 && run.board.bridge_on(),
+    expect(count(run.type("enable\n", 1250 * ms), "ready:") == 1 && run.board.bridge_on(),
            "the drive is designed, and enabled");
     expect(count(run.type("get hold_current_A\n", 20 * ms), "hold_current_A=0.8 A") == 1 &&
                count(run.type("set current_limit_A 1\n", 40 * ms), "acts at once") == 1,
@@ -196,7 +196,7 @@ void settings_act(const ElfImage &image)
                !run.board.bridge_on(),
            "a set-up that the drive refuses leaves the bridge off");
     (void)run.type("set law_bandwidth_rad_s default\n", 20 * ms);
-    expect(count(run.type("enable\n", 1000 * ms), "ready:") == 1, "and the one before in force");
+    expect(count(run.type("enable\n", 1250 * ms), "ready:") == 1, "and the one before in force");
     const Watchdog &watchdog = run.board.watchdog();
     std::printf("  watchdog fed after %.0f ms at the latest, of %.0f\n",
                 double(watchdog.counters.longest) / double(ms),
@@ -230,7 +230,7 @@ void program_leaves_memory(const ElfImage &image)
 {
     Powered run(image);
     run.run_for(600 * ms);
-    (void)run.type("enable\n", 350 * ms);
+    (void)run.type("enable\n", 600 * ms);
     const std::uint32_t vectors = *image.symbol("interrupt_code_start");
     const std::uint8_t nowhere[4] = {1, 0, 0, 0x30};
     std::copy(nowhere, nowhere + 4, run.machine.memory(vectors + 4 * pend_sv, 4));

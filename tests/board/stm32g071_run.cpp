@@ -31,7 +31,8 @@ using stm32g071::host_baud, stm32g071::motor, stm32g071::plant_config;
 constexpr double core_Hz = 64e6;
 constexpr std::uint64_t must_cycles = 2880;     /* 45 us */
 constexpr std::uint64_t deadline_cycles = 5760; /* 90 us */
-constexpr std::uint32_t periods = 7200, trip_period = 6800;
+constexpr std::uint32_t ready = 5600;           /* latest: offsets, hold, balance of the phases */
+constexpr std::uint32_t periods = ready + 4000, trip_period = ready + 3600;
 
 /* As hal/stm32g071/port.c tells them. */
 hal_facts board_facts()
@@ -42,6 +43,7 @@ hal_facts board_facts()
     facts.pwm_half_period_counts = 3200;
     facts.dead_time_s = 5e-9;
     facts.leg_delay_s = 20e-9;
+    facts.low_state_s = 4e-6;
     facts.converter_codes = 4096;
     facts.current_A_per_code = 12.0 / 4096.0;
     facts.current_zero_code = 2048;
@@ -112,11 +114,13 @@ struct Typed {
     double position_rad, duration_s, ramp_s;
 };
 constexpr Typed tape[] = {
-    {DRIVE_COMMAND_ENABLE, 200, 0, 0, 0},   {DRIVE_COMMAND_MOVE_TRAPEZOID, 3400, 2.0, 0.120, 0.040},
-    {DRIVE_COMMAND_STEP, 5000, 2.03, 0, 0}, {DRIVE_COMMAND_MOVE_TRAPEZOID, 5300, 6.0, 0.200, 0.060},
-    {DRIVE_COMMAND_STOP, 6100, 0, 0, 0},
+    {DRIVE_COMMAND_ENABLE, 200, 0, 0, 0},
+    {DRIVE_COMMAND_MOVE_TRAPEZOID, ready + 200, 2.0, 0.120, 0.040},
+    {DRIVE_COMMAND_STEP, ready + 1800, 2.03, 0, 0},
+    {DRIVE_COMMAND_MOVE_TRAPEZOID, ready + 2100, 6.0, 0.200, 0.060},
+    {DRIVE_COMMAND_STOP, ready + 2900, 0, 0, 0},
 };
-constexpr std::uint32_t load_from = 3600, load_to = 4800; /* 0.1 N m */
+constexpr std::uint32_t load_from = ready + 400, load_to = ready + 1600; /* 0.1 N m */
 
 std::string line_of(const Typed &typed)
 {
@@ -218,9 +222,9 @@ int run(const std::string &file)
         if (k == load_from || k == load_to) {
             board.plant().set_load_torque(k == load_from ? 0.1 : 0.0);
         }
-        if (k == 3390) {
+        if (k == ready + 190) {
             ready_theta = board.plant().state().theta_rad;
-        } else if (k == 4990) {
+        } else if (k == ready + 1790) {
             moved_theta = board.plant().state().theta_rad;
         } else if (k == trip_period) {
             expect(board.bridge_on(), "the bridge is on before the trip");

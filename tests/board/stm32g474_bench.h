@@ -19,7 +19,7 @@ namespace stm32g474_bench
 using namespace virtual_board;
 
 constexpr Ticks us = ticks_per_s / 1000000, ms = 1000 * us;
-constexpr Ticks enable_time = 350 * ms;
+constexpr Ticks enable_time = 700 * ms;
 
 /* sil/motors/bendjedia-2012.toml, the default motor of the image. */
 inline Stm32g474Config board_config()

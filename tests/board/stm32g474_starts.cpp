@@ -31,8 +31,8 @@ const Failure failures[] = {
     {{0x40012c24, 0xffffu, 0}, "PWM timer loads its compares in the valley"}, /* TIM1.CNT */
     {{0x40021094, 1u << 1, 0}, "low-speed oscillator does not start"},        /* RCC.CSR LSIRDY */
     {{0x4000300c, 1u << 1, 1u << 1}, "watchdog does not take its period"},    /* IWDG.SR RVU */
-    {{0x50000100, 1u << 6, 0}, "a current converter has not converted"},      /* ADC2.ISR JEOS */
-    {{0x50000400, 1u << 4, 1u << 4}, "leg-voltage conversions out of step or lost"}, /* ADC3 OVR */
+    {{0x50000300, 1u << 21, 0}, "a current converter has not converted"},     /* ADC12 CSR, ADC2 */
+    {{0x4002000c, 0x7fu, 50}, "leg-voltage conversions out of step or lost"}, /* DMA1.CNDTR1 */
 };
 
 /* Counts the writes that would close the bridge. */

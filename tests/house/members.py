@@ -28,7 +28,7 @@ WRITERS = {
     "synchronism": ["synchronism", "settings_in_motion"],
     "input": ["prepared_input"],
     "standstill": ["standstill_angle"],
-    "enabling": ["drive", "encoder_aligning", "state_machine"],
+    "enabling": ["drive", "encoder_aligning", "phase_balancing", "state_machine"],
     "planner": ["planner"],
     "planned_end": ["planned_end"],
 }

@@ -1,6 +1,7 @@
 """What a drive does against what it is asked is told with its time, and must be expected exactly."""
 import json
 import pathlib
+from xml.etree import ElementTree
 
 from program import ROOT, SMALL, Checks, run, scratch
 
@@ -194,7 +195,30 @@ def the_sample_of_the_readme_holds(folder):
                 f"and does not with a fault: {done.stdout}")
 
 
-for check in (a_fault_that_is_not_expected_is_not_held,
+def junit_has_a_case_per_run(folder):
+    report = folder / "verdicts.xml"
+    (folder / "good.toml").write_text(SMALL, encoding="utf-8")
+    (folder / "bad.toml").write_text('base = "./good.toml"\n[[expect]]\n'
+                                     'metric = "current_peak_A"\nmax = 0.1\n', encoding="utf-8")
+    done = run("run", "good.toml", "bad.toml", "--seeds", "1-2", "--numeric", "fixed", "--junit",
+               report, cwd=folder)
+    CHECKS.that(done.returncode == 1, f"exit code {done.returncode} {done.stderr}")
+    suites = ElementTree.parse(report).getroot()
+    cases = [(case.get("classname"), case.get("name"), len(case.findall("failure")))
+             for case in suites.iter("testcase")]
+    CHECKS.that(cases == [("good", "fixed seed 1", 0), ("good", "fixed seed 2", 0),
+                          ("bad", "fixed seed 1", 1), ("bad", "fixed seed 2", 1)], f"{cases}")
+    CHECKS.that(suites.get("tests") == "4" and suites.get("failures") == "2", f"{suites.attrib}")
+    message = next(suites.iter("failure")).get("message")
+    CHECKS.that(message.startswith("current_peak_A in all: ") and "expected <= 0.1" in message,
+                message)
+    command = next(suites.iter("system-out")).text
+    CHECKS.that(command == "steadystep-sil run good.toml --numeric fixed --seed 1", command)
+    refused = run("run", "good.toml", "--junit", "good.toml/report.xml", cwd=folder)
+    CHECKS.that(refused.returncode == 2 and "cannot be written" in refused.stderr, refused.stderr)
+
+
+for check in (a_fault_that_is_not_expected_is_not_held, junit_has_a_case_per_run,
               a_fault_must_be_expected_by_its_name_and_in_its_time, every_seed_counts,
               a_fault_between_two_recorded_rows_counts, a_refused_command_is_not_held,
               a_refused_command_can_be_expected, a_command_that_a_fault_overtakes_is_dropped,

@@ -112,11 +112,11 @@ void write_header(const replay_case &which, const Recording &recording)
     std::printf("static const uint64_t replay_drive_hash = UINT64_C(0x%016" PRIx64 ");\n",
                 recording.drive_hash);
     std::printf("static const struct hal_facts replay_facts = {\n"
-                "    \"%s\", %a, %" PRIu32 "u, %a, %a,\n    %" PRIu32
+                "    \"%s\", %a, %" PRIu32 "u, %a, %a, %a,\n    %" PRIu32
                 "u, %a, %uu, %a, %a, %a,\n    %s, %" PRIu32 "u, %s, %a, %" PRIu32 "u,\n"
                 "    %" PRIu32 "u, %" PRIu32 "u};\n",
                 facts.board_name, facts.control_period_s, facts.pwm_half_period_counts,
-                facts.dead_time_s, facts.leg_delay_s, facts.converter_codes,
+                facts.dead_time_s, facts.leg_delay_s, facts.low_state_s, facts.converter_codes,
                 facts.current_A_per_code, unsigned{facts.current_zero_code},
                 facts.current_offset_codes, facts.bus_V_per_code, facts.phase_voltage_V_per_code,
                 facts.has_phase_voltages ? "true" : "false", facts.encoder_counts_per_turn,

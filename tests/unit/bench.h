@@ -33,6 +33,7 @@ static const struct hal_facts bench_facts = {
     .pwm_half_period_counts = 8500,
     .dead_time_s = 1e-6,
     .leg_delay_s = 20e-9,
+    .low_state_s = 4e-6,
     .converter_codes = 4096,
     .current_A_per_code = 12.0 / 4096.0,
     .current_zero_code = 2048,

@@ -53,7 +53,7 @@ static inline void bench_interrupts_between(struct console_bench *b)
 {
     for (int i = 0; i < b->periods_between; i++) {
         b->period++;
-        b->bridge_was_on |= application_control_interrupt(&b->application, &b->samples).bridge_on;
+        b->bridge_was_on |= application_control_interrupt(&b->application, &b->samples)->bridge_on;
     }
 }
 

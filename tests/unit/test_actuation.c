@@ -39,7 +39,8 @@ static void test_a_constant_loss_is_made_up_for_once_it_has_been_measured(void)
     for (int k = 0; k < 4; k++) {
         const struct phases measured = bridge(in_force);
 
-        actuation_observe(&actuation, measured);
+        (void)actuation_observe(&actuation, measured);
+        (void)actuation_act(&actuation);
         in_force = command;
         command = actuation_compensate(&actuation, wanted);
         actuation_commit(&actuation, command);
@@ -50,9 +51,12 @@ static void test_a_constant_loss_is_made_up_for_once_it_has_been_measured(void)
 static void test_the_voltage_in_force_is_the_last_command_less_the_loss(void)
 {
     actuation_commit(&actuation, voltage(0.1, 0.1));
+    (void)actuation_act(&actuation);
     actuation_commit(&actuation, voltage(0.3, -0.3));
-    actuation_observe(&actuation, bridge(voltage(0.1, 0.1)));
-    is_voltage(0.3 - 0.02, -0.3 + 0.03, actuation_in_force(&actuation));
+    is_voltage(-0.02, 0.03, actuation_observe(&actuation, bridge(voltage(0.1, 0.1))));
+    is_voltage(0.3 - 0.02, -0.3 + 0.03, actuation_act(&actuation));
+    is_voltage(0.3, -0.3, actuation_commanded(&actuation));
+    is_voltage(0.0, 0.0, actuation_observe(&actuation, bridge(voltage(0.3, -0.3))));
 }
 
 /* The mean measured at S(k) belongs to the command of S(k-2), not to the one before. */
@@ -61,8 +65,9 @@ static void test_commands_that_change_every_period_are_no_loss(void)
     static const double commands[] = {0.0, 0.0, 0.5, -0.7, 0.2, 0.9, -0.9, 0.1};
 
     for (int k = 2; k < 8; k++) {
-        actuation_observe(&actuation, voltage(commands[k - 2], -commands[k - 2]));
+        (void)actuation_observe(&actuation, voltage(commands[k - 2], -commands[k - 2]));
         is_voltage(0.0, 0.0, actuation.loss);
+        (void)actuation_act(&actuation);
         actuation_commit(&actuation, voltage(commands[k], -commands[k]));
     }
 }
@@ -71,17 +76,17 @@ static void test_a_failed_voltage_sensor_shifts_the_command_by_a_tenth_at_most(v
 {
     const struct phases wanted = voltage(0.5, 0.5);
 
-    actuation_observe(&actuation, voltage(5.0, -5.0));
+    (void)actuation_observe(&actuation, voltage(5.0, -5.0));
     is_voltage(0.5 - 0.1, 0.5 + 0.1, actuation_compensate(&actuation, wanted));
 }
 
 static void test_after_a_reset_nothing_is_in_force(void)
 {
     actuation_commit(&actuation, voltage(0.3, 0.3));
-    actuation_observe(&actuation, voltage(0.1, 0.1));
+    (void)actuation_observe(&actuation, voltage(0.1, 0.1));
     actuation_reset(&actuation);
-    is_voltage(0.0, 0.0, actuation_in_force(&actuation));
-    actuation_observe(&actuation, voltage(0.0, 0.0));
+    is_voltage(0.0, 0.0, actuation_observe(&actuation, voltage(0.0, 0.0)));
+    is_voltage(0.0, 0.0, actuation_act(&actuation));
     is_voltage(0.0, 0.0, actuation.loss);
 }
 

@@ -111,7 +111,7 @@ static void test_a_zero_beside_the_middle_of_the_codes_takes_from_the_range(void
 /* 0.92 x 24 V = (0.157 + 0.37 x 0.000307 / 0.157) w. */
 static void test_reference_speeds_end_where_back_emf_and_friction_take_the_supply(void)
 {
-    const struct speed_limit limit = board_limits_speed(&settings);
+    const struct speed_limit limit = board_limits_speed(&settings, &bench_facts);
 
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 139.99, limit.rad_s);
     TEST_ASSERT_EQUAL_STRING("where the back-EMF takes up the supply", limit.reason);
@@ -120,12 +120,13 @@ static void test_reference_speeds_end_where_back_emf_and_friction_take_the_suppl
 static void test_a_speed_limit_that_is_lower_or_widened_by_hand_counts_instead(void)
 {
     settings.speed_limit_rad_s = 100.0;
-    TEST_ASSERT_EQUAL_DOUBLE(100.0, board_limits_speed(&settings).rad_s);
-    TEST_ASSERT_EQUAL_STRING("limit of the drive", board_limits_speed(&settings).reason);
+    TEST_ASSERT_EQUAL_DOUBLE(100.0, board_limits_speed(&settings, &bench_facts).rad_s);
+    TEST_ASSERT_EQUAL_STRING("limit of the drive",
+                             board_limits_speed(&settings, &bench_facts).reason);
     settings.speed_limit_rad_s = 150.0;
-    TEST_ASSERT_DOUBLE_WITHIN(0.01, 139.99, board_limits_speed(&settings).rad_s);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 139.99, board_limits_speed(&settings, &bench_facts).rad_s);
     settings.speed_limit_rad_s = 200.0;
-    TEST_ASSERT_EQUAL_DOUBLE(200.0, board_limits_speed(&settings).rad_s);
+    TEST_ASSERT_EQUAL_DOUBLE(200.0, board_limits_speed(&settings, &bench_facts).rad_s);
 }
 
 /* A code of 2.93 mA through the winding of a NEMA 11, 6.8 ohm, and its bridge. */

@@ -1,4 +1,5 @@
 /* What the campaign of random motors says of a run. */
+#include <cmath>
 #include <string>
 
 #include "sil/scenario/campaign.h"
@@ -22,7 +23,7 @@ constexpr std::size_t settled = rows - 2500;
 class Course
 {
   public:
-    explicit Course(int encoder_counts = 0) : record_(1e-4)
+    explicit Course(int encoder_counts = 0)
     {
         scenario_.motor.params.rotor_teeth = 50;
         scenario_.plant.sensors.encoder_counts_per_turn = encoder_counts;
@@ -63,19 +64,36 @@ class Course
         drive_settings_default(&scenario_.drive, &motor);
         return *this;
     }
+    /* And the default law, of a small motor with steps of 0.9 degrees. */
+    Course &with_encoder(double inertia_kgm2)
+    {
+        motor_params &motor = scenario_.motor.params;
+        motor = {1.55, 1.8e-3, 0.11 / (std::sqrt(2) * 1.5), 4e-5, inertia_kgm2, 1.5, 24.0, 100};
+        drive_settings_default(&scenario_.drive, &motor);
+        drive_settings_select_feedback(&scenario_.drive, DRIVE_FEEDBACK_ENCODER);
+        return *this;
+    }
     double limit_rad() const
     {
-        return hold_yield_rad(scenario_, record_).value_or(0);
+        return result_.hold_yield_rad ? *result_.hold_yield_rad
+                                      : HoldYield(scenario_).yield_rad().value_or(0);
     }
 
     CampaignOutcome outcome()
     {
-        record_.append(Row{}); /* of the enabling */
-        record_.start_time_here();
+        Record record(1e-4);
+        const std::unique_ptr<CampaignWatch> watch = motors_campaign.watch(scenario_);
+        HoldYield yield(scenario_);
+        record.add_reader(*watch);
+        record.add_reader(yield);
+        record.append(Row{}); /* of the enabling */
+        record.start_time_here();
         for (const Row &row : course_) {
-            record_.append(row);
+            record.append(row);
         }
-        return motors_campaign.judge(result_, record_);
+        record.end();
+        result_.hold_yield_rad = yield.yield_rad();
+        return watch->judge(result_);
     }
     std::string verdict()
     {
@@ -86,7 +104,6 @@ class Course
     Scenario scenario_;
     Result result_;
     std::vector<Row> course_ = std::vector<Row>(rows);
-    Record record_;
 };
 
 void expect(const char *verdict, Course &course)
@@ -180,6 +197,24 @@ void loads_that_go_unnoticed_add_up_until_the_next_motion()
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, noticed_rad, loaded(moves, 5 * 0.0318, 1, 0));
 }
 
+/* 900 rad/s of a rotor of 12 g cm^2 are 0.97 N m/rad; the detent torque has 2.2 at its steepest. */
+void detent_torque_steeper_than_the_law_is_stiff_is_a_limit_with_an_encoder()
+{
+    const auto of = [](double inertia_kgm2, bool detent) {
+        Course course(4000);
+        course.with_motor().with_encoder(inertia_kgm2);
+        if (detent) {
+            course.with_detent();
+        }
+        course.outcome();
+        return course.limit_rad();
+    };
+    const double torque_Nm = 0.05 * 0.11;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, torque_Nm / (12e-7 * 900 * 900) + count_rad, of(12e-7, true));
+    TEST_ASSERT_EQUAL_DOUBLE(0, of(12e-7, false));
+    TEST_ASSERT_EQUAL_DOUBLE(0, of(60e-7, true));
+}
+
 /* Three quarters of a count of 4,000 are 3.4 degrees; with 40,000 three degrees are more. */
 void ready_is_wrong_with_a_zero_that_is_off()
 {
@@ -215,6 +250,7 @@ int main()
     RUN_TEST(the_end_is_judged_to_a_sixteenth_of_a_step_and_a_fifth_with_detent);
     RUN_TEST(what_a_hold_is_computed_to_yield_is_told_apart);
     RUN_TEST(loads_that_go_unnoticed_add_up_until_the_next_motion);
+    RUN_TEST(detent_torque_steeper_than_the_law_is_stiff_is_a_limit_with_an_encoder);
     RUN_TEST(ready_is_wrong_with_a_zero_that_is_off);
     return UNITY_END();
 }

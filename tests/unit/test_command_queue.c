@@ -225,10 +225,10 @@ static void test_a_flush_never_brings_commands_back(void)
 }
 
 /* Periods from `from` on in which the queue calls while nothing acts, up to `to`; -1: none. */
-static int calls_from(uint32_t from, uint32_t to, bool idle)
+static int calls_from(uint32_t from, uint32_t to)
 {
     for (uint32_t period = from; period <= to; period++) {
-        if (command_queue_is_pending(&queue, period, idle)) {
+        if (command_queue_is_due(&queue, period)) {
             return (int)period;
         }
     }
@@ -240,50 +240,63 @@ static void look(uint32_t period)
 {
     uint32_t wait = COMMAND_QUEUE_NEVER;
 
+    command_queue_look(&queue, period);
     (void)command_queue_take_urgent(&queue, &queue.disable, period, &wait);
     (void)command_queue_take_urgent(&queue, &queue.stop, period, &wait);
-    const struct queued_command *command = command_queue_due(&queue, period + 1u, &wait);
-
+    (void)command_queue_due(&queue, period + 1u, &wait);
     (void)command_queue_take_over(&queue, period, &wait);
-    command_queue_rest(&queue, period, wait, command != NULL && command->at_period != period + 1u);
+    command_queue_rest(&queue, period, wait);
 }
 
 /* What lets the interrupt pass the queue by. */
-static void test_the_queue_is_pending_when_something_was_posted_and_when_it_is_due(void)
+static void test_the_queue_is_due_when_something_was_posted_and_when_its_period_comes(void)
 {
     const struct take_over take_over = {.at_period = 130};
 
     look(10);
-    TEST_ASSERT_EQUAL_INT(-1, calls_from(11, 200, true));
+    TEST_ASSERT_EQUAL_INT(-1, calls_from(11, 200));
     put(1, 100);
-    TEST_ASSERT_EQUAL_INT(11, calls_from(11, 200, false));
+    TEST_ASSERT_EQUAL_INT(11, calls_from(11, 200));
     look(11);
-    TEST_ASSERT_EQUAL_INT(99, calls_from(12, 200, false)); /* a move is loaded a period ahead */
+    TEST_ASSERT_EQUAL_INT(99, calls_from(12, 200)); /* a move is loaded a period ahead */
     look(99);
-    TEST_ASSERT_EQUAL_INT(100, calls_from(100, 200, false)); /* all else acts in its period */
+    TEST_ASSERT_EQUAL_INT(100, calls_from(100, 200)); /* all else acts in its period */
     command_queue_drop(&queue);
 
     command_queue_put_urgent(&queue, &queue.disable, 120);
     command_queue_put_urgent(&queue, &queue.stop, 110);
     command_queue_put_take_over(&queue, &take_over);
     look(100);
-    TEST_ASSERT_EQUAL_INT(110, calls_from(101, 200, true));
+    TEST_ASSERT_EQUAL_INT(110, calls_from(101, 200));
     look(110);
-    TEST_ASSERT_EQUAL_INT(120, calls_from(111, 200, true));
+    TEST_ASSERT_EQUAL_INT(120, calls_from(111, 200));
     look(120);
-    TEST_ASSERT_EQUAL_INT(130, calls_from(121, 200, true));
+    TEST_ASSERT_EQUAL_INT(130, calls_from(121, 200));
     command_queue_withdraw_take_over(&queue);
     look(130);
-    TEST_ASSERT_EQUAL_INT(-1, calls_from(131, 200, true));
+    TEST_ASSERT_EQUAL_INT(-1, calls_from(131, 200));
 }
 
 /* A move whose period has passed waits for the one before it; the queue calls when that is done. */
-static void test_the_queue_is_pending_at_rest_for_a_command_that_is_overdue(void)
+static void test_a_command_that_is_overdue_is_looked_at_when_the_reference_rests(void)
 {
     put(1, 50);
     look(60);
-    TEST_ASSERT_EQUAL_INT(-1, calls_from(61, 200, false));
-    TEST_ASSERT_EQUAL_INT(61, calls_from(61, 200, true));
+    TEST_ASSERT_EQUAL_INT(-1, calls_from(61, 200));
+    command_queue_look_next(&queue);
+    TEST_ASSERT_EQUAL_INT(61, calls_from(61, 200));
+}
+
+/* A queue that nothing is posted to for 30 hours is looked at, and passed by again. */
+static void test_a_queue_at_rest_is_passed_by_across_the_wrap_of_the_period(void)
+{
+    look(UINT32_MAX - 5u);
+    TEST_ASSERT_FALSE(command_queue_is_due(&queue, UINT32_MAX));
+    TEST_ASSERT_FALSE(command_queue_is_due(&queue, 0));
+    TEST_ASSERT_FALSE(command_queue_is_due(&queue, COMMAND_QUEUE_NEVER - 7u));
+    TEST_ASSERT_TRUE(command_queue_is_due(&queue, COMMAND_QUEUE_NEVER - 6u));
+    put(1, 5);
+    TEST_ASSERT_TRUE(command_queue_is_due(&queue, 0));
 }
 
 int main(void)
@@ -303,7 +316,8 @@ int main(void)
     RUN_TEST(test_of_two_disables_all_that_was_posted_before_is_flushed);
     RUN_TEST(test_stop_and_disable_do_not_stand_in_each_others_way);
     RUN_TEST(test_a_flush_never_brings_commands_back);
-    RUN_TEST(test_the_queue_is_pending_when_something_was_posted_and_when_it_is_due);
-    RUN_TEST(test_the_queue_is_pending_at_rest_for_a_command_that_is_overdue);
+    RUN_TEST(test_the_queue_is_due_when_something_was_posted_and_when_its_period_comes);
+    RUN_TEST(test_a_command_that_is_overdue_is_looked_at_when_the_reference_rests);
+    RUN_TEST(test_a_queue_at_rest_is_passed_by_across_the_wrap_of_the_period);
     return UNITY_END();
 }

@@ -153,7 +153,7 @@ static void design(void)
 static void period(void)
 {
     const double current = num_to_double(encoder_alignment_current(&alignment, &params));
-    const double held = (double)alignment.offset / 4294967296.0 * TWO_PI;
+    const double held = (double)alignment.held.offset / 4294967296.0 * TWO_PI;
 
     for (int i = 0; i < 4; i++) {
         swing(held, 2.0 * current, 0.25 * swing_step()); /* the base is twice the rated current */

@@ -47,7 +47,7 @@ static void step(double position_rad)
 {
     const int32_t count = (int32_t)floor(position_rad / TWO_PI * COUNTS);
 
-    high_gain_observer_step(&observer, &params, no_current, count);
+    (void)high_gain_observer_step(&observer, &params, no_current, no_current, count);
 }
 
 static double speed_rad_s(void)

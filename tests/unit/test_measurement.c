@@ -15,7 +15,7 @@ void setUp(void)
 {
     base = per_unit_base(&bench_params, PERIOD_S);
     params = measurement_design(&bench_facts, &base);
-    measurement_reset(&measurement);
+    measurement_reset(&measurement, &params);
 }
 
 void tearDown(void)

@@ -73,9 +73,16 @@ static struct profile plan(const struct profile_move *move)
     return planned;
 }
 
+static void period(const struct reference_params *with, bool held)
+{
+    if (reference_step(&reference, with, held)) {
+        reference_turn(&reference, with);
+    }
+}
+
 static struct reference_sample step(void)
 {
-    reference_step(&reference, &params, false);
+    period(&params, false);
     return reference.next;
 }
 
@@ -641,13 +648,13 @@ static void creep_is_counted(bool held, double speed, double acceleration)
     creeping.creep_speed = num_from_double(speed);
     creeping.creep_acceleration = num_from_double(acceleration);
     for (int k = 0; k < 10; k++) {
-        reference_step(&reference, &creeping, held);
+        period(&creeping, held);
     }
     TEST_ASSERT_EQUAL_UINT32(10, reference.slow_periods);
     load(&smooth);
     reference.creeps = true;
     while (!reference.next.moving) {
-        reference_step(&reference, &creeping, held);
+        period(&creeping, held);
     }
     while (reference.next.moving) {
         const struct reference_sample *next = &reference.next;
@@ -657,7 +664,7 @@ static void creep_is_counted(bool held, double speed, double acceleration)
 
         slow = slowly && gently ? reference.slow_periods + 1u : 0u;
         most = slow > most ? slow : most;
-        reference_step(&reference, &creeping, held);
+        period(&creeping, held);
         TEST_ASSERT_EQUAL_UINT32(slow, reference.slow_periods);
     }
     TEST_ASSERT_TRUE(most > 3u);

@@ -42,7 +42,9 @@ void tearDown(void)
 
 static void step(void)
 {
-    reference_step(&reference, &params, false);
+    if (reference_step(&reference, &params, false)) {
+        reference_turn(&reference, &params);
+    }
 }
 
 /* Where the reference is, as an exact 96-bit difference turned to turns. */

@@ -33,8 +33,7 @@ void tearDown(void)
 static struct phases predicted(struct phases current, struct phases voltage, num_t speed,
                                struct sincos mid_period)
 {
-    return forced_current(&winding, free_current(&model, &winding, current, speed, mid_period),
-                          voltage);
+    return predict_current(&model, &winding, current, speed, mid_period, voltage);
 }
 
 static void test_per_unit_makes_back_emf_equal_to_speed_and_torque_equal_to_current(void)
@@ -114,7 +113,7 @@ static struct bench_vector error_at_speed(double speed_rad_s)
     const double mid_rad = bench_electrical_rad(&motor) + half_turn_rad;
     const num_t speed = num_from_double(speed_rad_s / base.speed_rad_s);
     const angle_t mid_period = position_from_rad(motor.angle_rad, 50).fraction +
-                               (angle_t)half_period_rotation(&model, speed);
+                               (angle_t)angle_from_turns(half_period_turns(&model, speed));
     const struct phases next =
         predicted(bench_phases(motor.i_a, motor.i_b, base.current_A),
                   bench_phases(6.0, -2.0, base.voltage_V), speed, sincos_of(mid_period));
@@ -207,7 +206,8 @@ static void test_the_rotor_turns_half_its_way_by_the_middle_of_the_period(void)
     struct rotor rotor = {.position = {3, 0x80000000u},
                           .speed = num_from_double(45.0 / base.speed_rad_s)};
     const angle_t begin = rotor.position.fraction;
-    const angle_t middle = begin + (angle_t)half_period_rotation(&model, rotor.speed);
+    const angle_t middle =
+        begin + (angle_t)angle_from_turns(half_period_turns(&model, rotor.speed));
     const num_t friction = num_mul_coef(rotor.speed, model.friction);
 
     predict_rotor(&model, &rotor, friction);

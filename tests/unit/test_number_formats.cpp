@@ -35,15 +35,17 @@ drive_command command(drive_command_kind kind, std::uint32_t at)
     return command;
 }
 
+constexpr std::uint32_t ready = 5100; /* latest */
+
 /* Enabling, 10 rad with a load that comes and goes, rest under load, slowly back. */
 std::vector<drive_command> tape()
 {
-    drive_command move = command(DRIVE_COMMAND_MOVE_SMOOTH, 2800);
+    drive_command move = command(DRIVE_COMMAND_MOVE_SMOOTH, ready);
     move.position_rad = 10.0;
     move.duration_s = 0.4;
     move.ramp_s = 0.1;
     move.jerk_s = 0.02;
-    drive_command back = command(DRIVE_COMMAND_MOVE_SMOOTH, 8800);
+    drive_command back = command(DRIVE_COMMAND_MOVE_SMOOTH, ready + 6000);
     back.position_rad = 9.0;
     back.duration_s = 0.6;
     back.ramp_s = 0.1;
@@ -63,10 +65,10 @@ std::vector<drive_command> due(std::uint32_t period)
 
 double load_Nm(std::uint32_t period)
 {
-    return (period > 3700 && period < 4700) || period > 7700 ? 0.1 : 0.0;
+    return (period > ready + 900 && period < ready + 1900) || period > ready + 4900 ? 0.1 : 0.0;
 }
 
-constexpr std::uint32_t periods = 15700;
+constexpr std::uint32_t periods = ready + 12900;
 
 drive_settings settings()
 {

@@ -25,7 +25,10 @@ static void run(uint32_t periods)
     for (uint32_t k = 0; k < periods; k++) {
         const double before = motion_to_turns(drive.reference.at.acceleration);
 
-        (void)drive_control_cycle(&drive, &samples);
+        struct hal_outputs outputs;
+
+        drive_control_cycle(&drive, &samples, &outputs);
+
         const double jerk = (motion_to_turns(drive.reference.at.acceleration) - before) * rad_s3;
 
         largest_jerk = jerk > largest_jerk ? jerk : -jerk > largest_jerk ? -jerk : largest_jerk;

@@ -180,6 +180,21 @@ void test_the_exponential_and_the_small_turn_are_those_of_the_library()
     }
 }
 
+/* Asked again, a span is found among those kept, of which each new one may replace another. */
+void test_a_decay_that_is_asked_again_leaves_the_same()
+{
+    plant::Decay decay(1e5);
+    for (int round = 0; round < 3; round++) {
+        for (int n = 1; n < 100; n++) {
+            const double time_s = 1e-6 * n;
+            const plant::Decay::Span span = decay.over(time_s);
+            TEST_ASSERT_TRUE(span.left == plant::falling_exponential(-(time_s * 1e5)));
+            TEST_ASSERT_DOUBLE_WITHIN(1e-12, 10.0 / n, span.constants);
+        }
+    }
+    TEST_ASSERT_TRUE(decay.over(1e-3).left == 0.0);
+}
+
 } // namespace
 
 int main()
@@ -193,5 +208,6 @@ int main()
     RUN_TEST(test_saturation_brings_a_small_detent_of_its_own);
     RUN_TEST(test_the_flux_of_a_current_gives_that_current_back);
     RUN_TEST(test_the_exponential_and_the_small_turn_are_those_of_the_library);
+    RUN_TEST(test_a_decay_that_is_asked_again_leaves_the_same);
     return UNITY_END();
 }

@@ -167,8 +167,9 @@ void test_noise_is_standard_normal()
 {
     double moment[5] = {0.0, 0.0, 0.0, 0.0, 0.0};
     int beyond_two = 0, beyond_three = 0;
+    const std::uint64_t key = plant::gaussian_key(3, 1);
     for (std::uint64_t k = 0; k < draws; k++) {
-        const plant::Phases noise = plant::gaussian_pair(3, 1, k);
+        const plant::Phases noise = plant::gaussian_pair(key, k);
         for (int lane = 0; lane < 2; lane++) {
             double power = 1.0;
             for (int n = 1; n <= 4; n++) {
@@ -190,10 +191,12 @@ void test_noise_is_standard_normal()
 double correlation(std::uint64_t other_seed, std::uint64_t other_channel, std::uint64_t lag,
                    int lane, int other_lane)
 {
+    const std::uint64_t key = plant::gaussian_key(3, 1);
+    const std::uint64_t other = plant::gaussian_key(other_seed, other_channel);
     double sum = 0.0;
     for (std::uint64_t k = 0; k < draws; k++) {
-        sum += plant::gaussian_pair(3, 1, k)[lane] *
-               plant::gaussian_pair(other_seed, other_channel, k + lag)[other_lane];
+        sum +=
+            plant::gaussian_pair(key, k)[lane] * plant::gaussian_pair(other, k + lag)[other_lane];
     }
     return sum / draws;
 }

@@ -26,12 +26,15 @@ void tearDown(void)
 
 static enum drive_fault of_samples(void)
 {
-    return protection_check_samples(&params, &samples);
+    const enum drive_fault fault = protection_check_samples(&params, &samples);
+
+    TEST_ASSERT_EQUAL(fault == DRIVE_FAULT_NONE, protection_passes(&params, &samples));
+    return fault;
 }
 
 static enum drive_fault of_estimate(void)
 {
-    return protection_check_estimate(&params, &estimate);
+    return protection_trusts(&params, &estimate) ? DRIVE_FAULT_NONE : DRIVE_FAULT_ESTIMATE_RANGE;
 }
 
 static uint16_t current_code(double current_A)

@@ -123,11 +123,11 @@ static uint64_t hash_from_here(void)
 
     for (int i = 0; i < 400; i++) {
         bench.period++;
-        const struct hal_outputs outputs =
+        const struct hal_outputs *outputs =
             application_control_interrupt(&bench.application, &bench.samples);
 
         application_background(&bench.application);
-        hash = drive_hash_add(hash, drive_hash_row(drive, &outputs));
+        hash = drive_hash_add(hash, drive_hash_row(drive, outputs));
     }
     return hash;
 }

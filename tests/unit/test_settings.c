@@ -338,7 +338,8 @@ static void test_names_are_spelt_as_scenarios_and_the_serial_line_do(void)
                                                      "operation-enabled",  "fault"};
     static const char *const faults[DRIVE_FAULTS] = {
         "none",           "overcurrent",  "hardware-overcurrent", "deadline-missed",  "bus-voltage",
-        "estimate-range", "offset-range", "position-not-found",   "lost-synchronism", "stalled"};
+        "estimate-range", "offset-range", "position-not-found",   "lost-synchronism", "stalled",
+        "phase-imbalance"};
 
     for (int i = 0; i < DRIVE_STATES; i++) {
         TEST_ASSERT_EQUAL_STRING(states[i], drive_state_name((enum drive_state)i));

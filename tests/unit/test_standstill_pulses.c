@@ -101,8 +101,7 @@ static struct standstill_angle look(double rotor_rad, uint32_t *periods)
         if (standstill_pulses_blanks_sample(&pulses, &params)) {
             static const struct sincos no_turn = {UNIT(1.0), UNIT(0.0)};
 
-            estimated = forced_current(
-                &winding, free_current(&model, &winding, estimated, NUM(0.0), no_turn), in_force);
+            estimated = predict_current(&model, &winding, estimated, NUM(0.0), no_turn, in_force);
             standstill_pulses_sample(&pulses, &params, measured, estimated);
         } else {
             estimated = measured;

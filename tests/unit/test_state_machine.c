@@ -24,6 +24,7 @@ void setUp(void)
     drive_settings_default(&settings, &bench_params);
     settings.synchronism_policy = DRIVE_SYNCHRONISM_OFF; /* the rotor here follows nothing */
     settings.hold_on_enable_s = HOLD_PERIODS * PERIOD_S;
+    settings.balance_phases = false; /* no current flows */
     fake_board = (struct fake_board){.trip_latched = false};
     samples = samples_at_rest;
     power_up();
@@ -36,7 +37,7 @@ void tearDown(void)
 static void run(uint32_t periods)
 {
     for (uint32_t k = 0; k < periods; k++) {
-        outputs = drive_control_cycle(&drive, &samples);
+        drive_control_cycle(&drive, &samples, &outputs);
     }
 }
 
@@ -193,6 +194,43 @@ static void test_without_hold_on_enable_operation_follows_the_calibration(void)
     TEST_ASSERT_FALSE(signals().holding);
 }
 
+static void test_phases_that_carry_no_current_are_not_let_pass(void)
+{
+    settings.balance_phases = true;
+    settings.calibrate_offsets = false;
+    power_up();
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(HOLD_PERIODS + 2u);
+    is_in(DRIVE_ALIGNING, true);
+    run(phase_balance_periods(&drive.enabling.balance_params));
+    has_fault(DRIVE_FAULT_PHASE_IMBALANCE);
+}
+
+/* Their sensor says the same in both phases wherever the rotor is held. */
+static void test_the_phases_are_balanced_behind_the_hold(void)
+{
+    const coef_t before = drive.params.measurement.current;
+
+    settings.balance_phases = true;
+    settings.calibrate_offsets = false;
+    power_up();
+    samples.current_a = 2048 + 360;
+    samples.current_b = 2048 + 370;
+    samples.phase_voltage_a = 26 * 10;
+    samples.phase_voltage_b = 26 * 10;
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(HOLD_PERIODS + 2u + phase_balance_periods(&drive.enabling.balance_params));
+    is_in(DRIVE_OPERATION_ENABLED, true);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, 5.0 / 365.0, signals().phase_imbalance);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-4, 1.0 + 5.0 / 365.0,
+                              coef_to_double(drive.measurement.current_a) / coef_to_double(before));
+    post_kind(DRIVE_COMMAND_DISABLE);
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(3);
+    TEST_ASSERT_EQUAL_DOUBLE(1.0,
+                             coef_to_double(drive.measurement.current_b) / coef_to_double(before));
+}
+
 static void test_without_either_the_drive_is_ready_at_once(void)
 {
     enable();
@@ -302,7 +340,7 @@ static void test_enabling_begins_with_all_blocks_at_rest(void)
     settings.law_bandwidth_rad_s = 150.0;
     enable();
     samples.current_a = 2048 + 300;
-    samples.phase_voltage_a = 100;
+    samples.phase_voltage_a = 21; /* what the resistance takes */
     must_post(move_to(0.003));
     run(MOVE_AND_REST);
     post_kind(DRIVE_COMMAND_HOLD);
@@ -318,7 +356,7 @@ static void test_enabling_begins_with_all_blocks_at_rest(void)
     TEST_ASSERT_NUM_WITHIN(0.0, 0.0, drive.law.pid.integral);
     TEST_ASSERT_NUM_WITHIN(0.0, 0.0, drive.current_control.integral.d);
     TEST_ASSERT_NUM_WITHIN(0.0, 0.0, drive.current_control.integral.q);
-    TEST_ASSERT_NUM_WITHIN(0.0, 0.0, actuation_in_force(&drive.actuation).a);
+    TEST_ASSERT_NUM_WITHIN(0.0, 0.0, drive.actuation.in_force.a);
     TEST_ASSERT_NUM_WITHIN(0.0, 0.0, drive.estimator.invariant_ekf.estimate.rotor.speed);
     TEST_ASSERT_FALSE(drive.reference.next.moving);
 }
@@ -582,7 +620,7 @@ static void test_an_estimate_out_of_range_opens_the_bridge_in_the_same_period(vo
     for (unsigned i = 0; i < sizeof speeds / sizeof speeds[0]; i++) {
         enable();
         run(10);
-        drive.estimator.invariant_ekf.estimate.rotor.speed = num_from_double(speeds[i]);
+        drive.estimator.invariant_ekf.estimate.next.speed = num_from_double(speeds[i]);
         run(1);
         has_fault(DRIVE_FAULT_ESTIMATE_RANGE);
     }
@@ -592,7 +630,7 @@ static bool trips_at(double speed_rad_s)
 {
     enable();
     run(10);
-    drive.estimator.invariant_ekf.estimate.rotor.speed =
+    drive.estimator.invariant_ekf.estimate.next.speed =
         num_from_double(speed_rad_s / drive.base.speed_rad_s);
     run(1);
     return drive.supervision.state == DRIVE_FAULT;
@@ -996,6 +1034,8 @@ int main(void)
     RUN_TEST(test_without_calibration_enabling_begins_with_the_alignment);
     RUN_TEST(test_an_encoder_whose_counts_do_not_follow_the_alignment_ends_it_in_a_fault);
     RUN_TEST(test_without_hold_on_enable_operation_follows_the_calibration);
+    RUN_TEST(test_phases_that_carry_no_current_are_not_let_pass);
+    RUN_TEST(test_the_phases_are_balanced_behind_the_hold);
     RUN_TEST(test_without_either_the_drive_is_ready_at_once);
     RUN_TEST(test_the_hold_current_is_in_when_the_alignment_ends);
     RUN_TEST(test_enabling_waits_for_the_period_it_is_addressed_to);

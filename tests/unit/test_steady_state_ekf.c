@@ -70,13 +70,15 @@ static void set(struct state x)
     ekf.current.q = num_from_double(x.i_q / base.current_A);
     estimate->rotor.speed = num_from_double(x.speed / base.speed_rad_s);
     estimate->rotor.load_torque = num_from_double(x.load / base.torque_Nm);
-    estimate_look_ahead(estimate, &params.model);
 }
 
 static void step(struct bench_vector voltage, struct bench_vector current)
 {
-    steady_state_ekf_step(&ekf, &params, bench_phases(current.a, current.b, base.current_A),
-                          bench_phases(voltage.a, voltage.b, base.voltage_V));
+    const struct phases u = bench_phases(voltage.a, voltage.b, base.voltage_V);
+
+    (void)steady_state_ekf_predict(&ekf, &params, u);
+    (void)steady_state_ekf_step(&ekf, &params, bench_phases(current.a, current.b, base.current_A),
+                                u, u);
 }
 
 static void test_a_step_is_that_of_the_paper(void)

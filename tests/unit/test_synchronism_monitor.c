@@ -3,7 +3,7 @@
 #include "tests/unit/bench.h"
 #include "tests/unit/num_assert.h"
 
-#define BLOCK_S      (PERIOD_S * SYNCHRONISM_BLOCK_PERIODS)
+#define BLOCK_S      SYNCHRONISM_BLOCK_S
 #define CURRENT_GAIN 0.45
 #define LIMIT_A      3.0
 #define FLOOR_V      0.25
@@ -58,7 +58,7 @@ static num_t innovation_sum(double voltage_V)
     const double b = (1.0 - a) / bench_params.resistance_ohm;
     const double innovation_A = voltage_V * b / (1.0 - (1.0 - CURRENT_GAIN) * a);
 
-    return num_from_double(SYNCHRONISM_BLOCK_PERIODS * innovation_A / base.current_A);
+    return num_from_double(params.block_periods * innovation_A / base.current_A);
 }
 
 static enum synchronism block(const struct course *c)
@@ -361,15 +361,22 @@ static void test_a_disturbance_that_is_no_number_is_a_loss(void)
 }
 #endif
 
-/* Times and not numbers of blocks: at half the period twice as many. */
+/* A block is a time and no number of periods, so its number in a time stays what it is; at long
+   periods it has a period for each of its steps. */
 static void test_the_times_follow_the_control_period(void)
 {
     task.period_s = 0.5 * PERIOD_S;
     const struct synchronism_monitor_params half = synchronism_monitor_design(&task);
 
-    TEST_ASSERT_EQUAL_UINT32(2u * params.standing_blocks, half.standing_blocks);
-    TEST_ASSERT_EQUAL_UINT32(2u * params.torn_blocks, half.torn_blocks);
-    TEST_ASSERT_EQUAL_UINT32(2u * params.mirrored_blocks, half.mirrored_blocks);
+    TEST_ASSERT_EQUAL_UINT32(16, params.block_periods);
+    TEST_ASSERT_EQUAL_UINT32(32, half.block_periods);
+    TEST_ASSERT_EQUAL_UINT32(params.standing_blocks, half.standing_blocks);
+    TEST_ASSERT_EQUAL_UINT32(params.torn_blocks, half.torn_blocks);
+    task.period_s = 4.0 * PERIOD_S;
+    const struct synchronism_monitor_params slow = synchronism_monitor_design(&task);
+
+    TEST_ASSERT_EQUAL_UINT32(SYNCHRONISM_STEPS, slow.block_periods);
+    TEST_ASSERT_EQUAL_UINT32(params.torn_blocks / 2u, slow.torn_blocks);
 }
 
 int main(void)

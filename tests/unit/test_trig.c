@@ -53,6 +53,23 @@ static void test_the_error_stays_below_its_bound_all_around(void)
     } while (angle >= STRIDE);
 }
 
+/* The bound trig.h states for a rotation of at most an eighth turn. */
+static void test_a_small_rotation_is_within_its_bound(void)
+{
+    for (int k = -1000; k <= 1000; k++) {
+        const double turns = 0.125 * (double)k / 1000.0;
+        const struct sincos r = sincos_of_small(num_from_double(turns));
+#if STEADYSTEP_NUM == NUM_FIXED
+        const double bound = 1e-4;
+#else
+        const double bound = fabs(turns) <= 0.0625 ? 4.5e-7 : 2.4e-6;
+#endif
+
+        TEST_ASSERT_DOUBLE_WITHIN(bound, sin(turns * two_pi), ratio(r.sin));
+        TEST_ASSERT_DOUBLE_WITHIN(bound, cos(turns * two_pi), ratio(r.cos));
+    }
+}
+
 static void test_the_seams_of_the_eighths_are_as_good_as_the_rest(void)
 {
     for (uint32_t eighth = 0; eighth < 8u; eighth++) {
@@ -227,6 +244,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_error_stays_below_its_bound_all_around);
+    RUN_TEST(test_a_small_rotation_is_within_its_bound);
     RUN_TEST(test_the_seams_of_the_eighths_are_as_good_as_the_rest);
     RUN_TEST(test_the_quarter_turns_are_exact);
     RUN_TEST(test_a_vector_keeps_its_length);

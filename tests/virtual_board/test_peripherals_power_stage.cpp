@@ -114,6 +114,24 @@ void test_the_injected_sequence_ends_when_the_data_sheet_says()
     TEST_ASSERT_TRUE(bench.stage().counters.sample_from_peak > 0);
 }
 
+/* RM0440: JEOC goes with the result that has set it, JEOS stays; CSR shows both converters. */
+void test_reading_the_newest_injected_result_clears_its_flag()
+{
+    constexpr std::uint32_t csr = 0x50000300, flags = 0x60;
+    DriveBench bench;
+    bench.chip.write(adc1 + 0x04, 0);
+    bench.start();
+    bench.chip.run_until(bench.begin + half + 1000 * cycle);
+    TEST_ASSERT_EQUAL_HEX32(flags << 16 | flags, bench.chip.read(csr) & (flags << 16 | flags));
+    (void)bench.chip.read(adc1 + 0x80);
+    TEST_ASSERT_EQUAL_HEX32(flags, bench.chip.read(adc1) & flags);
+    (void)bench.chip.read(adc1 + 0x84);
+    TEST_ASSERT_EQUAL_HEX32(0x40, bench.chip.read(adc1) & flags);
+    TEST_ASSERT_EQUAL_HEX32(flags << 16 | 0x40, bench.chip.read(csr) & (flags << 16 | flags));
+    bench.after_peak(1, 1000);
+    TEST_ASSERT_EQUAL_HEX32(flags, bench.chip.read(adc1) & flags);
+}
+
 void test_the_first_step_is_at_the_peak_after_the_first_sample_set_taken()
 {
     DriveBench bench;
@@ -270,6 +288,7 @@ int main()
     RUN_TEST(test_the_order_of_power_up_is_kept);
     RUN_TEST(test_starting_before_ready_is_refused);
     RUN_TEST(test_the_injected_sequence_ends_when_the_data_sheet_says);
+    RUN_TEST(test_reading_the_newest_injected_result_clears_its_flag);
     RUN_TEST(test_the_first_step_is_at_the_peak_after_the_first_sample_set_taken);
     RUN_TEST(test_the_plant_sees_the_compares_and_the_bridge_of_each_period);
     RUN_TEST(test_a_current_outside_the_low_state_reads_zero);

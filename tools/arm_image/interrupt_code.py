@@ -9,7 +9,17 @@ import re
 from . import call_graph
 
 INTERRUPTS = ["control_interrupt", "deadline_guard_interrupt"]
-ENABLING = {"encoder_aligning_step", "offset_calibration_step"}  # and what they alone call
+# And what they alone call.
+ENABLING = {
+    "encoder_aligning_step",
+    "find_position_or_power_up",
+    "finding_position_cycle",
+    "offset_calibration_step",
+    "phase_balancing_start",
+    "phase_balancing_step",
+    "power_up",
+    "start_enabling",
+}
 CCM = range(0x10000000, 0x10008000)
 FLASH = range(0x08000000, 0x08080000)
 VENEER = re.compile(r"__(.+)_veneer")
@@ -44,7 +54,7 @@ def reached(image, roots):
     to_visit = [start for start, node in nodes.items() if node.name in roots]
     while to_visit:
         start = to_visit.pop()
-        if start not in operating and nodes[start].name not in ENABLING:
+        if start not in operating and base_name(nodes[start].name) not in ENABLING:
             operating[start] = nodes[start]
             to_visit.extend(nodes[start].calls)
     return operating

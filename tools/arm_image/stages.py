@@ -61,7 +61,8 @@ CONTROL_CYCLE = {
     "modulate": "modulator",
 }
 
-CYCLE_COUNTS = "application_count_cycles"
+INTERRUPT = "control_interrupt"
+CYCLE_COUNTS = "control_cycles_count"
 
 # Looked through: (file, function) -> block of what is left. Other functions of the files: "other".
 THROUGH = {
@@ -71,7 +72,7 @@ THROUGH = {
 THROUGH_FILES = ["firmware/drive/control_cycle.c", "firmware/application/*"]
 
 # Words in the names of a board port's functions that belong to the outputs.
-OUTPUT_WORDS = ("output", "actuate", "bridge", "pwm_write", "deadline_guard_met")
+OUTPUT_WORDS = ("output", "actuate", "bridge", "pwm_write")
 
 
 def _block(frame):
@@ -110,6 +111,11 @@ def of_frames(frames):
     if any(word in function for function in board for word in OUTPUT_WORDS):
         return STAGES.index("outputs")
     return STAGES.index("sampling") if board else CALLER
+
+
+def of_return(function):
+    """Index of the stage of the instruction by which a function returns, None: as of all others."""
+    return STAGES.index("outputs") if function == INTERRUPT else None
 
 
 class Stages:

@@ -9,6 +9,8 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from PIL import Image  # noqa: E402
 
+from comparison.trace import has_trace, read_trace  # noqa: E402
+
 # Okabe and Ito's palette and three more in its manner: a law keeps its colour in every picture.
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d31", "#6a51a3",
            "#b2182b", "#4d4d4d", "#1b7837", "#c51b7d"]
@@ -28,12 +30,8 @@ SHOWN_BEFORE_LOAD_s = 0.005
 COMMON_SCALE = 3.0  # times the largest error of the law at the lower quartile; others have their own
 
 
-def read_trace(folder):
-    with open(folder / "trace.csv", encoding="utf-8") as file:
-        names = file.readline().strip().split(",")
-        wanted = ["time_s", "theta_ref_rad", "theta_rad", "omega_ref_rad_s", "load_torque_Nm"]
-        rows = np.loadtxt(file, delimiter=",", ndmin=2, usecols=[names.index(n) for n in wanted])
-    trace = dict(zip(wanted, rows.T))
+def trace_of(folder):
+    trace = read_trace(folder)
     trace["error_mrad"] = 1e3 * (trace["theta_ref_rad"] - trace["theta_rad"])
     return trace
 
@@ -44,8 +42,8 @@ def colour_of(comparison):
 
 def traces_of(comparison, move):
     """Of the laws that ran."""
-    return {entry.name: read_trace(comparison.trace(entry, move)) for entry in comparison.entries
-            if (comparison.trace(entry, move) / "trace.csv").is_file()}
+    return {entry.name: trace_of(comparison.trace(entry, move)) for entry in comparison.entries
+            if has_trace(comparison.trace(entry, move))}
 
 
 def common_limit(traces, begin_s, end_s):

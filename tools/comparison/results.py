@@ -73,7 +73,8 @@ class Comparison:
         places = [self.scenarios[move.name] for move in self.moves]
         if with_trace:
             shutil.rmtree(self.traces / entry.name, ignore_errors=True)  # of a former run
-            self.simulator.run_each(places, **how, out=self.traces / entry.name)
+            self.simulator.run_each(places, **how, out=self.traces / entry.name,
+                                    trace="npy")
         return [Cell({}, "", str(runs), "") if isinstance(runs, Refused)
                 else cell_of(runs, self.motor)
                 for runs in self.simulator.run_each(places, **how, seeds=self.seeds)]

@@ -51,9 +51,10 @@ class Simulator:
         """What `check-motor` says of motors by name or path: parameters, what follows, doubts."""
         return json.loads(self._call(["check-motor", "--json", *names]))
 
-    def run(self, scenarios, parameters=None, settings=None, seeds=(1, 1), out=None, files=None):
+    def run(self, scenarios, parameters=None, settings=None, seeds=(1, 1), out=None, files=None,
+            trace="csv"):
         """Summaries of all scenarios and seeds, as summary.json has them; Refused if refused.
-        `files`: text by name; scenarios among them are named "./name.toml"."""
+        `files`: text by name; scenarios among them are named "./name.toml". `trace`: as --trace."""
         command = ["run", *scenarios, "--numeric", self.numeric, "--jobs", 1, "--json"]
         if parameters:
             command += ["--parameters", parameters]
@@ -62,7 +63,7 @@ class Simulator:
         command += (["--seed", seeds[0]] if seeds[0] == seeds[1] else
                     ["--seeds", f"{seeds[0]}-{seeds[1]}"])
         if out:
-            command += ["--out", out]
+            command += ["--out", out, "--trace", trace]
         return json.loads(self._call(command, files=files))
 
     def run_each(self, scenarios, **how):

@@ -46,6 +46,12 @@ AdcCommon::AdcCommon(Chip &chip, const char *name)
 {
 }
 
+/* CSR: an image of both ISRs, in half words. */
+std::uint32_t AdcCommon::fetch(std::uint32_t offset, Master)
+{
+    return offset == 0x00 ? slave_flags() << 16 | master_flags() : at(offset);
+}
+
 void AdcCommon::put(std::uint32_t offset, std::uint32_t value, Master)
 {
     require(!any_enabled(), offset, value, "written while an ADC of the group is enabled");
@@ -114,6 +120,12 @@ bool Adc::enabled() const
     return (at(CR) & (ADEN | ADCAL)) != 0;
 }
 
+std::uint32_t Adc::flags()
+{
+    look(Access::read);
+    return at(ISR);
+}
+
 std::uint32_t Adc::fetch(std::uint32_t offset, Master master)
 {
     if (master == Master::core && (offset == ISR || offset == DR)) {
@@ -125,10 +137,22 @@ std::uint32_t Adc::fetch(std::uint32_t offset, Master master)
         if (at(IER) != 0) {
             interrupt_((at(ISR) & at(IER)) != 0);
         }
-    } else if (offset == JDR1 && master == Master::core && (at(IER) & (JEOC | JEOS)) != 0) {
-        inputs_.injected_result_taken(number_);
+    } else if (offset >= JDR1 && offset < JDR1 + 16 && master == Master::core) {
+        injected_result_read((offset - JDR1) / 4);
     }
     return at(offset);
+}
+
+/* RM0440: JEOC is cleared by reading the result that has set it, JEOS is not. */
+void Adc::injected_result_read(unsigned rank)
+{
+    if (rank == newest_injected_) {
+        at(ISR) &= ~JEOC;
+        interrupt_((at(ISR) & at(IER)) != 0);
+    }
+    if (rank == 0) {
+        inputs_.injected_result_taken(number_);
+    }
 }
 
 void Adc::put(std::uint32_t offset, std::uint32_t value, Master)

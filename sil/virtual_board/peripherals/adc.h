@@ -26,8 +26,11 @@ class AdcCommon : public RegisterBlock
     Ticks latency() const;
 
     std::function<bool()> any_enabled;
+    /* Flags of master and slave: ADC1 and ADC2, ADC3 and ADC4. */
+    std::function<std::uint32_t()> master_flags, slave_flags;
 
   protected:
+    std::uint32_t fetch(std::uint32_t offset, Master master) override;
     void put(std::uint32_t offset, std::uint32_t value, Master master) override;
 };
 
@@ -59,7 +62,7 @@ class AnalogInputs
     virtual unsigned changes() const = 0;
     /* The results of regular conversions were stored by DMA. */
     virtual void stored(const StoredResult *results, std::size_t count) = 0;
-    /* The core has read JDR1 with the injected interrupt enabled. */
+    /* The core has read JDR1. */
     virtual void injected_result_taken(unsigned adc) = 0;
 };
 
@@ -71,6 +74,8 @@ class Adc : public RegisterBlock
 
     void reset() override;
     bool enabled() const;
+    /* ISR, as CSR shows it to the core. */
+    std::uint32_t flags();
 
     /* Results that have been put off (adc_deferred.cpp) come: those that are due up to a time, of
        sequences that were triggered before another. */
@@ -110,6 +115,7 @@ class Adc : public RegisterBlock
     void start_regular();
     void next_rank(Sequence &sequence, Event &event, Ticks start);
     void end_of_injected();
+    void injected_result_read(unsigned rank);
     void end_of_regular();
     void deliver(std::uint32_t data, const Conversion &conversion);
     void choose_triggers();
@@ -145,6 +151,7 @@ class Adc : public RegisterBlock
     bool calibrated_ = false, ready_ = false;
     bool dma_stopped_ = false;
     Sequence injected_, regular_;
+    unsigned newest_injected_ = 0; /* rank of the result that came last */
     Event calibration_event_, ready_event_, injected_event_, regular_event_;
     Triggers::Listener *listener_ = nullptr;
     unsigned injected_sources_ = 0, regular_sources_ = 0; /* as Listener::sources */

@@ -222,6 +222,7 @@ void Adc::end_of_injected()
     const Conversion conversion = {number_, channel(injected_), true, injected_.trigger,
                                    injected_.sampled};
     at(JDR1 + 4 * injected_.rank) = resolved(inputs_.code(conversion));
+    newest_injected_ = injected_.rank;
     if (++injected_.rank < injected_.ranks) {
         flag(JEOC);
         next_rank(injected_, injected_event_, chip_.now());

@@ -79,6 +79,10 @@ Stm32g474Device::Stm32g474Device(Chip &chip, const Stm32g474Config &config)
     adc345_.any_enabled = [this] {
         return adc(3).enabled() || adc(4).enabled() || adc(5).enabled();
     };
+    adc12_.master_flags = [this] { return adc(1).flags(); };
+    adc12_.slave_flags = [this] { return adc(2).flags(); };
+    adc345_.master_flags = [this] { return adc(3).flags(); };
+    adc345_.slave_flags = [this] { return adc(4).flags(); };
     Timer &encoder = timer(Trigger::tim4);
     encoder.encoder = [this] { return power_stage_.plant().samples().encoder_count; };
     encoder.encoder_routed = [this] {

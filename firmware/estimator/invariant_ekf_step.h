@@ -1,0 +1,178 @@
+/*
+ * One period of the invariant EKF (invariant_ekf.h), compiled into its place in the control
+ * interrupt.
+ */
+#ifndef STEADYSTEP_INVARIANT_EKF_STEP_H
+#define STEADYSTEP_INVARIANT_EKF_STEP_H
+
+#include "firmware/estimator/invariant_ekf.h"
+
+/* The load a hold begins with is the one that was estimated in motion. */
+static inline void invariant_ekf_settle(struct invariant_ekf *ekf)
+{
+    ekf->settled_load = ekf->estimate.rotor.load_torque;
+    ekf->following_periods = 0;
+}
+
+/* Corrections that differ between motion and hold. */
+struct invariant_ekf_correction {
+    num_t turns;  /* of the angle */
+    num_t bias_q; /* of the voltage offset, in the direction of the frame's q axis */
+    num_t load_torque;
+};
+
+static inline struct invariant_ekf_correction
+invariant_ekf_correct_in_motion(const struct invariant_ekf_params *params, num_t speed,
+                                struct dq innovation)
+{
+    const struct invariant_ekf_gain_set *gain = &params->moving;
+    const num_t full = params->odd_gain_speed;
+    const num_t direction = num_clamp(speed, -full, full);
+    const num_t odd = num_mul(innovation.d, num_mul_coef(direction, gain->angle_d));
+
+    return (struct invariant_ekf_correction){
+        .turns = odd + num_mul_coef(innovation.q, gain->angle_q),
+        .bias_q = num_mul_coef_nearest(odd, gain->bias_per_turn),
+        .load_torque = num_mul_coef(innovation.q, gain->load_q)};
+}
+
+/* `away`: of the load from the one settled at. */
+static inline struct invariant_ekf_correction
+invariant_ekf_correct_in_hold(const struct invariant_ekf_gain_set *gain, struct dq innovation,
+                              num_t away)
+{
+    return (struct invariant_ekf_correction){
+        .turns = num_mul_coef(innovation.q, gain->angle_q) + num_mul_coef(away, gain->angle_return),
+        .bias_q = num_mul_coef_nearest(innovation.q, gain->bias_q) -
+                  num_mul_coef_nearest(away, gain->bias_return),
+        .load_torque =
+            num_mul_coef(innovation.q, gain->load_q) - num_mul_coef(away, gain->load_return)};
+}
+
+static inline num_t invariant_ekf_away_from_settled_load(const struct invariant_ekf *ekf)
+{
+    return ekf->estimate.rotor.load_torque - ekf->settled_load;
+}
+
+/* Returns the innovation in the estimated rotor frame. */
+__attribute__((always_inline)) static inline struct dq
+invariant_ekf_correct(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
+                      const struct invariant_ekf_gain_set *gain, struct phases measured,
+                      struct phases surprise, bool holding)
+{
+    struct estimate *x = &ekf->estimate;
+    const struct outlook *expected = &x->next;
+    const struct sincos frame = expected->frame;
+    const struct phases current = forced_current(&x->winding, expected->current, surprise);
+    const struct phases error = {measured.a - current.a, measured.b - current.b};
+    const struct dq innovation = park(error, frame);
+    const struct invariant_ekf_correction by =
+        RARE(holding) ? invariant_ekf_correct_in_hold(gain, innovation,
+                                                      invariant_ekf_away_from_settled_load(ekf))
+                      : invariant_ekf_correct_in_motion(params, expected->speed, innovation);
+
+    x->current.a = current.a + num_mul_coef(error.a, gain->current);
+    x->current.b = current.b + num_mul_coef(error.b, gain->current);
+    x->rotor.speed = expected->speed + num_mul_coef(innovation.q, gain->speed_q);
+    x->rotor.position = position_add(expected->position, angle_from_any_turns(by.turns));
+    x->rotor.load_torque += by.load_torque;
+    ekf->bias.a -= num_mul_unit_nearest(by.bias_q, frame.sin);
+    ekf->bias.b += num_mul_unit_nearest(by.bias_q, frame.cos);
+    return innovation;
+}
+
+static inline void invariant_ekf_adapt_resistance(struct invariant_ekf *ekf,
+                                                  const struct invariant_ekf_params *params,
+                                                  const struct invariant_ekf_gain_set *gain,
+                                                  num_t innovation_d)
+{
+    struct estimate *x = &ekf->estimate;
+    const num_t i_d = park(x->current, x->next.frame).d;
+    const num_t change = num_mul_coef(num_mul(innovation_d, i_d), gain->resistance);
+
+    winding_set_resistance(&x->winding, &params->model, x->winding.resistance + change);
+}
+
+/* By how much the change of the load is more than twice what it has been of late: a rotor that is
+   led passes its detent torque. */
+static inline num_t invariant_ekf_beyond_detent(struct invariant_ekf *ekf,
+                                                const struct invariant_ekf_params *params,
+                                                num_t change)
+{
+    const num_t beyond = change - ekf->led_change;
+
+    ekf->led_change += num_mul_coef(change + beyond, params->led_memory);
+    return beyond;
+}
+
+/* Which of the sets of gains serves this period of the hold. */
+static inline const struct invariant_ekf_gain_set *
+invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
+                         bool leads)
+{
+    if (ekf->unloaded_periods > 0u) {
+        ekf->unloaded_periods--;
+        if (ekf->unloaded_periods == ekf->swing_end) { /* the back-EMF was taken for an offset */
+            ekf->bias = (struct phases){NUM(0.0), NUM(0.0)};
+        }
+        return &params->unloaded;
+    }
+
+    const num_t away = invariant_ekf_away_from_settled_load(ekf);
+    const num_t change =
+        leads ? invariant_ekf_beyond_detent(ekf, params, num_abs(away)) : num_abs(away);
+
+    if (change > params->load_step &&
+        (ekf->following_periods == 0u || num_half(change) > params->load_step)) {
+        ekf->following_periods = params->following_periods + params->rest_periods;
+    }
+    if (ekf->following_periods == 0u) {
+        return &params->holding;
+    }
+    ekf->following_periods--;
+    if (ekf->following_periods < params->rest_periods) {
+        return &params->holding;
+    }
+    ekf->settled_load += num_mul_coef(away, params->following.load_settle);
+    return &params->following;
+}
+
+/* From S(k) to S(k+1), under this mean voltage. */
+__attribute__((always_inline)) static inline struct passage
+invariant_ekf_look_ahead(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
+                         struct phases voltage)
+{
+    struct estimate *x = &ekf->estimate;
+    const struct phases driving = {voltage.a - ekf->bias.a, voltage.b - ekf->bias.b};
+    const struct passage passage = estimate_predict_current(x, &params->model, driving);
+
+    estimate_predict_rotor(x, &params->model, estimate_mean_current(x, passage.mid_period));
+    return passage;
+}
+
+/*
+ * At S(k): corrects what was predicted for it with the current that is sampled, and predicts
+ * S(k+1). `surprise`: by how much the mean voltage over S(k-1)...S(k) was another than expected;
+ * `in_force`: what is expected over S(k)...S(k+1).
+ */
+__attribute__((always_inline)) static inline struct passage
+invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
+                   struct phases current, struct phases surprise, struct phases in_force,
+                   struct rotor_hold hold)
+{
+    const bool holding = hold.active;
+    const struct invariant_ekf_gain_set *gain =
+        RARE(holding) ? invariant_ekf_hold_gains(ekf, params, *hold.leads) : &params->moving;
+    const struct dq innovation =
+        invariant_ekf_correct(ekf, params, gain, current, surprise, holding);
+
+    ekf->innovation_sum = num_add_around(ekf->innovation_sum, innovation.d);
+    if (!RARE(holding)) {
+        invariant_ekf_settle(ekf);
+    } else if (!*hold.leads) { /* a led rotor's lag behind its frame shows in nu_d, too */
+        invariant_ekf_adapt_resistance(ekf, params, gain, innovation.d);
+    }
+    return invariant_ekf_look_ahead(ekf, params, in_force);
+}
+
+#endif
