@@ -27,7 +27,7 @@ std::optional<double> law_yield_rad(const Scenario &scenario)
 {
     const plant::ImperfectionConfig &share = scenario.plant.imperfections;
     const motor_params &motor = scenario.motor.params;
-    const std::uint32_t counts = scenario.plant.sensors.encoder_counts_per_turn;
+    const auto counts = static_cast<std::uint32_t>(scenario.plant.sensors.encoder_counts_per_turn);
     if (scenario.drive.law != POSITION_LAW_FEEDBACK_LINEARISATION || counts == 0) {
         return {};
     }
