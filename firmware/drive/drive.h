@@ -122,10 +122,13 @@ struct enabling {
     struct offset_calibration_params calibration_params;
     struct initial_position detection;
     struct initial_position_params detection_params;
-    struct phase_balance balance;
+    union { /* a drive has one or the other: without an encoder, with one */
+        struct phase_balance balance;
+        struct encoder_alignment alignment;
+    };
     struct phase_balance_params balance_params;
-    struct encoder_alignment alignment;
     struct encoder_alignment_params alignment_params;
+    num_t phase_imbalance; /* as last found */
 };
 
 /*

@@ -36,7 +36,7 @@ void phase_balancing_start(struct drive *drive)
 
 static void scale_currents(struct drive *drive)
 {
-    const num_t imbalance = drive->enabling.balance.imbalance;
+    const num_t imbalance = drive->enabling.phase_imbalance;
 
     measurement_balance(&drive->measurement, imbalance);
     estimate_balance_currents(&drive->estimator.estimate, imbalance);
@@ -52,7 +52,10 @@ enum phase_balancing phase_balancing_step(struct drive *drive, const struct hal_
         winding =
             measurement_step(&drive->measurement, &drive->params.measurement, samples).winding;
     }
-    switch (phase_balance_step(balance, params, &winding)) {
+    const enum phase_balance_event event = phase_balance_step(balance, params, &winding);
+
+    drive->enabling.phase_imbalance = balance->imbalance;
+    switch (event) {
     case PHASES_GO_ON:
         break;
     case PHASES_COMPARED:

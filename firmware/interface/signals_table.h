@@ -55,7 +55,7 @@
          TRACED, resistance_ohm, "ohm", "estimate of a phase's series resistance")                 \
     REAL(0x2327, bus_V, modulator.bus, "bus_V", UNTRACED, voltage_V, "V",                          \
          "measured supply; a trace has the true one under this name")                              \
-    REAL(0x2328, phase_imbalance, enabling.balance.imbalance, "", UNTRACED, ratio, "",             \
+    REAL(0x2328, phase_imbalance, enabling.phase_imbalance, "", UNTRACED, ratio, "",               \
          "by what share phase a's resistance, as measured, is above that of both, and b's below")  \
     COUNT(0x2305, reference_underruns, planner.underruns, "underruns", UNTRACED,                   \
           "sines and set-points whose continuation came too late")                                 \
