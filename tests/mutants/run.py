@@ -27,7 +27,8 @@ class Failure(Exception):
 
 
 class Build:
-    """Objects of the unbroken firmware and tests; a mutant recompiles what depends on its file."""
+    """Objects of the unbroken firmware and tests; a mutant recompiles what its test links and what
+    depends on its file."""
 
     def __init__(self, root, unity, compiler, scratch):
         self.root = root
@@ -35,6 +36,7 @@ class Build:
         self.compiler = compiler
         self.scratch = scratch
         self.dependencies = {}  # (numeric, source): files
+        self.linked = {}        # (numeric, test): sources
 
     def compile(self, tree, source, numeric, target):
         """Compiles `source` of `tree`; returns the house's files it depends on."""
@@ -68,18 +70,38 @@ class Build:
         unity = self.scratch / "unity.o"
         self.compile(self.unity, self.unity / "unity.c", "double", unity)
         self.dependencies = {(numeric, source): job.result() for numeric, source, job in jobs}
+        for numeric in {numeric for numeric, _ in wanted}:
+            subprocess.run(["ar", "rcsT", self.archive_of(numeric),
+                            *(self.object_of(numeric, source) for source in firmware)], check=True)
+        for numeric, test in wanted:
+            self.linked[numeric, test] = self.sources_of(numeric, test)
+
+    def archive_of(self, numeric):
+        return self.objects_of(numeric) / "firmware.a"
+
+    def object_of(self, numeric, source):
+        return (self.objects_of(numeric) / source).with_suffix(".o")
+
+    def link(self, arguments, program):
+        return subprocess.run([self.compiler, *map(str, arguments), str(self.scratch / "unity.o"),
+                               "-lm", "-o", str(program)],
+                              check=True, capture_output=True, text=True).stdout
+
+    def sources_of(self, numeric, test):
+        """The test's own, and those of the firmware's that the linker takes for it."""
+        source = pathlib.Path(f"tests/unit/test_{test}.c")
+        taken = self.link([self.object_of(numeric, source), self.archive_of(numeric), "-Wl,-t"],
+                          self.scratch / "taken")
+        return [other for of, other in self.dependencies
+                if of == numeric and (other == source or
+                                      str(self.object_of(numeric, other).relative_to(
+                                          self.objects_of(numeric))) in taken)]
 
     def run(self, numeric, test, replaced, folder):
         """Links the test with the objects in `replaced`, runs it, returns what it prints."""
-        needed = [source for other, source in self.dependencies
-                  if other == numeric and (source.parts[0] == "firmware"
-                                           or source.name == f"test_{test}.c")]
-        objects = [replaced.get(source,
-                                (self.objects_of(numeric) / source).with_suffix(".o"))
-                   for source in needed]
         program = folder / "program"
-        subprocess.run([self.compiler, *map(str, objects), str(self.scratch / "unity.o"), "-lm",
-                        "-o", str(program)], check=True)
+        self.link([replaced.get(source, self.object_of(numeric, source))
+                   for source in self.linked[numeric, test]], program)
         try:
             return subprocess.run([str(program)], check=False, capture_output=True, text=True,
                                   timeout=RUN_TIMEOUT_S).stdout
@@ -101,12 +123,10 @@ class Build:
                           f"not once: {mutant.old!r}")
         path.write_text(text.replace(mutant.old, mutant.new), encoding="utf-8")
         replaced = {}
-        for (numeric, source), dependencies in self.dependencies.items():
-            concerned = (source.parts[0] == "firmware"
-                         or source.name == f"test_{mutant.test}.c")
-            if numeric == mutant.numeric and concerned and mutant.file in dependencies:
+        for source in self.linked[mutant.numeric, mutant.test]:
+            if mutant.file in self.dependencies[mutant.numeric, source]:
                 replaced[source] = (tree / "objects" / source).with_suffix(".o")
-                self.compile(tree, tree / source, numeric, replaced[source])
+                self.compile(tree, tree / source, mutant.numeric, replaced[source])
         if not replaced:
             raise Failure(f"{mutant.file} is not part of test_{mutant.test}")
         return self.run(mutant.numeric, mutant.test, replaced, tree)
