@@ -88,7 +88,7 @@ struct hal_facts {
 struct hal {
     void *context;
     const struct hal_facts *facts;
-    const char *version; /* of the image: "steadystep 0.2.0 <hash> ..."; the console tells it */
+    const char *version; /* of the image: "steadystep 0.2.0 <hash> ..."; the console prints it */
 
     /* Allows the gates to follow the outputs; false if a hardware trip is latched. < 1 us. */
     bool (*bridge_enable)(void *context);

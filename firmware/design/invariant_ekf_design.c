@@ -9,7 +9,7 @@
 enum { I_D, I_Q, SPEED, ANGLE, LOAD, STATES };
 
 /*
- * What the filter is told about the drive, in ratios that follow the motor. Random walks are
+ * What the filter assumes of the drive, in ratios that follow the motor. Random walks are
  * densities, so that they follow the control period too; errors of a sample are per sample.
  */
 struct tuning {
@@ -81,8 +81,8 @@ static const struct tuning hold_tuning = {
  * A quiet hold returns to its load in 3/w_h: 11 ms with the motor above, 2 to 3 ms with a bare
  * rotor, which swings out as much sooner. Left alone, a millivolt of offset would walk the estimate
  * away by 12 mN m/s on the motor above. What lasts of the way is an offset, which is found with
- * this damping. Quicker, a load step is not told from its return; slower, sensors that differ by 1
- * % make a step of the current look like one of the load.
+ * this damping. Quicker, a load step is not distinguished from its return; slower, sensors that
+ * differ by 1 % make a step of the current look like one of the load.
  */
 #define RETURN_SWING   3.0
 #define RETURN_DAMPING 1.4
@@ -101,7 +101,8 @@ static const struct tuning hold_tuning = {
    the load changes by twice a step: a hold that followed each drift at once would follow its own
    compensation around. */
 #define REST_S 0.010
-/* A rotor that is drawn into place from where it was told not to be comes to rest within this. */
+/* A rotor that is drawn into place from where it was assumed not to be comes to rest within this.
+ */
 #define SWING_S 0.050
 /* The settled load is the mean of the estimate over this time. */
 #define LOAD_SETTLE_TIME_S 5e-4
@@ -329,7 +330,7 @@ static bool hold_gains(const struct motor_params *motor, double period_s, double
 
 /*
  * The quiet hold returns on the line on which load and displacement balance, J w_h^2 theta = -T_L,
- * which no innovation tells apart: so it makes none of its own, and swings against nothing.
+ * which no innovation distinguishes: so it makes none of its own, and swings against nothing.
  */
 static void let_return(const struct motor_params *motor, double period_s, double hold_current_A,
                        struct invariant_ekf_gains *quiet)

@@ -93,7 +93,7 @@ static bool design_finding(struct drive *drive, const struct drive_settings *set
                              &drive->base, &pulses);
     standstill_pulses_reset(&drive->standstill.pulses, &drive->standstill.params, NUM(0.0));
     drive->params.enabling.detects_position =
-        settings->initial_position != DRIVE_INITIAL_POSITION_TOLD;
+        settings->initial_position != DRIVE_INITIAL_POSITION_ASSUMED;
     return !drive->params.enabling.detects_position ||
            initial_position_design(&drive->enabling.detection_params, &drive->params.model,
                                    &settings->motor, &drive->base, &task, error);

@@ -12,8 +12,8 @@
  *   i_a *= sqrt(r_a / r_b),   i_b *= sqrt(r_b / r_a),   sqrt(r_a / r_b) = 1 + d + d^2 / 2 + O(d^3),
  *   d = (u_a i_b - u_b i_a) / (u_a i_b + u_b i_a)
  *
- * so that both show one resistance, the root of r_a r_b. Resistance and gain cannot be told apart
- * and need not be.
+ * so that both show one resistance, the root of r_a r_b. Resistance and gain cannot be
+ * distinguished and need not be.
  *
  * The rotor is led home by way of a place a little beyond: friction holds it back on either way,
  * and what it takes of the one the other gives back.

@@ -17,8 +17,8 @@ void standstill_angle_blank_sample(struct drive *drive, struct channels *winding
 void standstill_angle_begin(struct drive *drive);
 
 /*
- * One period of operation: lays the pulses over the voltage that the hold wants, and tells the
- * estimator what they have shown. `before`: the current control before this period.
+ * One period of operation: lays the pulses over the voltage that the hold wants, and presets in
+ * the estimator what they have shown. `before`: the current control before this period.
  */
 void standstill_angle_step(struct drive *drive, const struct estimate *estimate,
                            const struct current_control *before, struct phases *voltage);

@@ -82,7 +82,7 @@ static inline void estimator_preset_current(struct estimator *estimator,
 #undef ESTIMATOR_PRESET_CURRENT
 }
 
-/* Only this one tells them from others. */
+/* Only this one distinguishes them from others. */
 static inline void estimator_expect_load(struct estimator *estimator,
                                          const struct estimator_params *params)
 {

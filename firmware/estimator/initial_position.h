@@ -7,7 +7,7 @@
  *
  *   i(+Delta) + i(-Delta) = 6 beta L0 I_f Delta^2 cos(phi),   sin(phi) in phase b
  *
- * whose sign tells the two ends of the magnet apart. What a motor without saturation would have
+ * whose sign distinguishes the two ends of the magnet. What a motor without saturation would have
  * drawn under the voltages that were measured is taken off each sample first, so that dead time, a
  * bus that sags, and unequal impulses leave nothing.
  *

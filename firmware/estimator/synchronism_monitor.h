@@ -1,6 +1,6 @@
 /*
  * Does the rotor still run with its estimate? Watches an invariant EKF while the drive is in
- * operation, in blocks of 1.6 ms, and tells two things apart:
+ * operation, in blocks of 1.6 ms, and distinguishes two things:
  *
  * Lost synchronism: the estimate no longer belongs to the rotor. A rotor that stands delta beside
  * its estimate induces, in the estimated frame, Km w (-sin N delta, cos N delta). The q part is

@@ -10,7 +10,7 @@
  * exactly what the interrupt reaches, and plan after plan begins where the one before is.
  *
  * A plan begins from any speed and acceleration and ends at rest, or goes on at constant speed for
- * ever. Where more is to come, `handover` tells behind which segment; the segments after it bring
+ * ever. Where more is to come, `handover` says behind which segment; the segments after it bring
  * the reference to rest if it does not come in time.
  *
  * Runs in the background, in double precision.

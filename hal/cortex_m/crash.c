@@ -59,8 +59,8 @@ static void record_begin(uint32_t exception, uint32_t fault)
     record_fault_status();
 }
 
-/* The start behind the last that may fail only tells; one that fails even so is not followed: gates
-   off, nothing feeds a watchdog that would restart. */
+/* The start behind the last that may fail only reports; one that fails even so is not followed:
+   gates off, nothing feeds a watchdog that would restart. */
 IN_FAULT_MEMORY(end)
 static _Noreturn void end(void)
 {

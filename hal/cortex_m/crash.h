@@ -1,7 +1,7 @@
 /*
  * What ends the program: a fault of the core, a peripheral that does not answer, a refused start.
- * The bridge is opened first; a record stays in memory that the reset leaves alone and is told at
- * the next start.
+ * The bridge is opened first; a record stays in memory that the reset leaves alone and is reported
+ * at the next start.
  */
 #ifndef STEADYSTEP_CORTEX_M_CRASH_H
 #define STEADYSTEP_CORTEX_M_CRASH_H

@@ -404,12 +404,12 @@ class Runner
 
 constexpr int drive_queue_length = 15;
 
-/* The steps of enabling left out: ready at once, where the drive is told that it stands. */
+/* The steps of enabling left out: ready at once, where the drive assumes that it stands. */
 drive_settings without_enabling(drive_settings settings)
 {
     settings.calibrate_offsets = false;
     settings.hold_on_enable = false;
-    settings.initial_position = DRIVE_INITIAL_POSITION_TOLD;
+    settings.initial_position = DRIVE_INITIAL_POSITION_ASSUMED;
     settings.standstill_pulses = false; /* they need what the impulses find */
     return settings;
 }

@@ -172,11 +172,11 @@ ImageMap ImageMap::read(const std::string &file, const ElfImage &image)
 ImageMap ImageMap::read(const std::string &file, const ElfImage &image, InstructionCosts &costs)
 {
     ImageMap map = read(file, image);
-    map.tell(costs);
+    map.give(costs);
     return map;
 }
 
-void ImageMap::tell(InstructionCosts &costs) const
+void ImageMap::give(InstructionCosts &costs) const
 {
     costs.stand_in = false;
     costs.rules = rules;

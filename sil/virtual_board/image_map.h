@@ -41,10 +41,10 @@ struct ImageMap {
     /* Reads the file beside the image. Throws std::invalid_argument: no such file, not of this
        image, not of this form. */
     static ImageMap read(const std::string &file, const ElfImage &image);
-    /* Reads it and tells a chip what its instructions cost. */
+    /* Reads it and gives a chip what its instructions cost. */
     static ImageMap read(const std::string &file, const ElfImage &image, InstructionCosts &costs);
     /* Throws std::invalid_argument if the chip has no memory where the map has code. */
-    void tell(InstructionCosts &costs) const;
+    void give(InstructionCosts &costs) const;
 
     const Variable &signal(const std::string &name) const; /* throws std::invalid_argument */
 };

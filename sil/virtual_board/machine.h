@@ -93,7 +93,7 @@ class Machine final : private CoreObserver, public Chip
     {
         return fault_;
     }
-    /* Bytes of stack that have been in use; nullopt if the image does not tell its limit. */
+    /* Bytes of stack that have been in use; nullopt if the image does not state its limit. */
     std::optional<std::uint32_t> stack_used() const;
 
     /* Contents of memory, without side effects; nullptr if there is none. */

@@ -16,10 +16,10 @@ static struct invariant_ekf_params params;
 static struct invariant_ekf ekf;
 static struct bench_motor motor;
 
-static void start_at(double angle_rad, double told_rad)
+static void start_at(double angle_rad, double assumed_rad)
 {
     motor = (struct bench_motor){.motor = bench_params, .angle_rad = angle_rad};
-    invariant_ekf_reset(&ekf, &params, position_from_rad(told_rad, 50), model.nominal_resistance,
+    invariant_ekf_reset(&ekf, &params, position_from_rad(assumed_rad, 50), model.nominal_resistance,
                         0);
 }
 
@@ -485,7 +485,7 @@ static void test_a_hold_begins_with_the_load_of_the_motion(void)
     TEST_ASSERT_NUM_WITHIN(0.0, num_to_double(ekf.estimate.rotor.load_torque), ekf.settled_load);
 }
 
-static void test_a_reset_forgets_all_but_what_it_is_told(void)
+static void test_a_reset_forgets_all_but_what_it_is_set_to(void)
 {
     turn(45.0, 300);
     hold(0.0, 50);
@@ -524,6 +524,6 @@ int main(void)
     RUN_TEST(test_a_quiet_hold_returns_to_its_load_with_the_angle);
     RUN_TEST(test_in_an_unloaded_hold_an_offset_is_no_load);
     RUN_TEST(test_a_hold_begins_with_the_load_of_the_motion);
-    RUN_TEST(test_a_reset_forgets_all_but_what_it_is_told);
+    RUN_TEST(test_a_reset_forgets_all_but_what_it_is_set_to);
     return UNITY_END();
 }

@@ -1,4 +1,4 @@
-/* The reference generator: where the drive is told to be, period by period. */
+/* The reference generator: where the drive is to be, period by period. */
 #include <string.h>
 #include <unity.h>
 

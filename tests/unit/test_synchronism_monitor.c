@@ -1,4 +1,4 @@
-/* Each signature of the synchronism monitor: what it is told by, and what is not one. */
+/* Each signature of the synchronism monitor: what it is shown by, and what is not one. */
 #include "firmware/estimator/synchronism_monitor.h"
 #include "tests/unit/bench.h"
 #include "tests/unit/num_assert.h"

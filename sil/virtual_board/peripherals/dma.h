@@ -38,7 +38,7 @@ class Dma : public RegisterBlock
     bool transfer(unsigned channel, std::uint32_t *where);
     class Ring;
     /* Whether a channel fetches from one register for ever and raises no interrupt: only its
-       registers tell how far it is. */
+       registers show how far it is. */
     bool silent(unsigned channel) const;
     /* Rises with every write that may change what a channel does. */
     unsigned changes() const
