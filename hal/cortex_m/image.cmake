@@ -119,9 +119,9 @@ endfunction()
 # board_program(<target> <path of a pin map>): what every program of a port is compiled with.
 function(board_program target path)
   set_target_properties(${target} PROPERTIES PIN_MAP ${path})
-  # Of the house: by its path from the root, so that an image is the same wherever it is built.
-  cmake_path(IS_PREFIX PROJECT_SOURCE_DIR ${path} of_the_house)
-  if(of_the_house)
+  # Of the project: by its path from the root, so that an image is the same wherever it is built.
+  cmake_path(IS_PREFIX PROJECT_SOURCE_DIR ${path} of_the_project)
+  if(of_the_project)
     cmake_path(RELATIVE_PATH path BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
   endif()
   add_dependencies(${target} board_image_source)
