@@ -88,7 +88,7 @@ static const struct tuning hold_tuning = {
 #define RETURN_DAMPING 1.4
 /* A change of the load by so many times the noise of its estimate is a step, within these shares of
    the rated torque, 3.2 and 5.3 %: a rotor that half the rated current holds against one that is
-   not noticed stands 1/24 and 1/15 of a full step aside. */
+   not noticed stands 1/24 and 1/15 of a full step away. */
 #define LOAD_STEP_NOISE 16.0
 #define LOAD_STEP_MIN   (0.015 / RATED_TORQUE_NM)
 #define LOAD_STEP_MAX   (0.025 / RATED_TORQUE_NM)

@@ -60,8 +60,8 @@ static bool design_law(struct drive *drive, const struct drive_settings *setting
 static const double standstill_peak = 0.8;
 static const double standstill_max = 0.94;
 
-static bool design_finding(struct drive *drive, const struct drive_settings *settings,
-                           double period_s, char error[DRIVE_ERROR_TEXT])
+static bool design_detection(struct drive *drive, const struct drive_settings *settings,
+                             double period_s, char error[DRIVE_ERROR_TEXT])
 {
     const struct hal_facts *facts = drive->board->facts;
     const struct initial_position_task task = {
@@ -304,5 +304,5 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
     synchronism_design(drive, settings);
     return design_law(drive, &drive->settings, period_s, error) &&
            design_hold(drive, settings, period_s, error) &&
-           design_finding(drive, &drive->settings, period_s, error);
+           design_detection(drive, &drive->settings, period_s, error);
 }

@@ -102,7 +102,7 @@
          "step of enabling: hold_on_enable_s before ready; an encoder's zero is found first")      \
     FLAG(0x214c, balance_phases, true, AT_ENABLE,                                                  \
          "step of enabling without an encoder, behind the hold: the ratio of the phases, half a "  \
-         "full step aside and back")                                                               \
+         "full step away and back")                                                                \
     FLAG(0x2142, hold_at_rest, true, AT_ENABLE, "d-axis current at rest; with an encoder false")   \
     FLAG(                                                                                          \
         0x2143, standstill_pulses, false, AT_ENABLE,                                               \

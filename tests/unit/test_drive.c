@@ -208,7 +208,7 @@ static void test_the_first_hold_aligns_the_rotor_and_finds_the_resistance(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 24.0, signals().bus_V);
 }
 
-static void test_current_sensors_that_differ_are_balanced_and_the_rotor_is_home_again(void)
+static void test_current_sensors_that_differ_are_balanced_and_the_rotor_comes_back(void)
 {
     double furthest_rad = 0.0;
 
@@ -262,7 +262,8 @@ static void enable_with_encoder(const struct motor_params *with, double angle_ra
     TEST_ASSERT_EQUAL_STRING("operation-enabled", drive_state_name(drive.supervision.state));
 }
 
-/* Far from home; by how much the rotor stands off its count's middle the drive cannot see. */
+/* Far from the final angle; by how much the rotor stands off its count's middle the drive cannot
+ * see. */
 static void test_an_encoder_is_aligned_with_a_rotor_at_rest(void)
 {
     for (int m = 0; m < 2; m++) {
@@ -437,7 +438,7 @@ int main(void)
     RUN_TEST(test_a_motor_slower_than_the_control_is_refused);
     RUN_TEST(test_a_law_without_current_control_lowers_the_speed_limit_itself);
     RUN_TEST(test_the_first_hold_aligns_the_rotor_and_finds_the_resistance);
-    RUN_TEST(test_current_sensors_that_differ_are_balanced_and_the_rotor_is_home_again);
+    RUN_TEST(test_current_sensors_that_differ_are_balanced_and_the_rotor_comes_back);
     RUN_TEST(test_an_encoder_is_aligned_with_a_rotor_at_rest);
     RUN_TEST(test_on_both_ways_of_the_alignment_the_rotor_stands_where_it_is_held);
     RUN_TEST(test_the_drive_knows_what_the_bridge_takes_away);

@@ -30,14 +30,15 @@ static struct encoder_alignment_params params;
 static struct encoder_alignment alignment;
 static enum encoder_alignment_event event;
 
-/* Torques as shares of Km times the stronger current, angles in electrical rad from home. */
+/* Torques as shares of Km times the stronger current, angles in electrical rad from the final
+ * angle. */
 static struct {
     double damping; /* ratio, at the stronger current */
     double friction;
     double load, load_begins_s, load_ends_s;
     double detent[3]; /* once, twice, four times an electrical turn */
     double detent_phase;
-    double encoder_phase;   /* rad by which the first count begins before home */
+    double encoder_phase;   /* rad by which the first count begins before the final angle */
     double counts_ratio;    /* counts that come per count that is set */
     unsigned loaded_ways;   /* a bit for each */
     double stop;            /* an end stop's angle */
@@ -452,7 +453,7 @@ static void test_the_rotor_is_placed_before_it_is_led_so_that_the_hold_can_damp(
     design();
     rotor.angle = 2.0;
     encoder_alignment_start(&alignment, count());
-    while (alignment.stage == ALIGNMENT_DRAWING) {
+    while (alignment.stage == ALIGNMENT_ALIGNING) {
         period();
         if (event == ALIGNMENT_PLACES) {
             placed = (double)alignment.rotor / 4294967296.0 * TWO_PI - rotor.angle;

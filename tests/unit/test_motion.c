@@ -521,7 +521,7 @@ static void test_a_profile_begins_two_periods_after_it_is_loaded(void)
 static void test_after_a_stop_a_move_starts_from_where_the_reference_rests(void)
 {
     struct profile follow_on;
-    struct profile_move home = smooth;
+    struct profile_move back = smooth;
 
     begin(&trapezoid);
     TEST_ASSERT_TRUE(profile_plan(&follow_on, profile.target, &smooth, &drive, error));
@@ -531,8 +531,8 @@ static void test_after_a_stop_a_move_starts_from_where_the_reference_rests(void)
     reference_stop(&reference);
     run_to_rest();
     TEST_ASSERT_FALSE(reference_load(&reference, &follow_on)); /* planned from the old target */
-    home.position_rad = 0.0;
-    follows_the_continuous_profile(&home);
+    back.position_rad = 0.0;
+    follows_the_continuous_profile(&back);
     TEST_ASSERT_EQUAL_INT64(0, angle_of(reference.next.position));
 }
 
