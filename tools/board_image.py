@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the C file that tells an image its version and its default motor.
+"""Writes the C file that gives an image its version and its default motor.
 
 usage: board_image.py --root ROOT --motor FILE --version V --board NAME --pin-map FILE
                       --numeric FORMAT --flags FLAGS OUTPUT.c

@@ -53,7 +53,7 @@ struct sliding_surface_params {
     num_t current_limit;
 };
 
-/* Levels beyond the layer that are told apart, so that integrators can be added. */
+/* Levels beyond the layer that are distinguished, so that integrators can be added. */
 #define SURFACE_LEVELS_MAX 8.0
 
 struct boundary_layer_params {

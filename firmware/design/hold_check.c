@@ -155,13 +155,13 @@ double hold_estimator_damping(const struct hold_task *task, const struct invaria
     return modes_damping(states, &loop, task->period_s, drift_rad_s);
 }
 
-double hold_step_shown(const struct hold_task *task, const struct invariant_ekf_gains *quiet)
+double hold_step_shown(const struct hold_task *task, const struct invariant_ekf_gains *settled)
 {
     const double swing_periods =
         1.0 / (hold_frequency(task->motor, task->hold_current_A) * task->period_s);
     struct matrix transition;
     struct matrix loop;
-    const int states = estimation_loop(task, quiet, &transition, &loop);
+    const int states = estimation_loop(task, settled, &transition, &loop);
     double error[ESTIMATION_STATES] = {[LOAD] = -1.0};
     double shown = 0.0;
 
@@ -169,10 +169,10 @@ double hold_step_shown(const struct hold_task *task, const struct invariant_ekf_
         double next[ESTIMATION_STATES] = {0.0};
 
         for (int i = 0; i < states; i++) { /* what returns, does so to the load before the step */
-            next[i] = transition.at[i][ANGLE] * quiet->angle_return_rad_Nm -
-                      transition.at[i][LOAD] * quiet->load_return;
+            next[i] = transition.at[i][ANGLE] * settled->angle_return_rad_Nm -
+                      transition.at[i][LOAD] * settled->load_return;
             if (states == ESTIMATION_STATES) {
-                next[i] -= transition.at[i][OFFSET] * quiet->bias_return_V_Nm;
+                next[i] -= transition.at[i][OFFSET] * settled->bias_return_V_Nm;
             }
             for (int j = 0; j < states; j++) {
                 next[i] += loop.at[i][j] * error[j];

@@ -7,7 +7,7 @@
  * the loop in one piece and find the same modes (tests/reference/test_hold.cpp).
  *
  *   control     i_q, w, theta, integrator:  i_q* = -k_w w,  v_q = Kp (i_q* - i_q) + z + Km w
- *   estimation  i_q, w, theta, T_L, voltage offset; the gains of a quiet hold or of a load step
+ *   estimation  i_q, w, theta, T_L, voltage offset; the gains of a settled hold or of a load step
  *
  * Both have the rotor on its spring, w_h^2 = N Km i_hold / J. The d axis is a first-order lag.
  */
@@ -79,10 +79,10 @@ double hold_estimator_damping(const struct hold_task *task,
                               const struct invariant_ekf_gains *gains);
 
 /*
- * What a quiet hold's load estimate shows of a load step at most, before it returns to the load
+ * What a settled hold's load estimate shows of a load step at most, before it returns to the load
  * before: a share.
  */
-double hold_step_shown(const struct hold_task *task, const struct invariant_ekf_gains *quiet);
+double hold_step_shown(const struct hold_task *task, const struct invariant_ekf_gains *settled);
 
 /* False, with the quantity and its limit in `error`, if the held rotor swings too fast for the
    period or the control damps it by less than HOLD_DAMPING_MIN. */
@@ -96,7 +96,7 @@ bool hold_control_check(const struct hold_task *task, char error[DESIGN_ERROR_TE
 double hold_drop_angle_deg(const struct hold_task *task);
 
 /*
- * The damping of the estimation error in a quiet hold and behind a load step; and that the angle
+ * The damping of the estimation error in a settled hold and behind a load step; and that the angle
  * above is at most ANGLE_ERROR_MAX_DEG.
  */
 bool hold_estimator_check(const struct hold_task *task,

@@ -9,7 +9,7 @@
 enum { I_D, I_Q, SPEED, ANGLE, LOAD, STATES };
 
 /*
- * What the filter is told about the drive, in ratios that follow the motor. Random walks are
+ * What the filter assumes of the drive, in ratios that follow the motor. Random walks are
  * densities, so that they follow the control period too; errors of a sample are per sample.
  */
 struct tuning {
@@ -63,7 +63,7 @@ static const struct tuning hold_tuning = {
 
 /* A hold that follows a load step expects six times the variance of the load; with 16 times it
    swings where the inductance is a tenth off and saturation 20 %. */
-#define FOLLOWING_LOAD_WALK (0.25 / RATED_TORQUE_NM)
+#define LOAD_STEP_WALK (0.25 / RATED_TORQUE_NM)
 
 /* Speed at which the angle's odd gain acts in full, as a back-EMF of the supply. */
 #define FULL_ANGLE_BACK_EMF (BACK_EMF_V(1.0) / SUPPLY_V)
@@ -78,17 +78,17 @@ static const struct tuning hold_tuning = {
 /* Likewise of the resistance in hold; nothing else answers to nu_d there. */
 #define RESISTANCE_RATE 45.0
 /*
- * A quiet hold returns to its load in 3/w_h: 11 ms with the motor above, 2 to 3 ms with a bare
+ * A settled hold returns to its load in 3/w_h: 11 ms with the motor above, 2 to 3 ms with a bare
  * rotor, which swings out as much sooner. Left alone, a millivolt of offset would walk the estimate
  * away by 12 mN m/s on the motor above. What lasts of the way is an offset, which is found with
- * this damping. Quicker, a load step is not told from its return; slower, sensors that differ by 1
- * % make a step of the current look like one of the load.
+ * this damping. Quicker, a load step is not distinguished from its return; slower, sensors that
+ * differ by 1 % make a step of the current look like one of the load.
  */
 #define RETURN_SWING   3.0
 #define RETURN_DAMPING 1.4
 /* A change of the load by so many times the noise of its estimate is a step, within these shares of
    the rated torque, 3.2 and 5.3 %: a rotor that half the rated current holds against one that is
-   not noticed stands 1/24 and 1/15 of a full step aside. */
+   not noticed stands 1/24 and 1/15 of a full step away. */
 #define LOAD_STEP_NOISE 16.0
 #define LOAD_STEP_MIN   (0.015 / RATED_TORQUE_NM)
 #define LOAD_STEP_MAX   (0.025 / RATED_TORQUE_NM)
@@ -101,7 +101,8 @@ static const struct tuning hold_tuning = {
    the load changes by twice a step: a hold that followed each drift at once would follow its own
    compensation around. */
 #define REST_S 0.010
-/* A rotor that is drawn into place from where it was told not to be comes to rest within this. */
+/* A rotor that is drawn into place from where it was assumed not to be comes to rest within this.
+ */
 #define SWING_S 0.050
 /* The settled load is the mean of the estimate over this time. */
 #define LOAD_SETTLE_TIME_S 5e-4
@@ -328,20 +329,20 @@ static bool hold_gains(const struct motor_params *motor, double period_s, double
 }
 
 /*
- * The quiet hold returns on the line on which load and displacement balance, J w_h^2 theta = -T_L,
- * which no innovation tells apart: so it makes none of its own, and swings against nothing.
+ * The settled hold returns on the line on which load and displacement balance, J w_h^2 theta =
+ * -T_L, which no innovation distinguishes: so it makes none of its own, and swings against nothing.
  */
 static void let_return(const struct motor_params *motor, double period_s, double hold_current_A,
-                       struct invariant_ekf_gains *quiet)
+                       struct invariant_ekf_gains *settled)
 {
     const double stiffness_Nm_rad =
         motor->rotor_teeth * motor->torque_constant_Nm_A * hold_current_A;
     const double way_rad_Nm = 1.0 / stiffness_Nm_rad;
     const double time_s = RETURN_SWING / hold_frequency(motor, hold_current_A);
 
-    quiet->load_return = 1.0 - exponential(-period_s / time_s);
-    quiet->angle_return_rad_Nm = quiet->load_return * way_rad_Nm;
-    quiet->bias_return_V_Nm =
+    settled->load_return = 1.0 - exponential(-period_s / time_s);
+    settled->angle_return_rad_Nm = settled->load_return * way_rad_Nm;
+    settled->bias_return_V_Nm =
         period_s / square(2.0 * RETURN_DAMPING * time_s) * motor->torque_constant_Nm_A * way_rad_Nm;
 }
 
@@ -363,9 +364,10 @@ static double load_step_Nm(const struct motor_params *motor, double period_s, do
                                                 : LOAD_STEP_MAX * rated_Nm;
 }
 
-bool invariant_ekf_quiet_hold_design(const struct motor_params *motor, double period_s,
-                                     double hold_current_A, struct invariant_ekf_hold_gains *gains,
-                                     char error[DESIGN_ERROR_TEXT])
+bool invariant_ekf_settled_hold_design(const struct motor_params *motor, double period_s,
+                                       double hold_current_A,
+                                       struct invariant_ekf_hold_gains *gains,
+                                       char error[DESIGN_ERROR_TEXT])
 {
     return motor_check(motor, period_s, error) &&
            design_require_positive(error, "hold current", hold_current_A, "A") &&
@@ -373,12 +375,12 @@ bool invariant_ekf_quiet_hold_design(const struct motor_params *motor, double pe
             design_refuse(error, no_gain));
 }
 
-bool invariant_ekf_following_hold_design(const struct motor_params *motor, double period_s,
+bool invariant_ekf_load_step_hold_design(const struct motor_params *motor, double period_s,
                                          double hold_current_A,
                                          struct invariant_ekf_hold_gains *gains,
                                          char error[DESIGN_ERROR_TEXT])
 {
-    if (!hold_gains(motor, period_s, hold_current_A, FOLLOWING_LOAD_WALK, &gains->following)) {
+    if (!hold_gains(motor, period_s, hold_current_A, LOAD_STEP_WALK, &gains->following)) {
         return design_refuse(error, no_gain);
     }
     gains->unloaded = gains->quiet;
@@ -404,6 +406,6 @@ bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s
                                double hold_current_A, struct invariant_ekf_hold_gains *gains,
                                char error[DESIGN_ERROR_TEXT])
 {
-    return invariant_ekf_quiet_hold_design(motor, period_s, hold_current_A, gains, error) &&
-           invariant_ekf_following_hold_design(motor, period_s, hold_current_A, gains, error);
+    return invariant_ekf_settled_hold_design(motor, period_s, hold_current_A, gains, error) &&
+           invariant_ekf_load_step_hold_design(motor, period_s, hold_current_A, gains, error);
 }

@@ -44,7 +44,7 @@ struct invariant_ekf_gains {
     double k_bias_d_V_A;             /* V per A; odd in the speed; 0 in hold */
     double k_bias_q_V_A;             /* V per A; 0 but in the unloaded hold */
     double k_resistance_ohm_A2;      /* ohm per A^2; 0 in motion */
-    double load_return;              /* share per period; of the quiet hold, else 0 */
+    double load_return;              /* share per period; of the settled hold, else 0 */
     double angle_return_rad_Nm;      /* mechanical rad per N m and period; likewise */
     double bias_return_V_Nm;         /* V per N m and period; likewise */
     double load_settle;              /* share per period; while a load step is followed, else 0 */
@@ -58,7 +58,7 @@ struct invariant_ekf_hold_gains {
     uint32_t following_periods;           /* how long a load step is followed */
     uint32_t rest_periods;                /* behind that, in which none is */
     uint32_t swing_periods;               /* in which a rotor swings into place */
-    double load_step_Nm;                  /* change that ends the quiet hold */
+    double load_step_Nm;                  /* change that ends the settled hold */
     double led_load_memory; /* of the mean change where the hold leads, share per period */
 };
 
@@ -92,10 +92,11 @@ bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s
                                char error[DESIGN_ERROR_TEXT]);
 
 /* The same in two parts, one behind the other, of half its time each. */
-bool invariant_ekf_quiet_hold_design(const struct motor_params *motor, double period_s,
-                                     double hold_current_A, struct invariant_ekf_hold_gains *gains,
-                                     char error[DESIGN_ERROR_TEXT]);
-bool invariant_ekf_following_hold_design(const struct motor_params *motor, double period_s,
+bool invariant_ekf_settled_hold_design(const struct motor_params *motor, double period_s,
+                                       double hold_current_A,
+                                       struct invariant_ekf_hold_gains *gains,
+                                       char error[DESIGN_ERROR_TEXT]);
+bool invariant_ekf_load_step_hold_design(const struct motor_params *motor, double period_s,
                                          double hold_current_A,
                                          struct invariant_ekf_hold_gains *gains,
                                          char error[DESIGN_ERROR_TEXT]);

@@ -16,7 +16,7 @@ static double one_minus_cosine(double x)
     return 0.5 * y * alternating_series(y, 3, 4);
 }
 
-/* e^(x + jy) - 1: all poles lie about 1, so they are told apart by what they differ from it. */
+/* e^(x + jy) - 1: all poles lie about 1, so they are distinguished by what they differ from it. */
 static struct complex_number pole_less_one(double x, double y)
 {
     const double growth = exponential(x);

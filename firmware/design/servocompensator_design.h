@@ -14,7 +14,7 @@
  *
  * Eigenvalues: the paper's pattern -1, -2 +- j, with two harmonics -3 +- j besides, times the decay
  * rate. The decay rate must be no less than a quarter of w0, or what is left of the loop's gain at
- * w0 does not carry it (findings of the reproduction: a slow limit cycle).
+ * w0 does not carry it (as the reproduction showed: a slow limit cycle).
  */
 #ifndef STEADYSTEP_SERVOCOMPENSATOR_DESIGN_H
 #define STEADYSTEP_SERVOCOMPENSATOR_DESIGN_H

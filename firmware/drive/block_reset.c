@@ -2,7 +2,7 @@
 
 #include "firmware/drive/synchronism.h"
 
-/* The position the drive is told, has found, or its encoder shows. */
+/* The position the drive assumes, has found, or its encoder shows. */
 static struct position initial_position(const struct drive *drive, struct position encoder_zero)
 {
     const struct drive_params *params = &drive->params;

@@ -114,7 +114,7 @@ enum drive_state drive_state_by(const struct drive *drive, uint32_t at_period)
 }
 
 /*
- * The board is told at once, so that it can refuse: the state machine keeps the bridge open until
+ * The board is asked at once, so that it can refuse: the state machine keeps the bridge open until
  * the enable acts. A latched trip is cleared if the bridge is open and has no fault to keep, or
  * none when the disable that waits has acted.
  */

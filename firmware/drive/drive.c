@@ -60,13 +60,13 @@ static bool design_law(struct drive *drive, const struct drive_settings *setting
 static const double standstill_peak = 0.8;
 static const double standstill_max = 0.94;
 
-static bool design_finding(struct drive *drive, const struct drive_settings *settings,
-                           double period_s, char error[DRIVE_ERROR_TEXT])
+static bool design_detection(struct drive *drive, const struct drive_settings *settings,
+                             double period_s, char error[DRIVE_ERROR_TEXT])
 {
     const struct hal_facts *facts = drive->board->facts;
     const struct initial_position_task task = {
         .period_s = period_s,
-        .acts_at_once = facts->acts_at_once,
+        .zero_delay = facts->zero_delay,
         .order = settings->initial_position == DRIVE_INITIAL_POSITION_PUBLISHED_IMPULSES
                      ? IMPULSE_ORDER_PUBLISHED
                      : IMPULSE_ORDER_PALINDROMIC,
@@ -93,7 +93,7 @@ static bool design_finding(struct drive *drive, const struct drive_settings *set
                              &drive->base, &pulses);
     standstill_pulses_reset(&drive->standstill.pulses, &drive->standstill.params, NUM(0.0));
     drive->params.enabling.detects_position =
-        settings->initial_position != DRIVE_INITIAL_POSITION_TOLD;
+        settings->initial_position != DRIVE_INITIAL_POSITION_ASSUMED;
     return !drive->params.enabling.detects_position ||
            initial_position_design(&drive->enabling.detection_params, &drive->params.model,
                                    &settings->motor, &drive->base, &task, error);
@@ -174,7 +174,7 @@ static bool check_simulation(const struct drive_settings *settings, const struct
         return true;
     }
     const char *setting =
-        facts->acts_at_once ? "a board without delay" : simulation_only_setting(settings);
+        facts->zero_delay ? "a board without delay" : simulation_only_setting(settings);
 
     if (setting == NULL) {
         return true;
@@ -270,7 +270,7 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
     drive->enabling.calibration_params =
         offset_calibration_design(facts, &settings->motor, &drive->base);
     params->path.feed_forward = settings->feed_forward;
-    params->path.zero_delay = facts->acts_at_once;
+    params->path.zero_delay = facts->zero_delay;
     params->path.bridge_loss_compensation = settings->bridge_loss_compensation;
     params->path.infers_voltage =
         settings->voltage_source == DRIVE_VOLTAGE_COMMANDED || !facts->has_phase_voltages;
@@ -305,5 +305,5 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
     synchronism_design(drive, settings);
     return design_law(drive, &drive->settings, period_s, error) &&
            design_hold(drive, settings, period_s, error) &&
-           design_finding(drive, &drive->settings, period_s, error);
+           design_detection(drive, &drive->settings, period_s, error);
 }

@@ -50,7 +50,7 @@ void encoder_aligning_start(struct drive *drive)
 __attribute__((noinline)) enum encoder_aligning encoder_aligning_step(struct drive *drive)
 {
     struct encoder_alignment *alignment = &drive->enabling.alignment;
-    const struct position home = drive->reference.next.position;
+    const struct position final = drive->reference.next.position;
     const enum encoder_alignment_event event = encoder_alignment_step(
         alignment, &drive->enabling.alignment_params, drive->encoder_count, drive->current.d);
 
@@ -59,11 +59,11 @@ __attribute__((noinline)) enum encoder_aligning encoder_aligning_step(struct dri
     }
     if (event == ALIGNMENT_PLACES) {
         estimator_place(&drive->estimator, &drive->params.estimator,
-                        position_add(home, alignment->rotor), drive->encoder_count);
+                        position_add(final, alignment->rotor), drive->encoder_count);
         estimator_predict(&drive->estimator, &drive->params.estimator, &drive->params.model,
                           drive->actuation.in_force);
     }
-    standstill_hold_align(&drive->hold, home.fraction + (angle_t)alignment->held.offset,
+    standstill_hold_align(&drive->hold, final.fraction + (angle_t)alignment->held.offset,
                           encoder_alignment_speed(alignment, &drive->enabling.alignment_params),
                           encoder_alignment_current(alignment, &drive->enabling.alignment_params));
     return alignment->stage == ALIGNMENT_FOUND ? ENCODER_ALIGNED : ENCODER_ALIGNING;

@@ -1,7 +1,8 @@
 /*
  * While the drive is being enabled: an encoder's zero, found by a hold that leads the rotor over an
- * electrical turn and home (estimator/encoder_alignment.h). STEADYSTEP_WITHOUT_ENCODER, for a
- * board that reads none, leaves it out of the image: enabling then ends in position-not-found.
+ * electrical turn and to its final angle (estimator/encoder_alignment.h).
+ * STEADYSTEP_WITHOUT_ENCODER, for a board that reads none, leaves it out of the image: enabling
+ * then ends in position-not-found.
  */
 #ifndef STEADYSTEP_ENCODER_ALIGNING_H
 #define STEADYSTEP_ENCODER_ALIGNING_H

@@ -90,11 +90,11 @@ __attribute__((noinline)) static bool design_invariant_ekf(struct drive *drive,
         return false;
     }
     drive_feed_watchdog(drive);
-    if (!invariant_ekf_quiet_hold_design(motor, period_s, current_A, &holding, error)) {
+    if (!invariant_ekf_settled_hold_design(motor, period_s, current_A, &holding, error)) {
         return false;
     }
     drive_feed_watchdog(drive);
-    if (!invariant_ekf_following_hold_design(motor, period_s, current_A, &holding, error)) {
+    if (!invariant_ekf_load_step_hold_design(motor, period_s, current_A, &holding, error)) {
         return false;
     }
     drive_feed_watchdog(drive);

@@ -78,7 +78,7 @@ enum offset_result { OFFSETS_PENDING, OFFSETS_FOUND, OFFSETS_OUT_OF_RANGE };
 /*
  * What is to be added to the offsets of the voltages once the resistance is known: the currents
  * that may have flowed while these were read had been given the drop at the winding's as it was
- * told.
+ * known.
  */
 struct phases offset_calibration_drop_error(const struct offset_calibration *calibration,
                                             const struct offset_calibration_params *params,

@@ -136,7 +136,7 @@ static enum phase_balance_event divide(struct phase_balance *balance)
 
 static bool is_led(enum phase_balance_stage stage)
 {
-    return stage == PHASES_LED || stage == PHASES_LED_BACK || stage == PHASES_LED_HOME;
+    return stage == PHASES_LED || stage == PHASES_LED_BACK || stage == PHASES_LED_TO_FINAL;
 }
 
 /* Not by a switch: its helper would lie in flash. */
@@ -155,7 +155,7 @@ enum phase_balance_event phase_balance_step(struct phase_balance *balance,
         return divide(balance);
     }
     if (stage == PHASES_BALANCED) {
-        return PHASES_AT_HOME;
+        return PHASES_AT_FINAL;
     }
     if (is_led(stage)) {
         return held_angle_step(&balance->held, &params->lead) ? go_on(balance) : PHASES_GO_ON;

@@ -7,16 +7,16 @@
  * held rotor's current stands between the phases, and that looks like motion. At an odd multiple of
  * 45 degrees electrical a d current flows in both phases alike. So the hold leads its rotor to the
  * nearest of these, waits for a swing, takes the means of voltages and currents over whole swings,
- * and leads it home. With r = u / i of each phase the currents are then scaled,
+ * and leads it back to its final angle. With r = u / i of each phase the currents are then scaled,
  *
  *   i_a *= sqrt(r_a / r_b),   i_b *= sqrt(r_b / r_a),   sqrt(r_a / r_b) = 1 + d + d^2 / 2 + O(d^3),
  *   d = (u_a i_b - u_b i_a) / (u_a i_b + u_b i_a)
  *
- * so that both show one resistance, the root of r_a r_b. Resistance and gain cannot be told apart
- * and need not be.
+ * so that both show one resistance, the root of r_a r_b. Resistance and gain cannot be
+ * distinguished and need not be.
  *
- * The rotor is led home by way of a place a little beyond: friction holds it back on either way,
- * and what it takes of the one the other gives back.
+ * The rotor is led to its final angle by way of a place a little beyond: friction holds it back on
+ * either way, and what it takes of the one the other gives back.
  *
  * Takes some ten swings, 2 pi / sqrt(N Km i_hold / J) each, and turns the rotor by up to an eighth
  * of an electrical turn, half a full step, and back.
@@ -48,10 +48,10 @@ enum phase_balance_stage {
     PHASES_SETTLING, /* there */
     PHASES_LOOKED_AT,
     PHASES_DIVIDED,  /* a step of the division in each period */
-    PHASES_LED_BACK, /* a little further than home */
+    PHASES_LED_BACK, /* a little further than the final angle */
     PHASES_SETTLING_BEYOND,
-    PHASES_LED_HOME,
-    PHASES_SETTLING_HOME,
+    PHASES_LED_TO_FINAL,
+    PHASES_SETTLING_FINALLY,
     PHASES_BALANCED
 };
 
@@ -84,7 +84,7 @@ void phase_balance_start(struct phase_balance *balance, angle_t held);
 enum phase_balance_event {
     PHASES_GO_ON,
     PHASES_COMPARED,     /* `imbalance` has been found: the currents are to be scaled */
-    PHASES_AT_HOME,      /* it has ended */
+    PHASES_AT_FINAL,     /* it has ended */
     PHASES_TOO_DIFFERENT /* by more than PHASE_IMBALANCE_MAX, or one carries no current */
 };
 

@@ -61,7 +61,7 @@ enum phase_balancing phase_balancing_step(struct drive *drive, const struct hal_
     case PHASES_COMPARED:
         scale_currents(drive);
         break;
-    case PHASES_AT_HOME:
+    case PHASES_AT_FINAL:
         return PHASES_ARE_BALANCED;
     case PHASES_TOO_DIFFERENT:
         return PHASES_DO_NOT_MATCH;

@@ -48,12 +48,13 @@ bool drive_settings_check(const struct drive_settings *settings, char error[DRIV
                                       settings->observer != DRIVE_OBSERVER_MODEL)) {
         return design_refuse(error, "detent_learning: needs an encoder and its model observer");
     }
-    if (settings->standstill_pulses && settings->initial_position == DRIVE_INITIAL_POSITION_TOLD) {
+    if (settings->standstill_pulses &&
+        settings->initial_position == DRIVE_INITIAL_POSITION_ASSUMED) {
         return design_refuse(error, "standstill_pulses: needs initial_position impulses, which "
                                     "show what the motor's saturation is");
     }
     if (settings->feedback == DRIVE_FEEDBACK_ENCODER &&
-        settings->initial_position != DRIVE_INITIAL_POSITION_TOLD) {
+        settings->initial_position != DRIVE_INITIAL_POSITION_ASSUMED) {
         return design_refuse(error,
                              "initial_position: an encoder has its own way, encoder_zero_known");
     }

@@ -5,7 +5,7 @@
 #include "firmware/drive/drive.h"
 
 /*
- * In a period that the pulses hide from the estimator: `winding` becomes what its model expects.
+ * In a period that the pulses blank to the estimator: `winding` becomes what its model expects.
  * The current that the iron adds to a pulse is not of the model; the voltage that it takes at the
  * resistance is left out of the driving one. Else each pulse, of either sign, would leave a current
  * along the flux that the estimator takes for a resistance.
@@ -17,8 +17,8 @@ void standstill_angle_blank_sample(struct drive *drive, struct channels *winding
 void standstill_angle_begin(struct drive *drive);
 
 /*
- * One period of operation: lays the pulses over the voltage that the hold wants, and tells the
- * estimator what they have shown. `before`: the current control before this period.
+ * One period of operation: lays the pulses over the voltage that the hold wants, and presets in
+ * the estimator what they have shown. `before`: the current control before this period.
  */
 void standstill_angle_step(struct drive *drive, const struct estimate *estimate,
                            const struct current_control *before, struct phases *voltage);

@@ -18,7 +18,7 @@ static const double two_pi = 6.28318530717958647693;
 static const double error_turns = 3.0 / 360.0;
 static const double error_counts = 0.75;
 static const double rest_turns = 1.0 / 360.0;
-static const double following_turns = 0.125;
+static const double deviation_turns = 0.125;
 static const double load_turns = 0.0625; /* 2 sin d = sin(d + 22.5 degrees): sin d = 0.33 */
 static const double friction_turns = 0.03125;
 
@@ -76,7 +76,7 @@ struct encoder_alignment_params encoder_alignment_design(const struct encoder_al
         .speed_per_turn = coef_from_double(1.0 / task->base->turns_per_period),
         .band = rest_counts > 1.0 ? (uint32_t)rest_counts : 1u,
         .settling = (uint32_t)(task->settling_s / task->period_s + 0.5),
-        .following_max = num_from_double(following_turns + count_turns),
+        .deviation_max = num_from_double(deviation_turns + count_turns),
         .load_min = num_from_double(noise_counts * count_turns),
         .load_max = num_from_double(load_turns),
         .friction_max = num_from_double(friction_turns),
@@ -112,7 +112,7 @@ static void anchor(struct encoder_alignment *alignment, int32_t count)
 
 void encoder_alignment_start(struct encoder_alignment *alignment, int32_t count)
 {
-    alignment->stage = ALIGNMENT_DRAWING;
+    alignment->stage = ALIGNMENT_ALIGNING;
     alignment->way = ALIGNMENT_UP_WEAK;
     alignment->stop = 0u;
     held_angle_start(&alignment->held);
@@ -294,9 +294,9 @@ static enum encoder_alignment_event fail(struct encoder_alignment *alignment)
  * Until the rotor first rests nobody knows its angle, and the hold damps by a speed whose estimate
  * goes by that. So after each swing the rotor is taken to have swung about the held angle.
  */
-static enum encoder_alignment_event draw(struct encoder_alignment *alignment,
-                                         const struct encoder_alignment_params *params,
-                                         int32_t count)
+static enum encoder_alignment_event align(struct encoder_alignment *alignment,
+                                          const struct encoder_alignment_params *params,
+                                          int32_t count)
 {
     if (alignment->looked < encoder_alignment_hold(alignment, params)->look) {
         return ALIGNMENT_GOES_ON;
@@ -344,7 +344,7 @@ static enum encoder_alignment_event read(struct encoder_alignment *alignment,
     if (alignment->looked < hold->look) {
         return ALIGNMENT_GOES_ON;
     }
-    if (!(num_abs(alignment->mean) < params->following_max)) {
+    if (!(num_abs(alignment->mean) < params->deviation_max)) {
         return fail(alignment);
     }
     if (alignment->stage == ALIGNMENT_ENDING) {
@@ -373,6 +373,6 @@ enum encoder_alignment_event encoder_alignment_step(struct encoder_alignment *al
         return ALIGNMENT_GOES_ON;
     }
     look(alignment, params, count);
-    return alignment->stage == ALIGNMENT_DRAWING ? draw(alignment, params, count)
-                                                 : read(alignment, params, current);
+    return alignment->stage == ALIGNMENT_ALIGNING ? align(alignment, params, count)
+                                                  : read(alignment, params, current);
 }

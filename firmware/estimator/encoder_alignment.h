@@ -76,7 +76,7 @@ struct encoder_alignment_params {
     uint32_t band;         /* counts within which a rotor is at rest */
     uint32_t patience;     /* periods for one angle */
     uint32_t settling;     /* periods at the last angle before it is looked at */
-    num_t following_max;   /* electrical turns, as the two below */
+    num_t deviation_max;   /* electrical turns, as the two below */
     num_t load_min;        /* smaller changes of the mean with the current are none */
     num_t load_max;
     num_t friction_max;
@@ -86,7 +86,8 @@ struct encoder_alignment_params {
 };
 
 enum encoder_alignment_stage {
-    ALIGNMENT_DRAWING, /* to the final angle and, since opposite it there is no torque, beside it */
+    ALIGNMENT_ALIGNING, /* to the final angle and, since opposite it there is no torque, beside it
+                         */
     ALIGNMENT_SWEEPING, /* over the electrical turn around it */
     ALIGNMENT_ENDING,   /* at the final angle */
     ALIGNMENT_FOUND,
@@ -156,7 +157,7 @@ encoder_alignment_hold(const struct encoder_alignment *alignment,
                        const struct encoder_alignment_params *params)
 {
     const bool weak =
-        alignment->stage == ALIGNMENT_DRAWING ||
+        alignment->stage == ALIGNMENT_ALIGNING ||
         (alignment->stage == ALIGNMENT_SWEEPING && encoder_alignment_weak(alignment->way));
 
     return &params->hold[weak ? ALIGNMENT_WEAK : ALIGNMENT_STRONG];

@@ -82,7 +82,7 @@ static inline void estimator_preset_current(struct estimator *estimator,
 #undef ESTIMATOR_PRESET_CURRENT
 }
 
-/* The rotor is held from now on. Only this one tells a hold from motion. */
+/* The rotor is held from now on. Only this one distinguishes a hold from motion. */
 static inline void estimator_begin_hold(struct estimator *estimator,
                                         const struct estimator_params *params)
 {
@@ -91,7 +91,7 @@ static inline void estimator_begin_hold(struct estimator *estimator,
     }
 }
 
-/* Only this one tells them from others. */
+/* Only this one distinguishes them from others. */
 static inline void estimator_expect_load(struct estimator *estimator,
                                          const struct estimator_params *params)
 {

@@ -29,7 +29,7 @@ static const double ramps_of_hold = 5.0;
 /* A rotor swings about the vector for some 10 ms. */
 static const double quarter_s = 0.025;
 static const double rest_s = 0.040;
-static const double drawing_s = 0.075; /* behind the ramp, from anywhere */
+static const double aligning_s = 0.075; /* behind the ramp, from anywhere */
 
 /* What the offsets are the mean of, and what the bridge needs to settle before. */
 static const double quiet_s = 6.4e-3;
@@ -86,8 +86,8 @@ static void design_alignment(struct initial_position_params *params,
     params->quarter_periods = (uint32_t)(quarter_s / task->period_s + 0.5);
     params->quarter_step = QUARTER_TURN / params->quarter_periods;
     params->rest_periods = (uint32_t)(rest_s / task->period_s + 0.5);
-    params->drawing_periods =
-        (uint32_t)((drawing_s + ramps_of_hold * task->hold_ramp_s) / task->period_s + 0.5);
+    params->aligning_periods =
+        (uint32_t)((aligning_s + ramps_of_hold * task->hold_ramp_s) / task->period_s + 0.5);
 }
 
 double initial_position_peak_A(const struct initial_position_task *task)
@@ -109,7 +109,7 @@ bool initial_position_design(struct initial_position_params *params,
 
     params->model = *model;
     params->order = task->order;
-    params->lag = task->acts_at_once ? 0u : 1u;
+    params->lag = task->zero_delay ? 0u : 1u;
     if (!design_impulse(params, task->period_s, peak_A / base->current_A)) {
         return design_refuse_limit(
             error, (struct refusal){.quantity = "current of an initial position impulse",
@@ -142,41 +142,41 @@ static const struct phases nothing = {NUM(0.0), NUM(0.0)};
 
 static const struct sincos no_turn = {UNIT(1.0), UNIT(0.0)};
 
-static void enter(struct initial_position *finding, enum initial_position_stage stage)
+static void enter(struct initial_position *detection, enum initial_position_stage stage)
 {
-    finding->stage = stage;
-    finding->periods = 0;
+    detection->stage = stage;
+    detection->periods = 0;
 }
 
-void initial_position_start(struct initial_position *finding,
-                            const struct initial_position_params *params, angle_t home)
+void initial_position_start(struct initial_position *detection,
+                            const struct initial_position_params *params, angle_t final_angle)
 {
     const struct phases none = {NUM(0.0), NUM(0.0)};
 
     /* Field by field: the interrupt has no memory functions of this size (tests/target). */
-    finding->current_offset = none;
-    finding->voltage_offset = none;
-    finding->impulse = 0;
-    finding->expected = none;
+    detection->current_offset = none;
+    detection->voltage_offset = none;
+    detection->impulse = 0;
+    detection->expected = none;
     for (int round = 0; round < IMPULSE_ROUNDS; round++) {
-        finding->round[round] = none;
+        detection->round[round] = none;
     }
-    finding->response = none;
-    finding->repetitions = 0;
-    finding->home = home;
-    finding->direction = 0;
-    finding->current_reference = NUM(0.0);
-    finding->voltage = NUM(0.0);
-    finding->resistance = NUM(0.0);
-    finding->flux = none;
-    finding->current_before = none;
-    finding->attempts = 0;
-    finding->by_impulses = false;
-    finding->angle = 0;
-    finding->asymmetry = NUM(0.0);
-    finding->uncertainty = NUM(0.0);
-    winding_set_resistance(&finding->winding, &params->model, params->model.nominal_resistance);
-    enter(finding, INITIAL_POSITION_QUIET);
+    detection->response = none;
+    detection->repetitions = 0;
+    detection->final_angle = final_angle;
+    detection->direction = 0;
+    detection->current_reference = NUM(0.0);
+    detection->voltage = NUM(0.0);
+    detection->resistance = NUM(0.0);
+    detection->flux = none;
+    detection->current_before = none;
+    detection->attempts = 0;
+    detection->by_impulses = false;
+    detection->angle = 0;
+    detection->asymmetry = NUM(0.0);
+    detection->uncertainty = NUM(0.0);
+    winding_set_resistance(&detection->winding, &params->model, params->model.nominal_resistance);
+    enter(detection, INITIAL_POSITION_QUIET);
 }
 
 static void add(struct phases *sum, struct phases x)
@@ -208,71 +208,71 @@ static struct phases divide(struct phases sum, unit_t share)
     return (struct phases){num_mul_unit(sum.a, share), num_mul_unit(sum.b, share)};
 }
 
-static void begin_alignment(struct initial_position *finding,
+static void begin_alignment(struct initial_position *detection,
                             const struct initial_position_params *params)
 {
-    finding->direction = finding->home;
-    finding->resistance = params->model.nominal_resistance;
-    enter(finding, INITIAL_POSITION_DRAWING);
+    detection->direction = detection->final_angle;
+    detection->resistance = params->model.nominal_resistance;
+    enter(detection, INITIAL_POSITION_ALIGNING);
 }
 
 /* The rotor turns still: all over again, but not for ever. */
-static void wait_for_rest(struct initial_position *finding,
+static void wait_for_rest(struct initial_position *detection,
                           const struct initial_position_params *params)
 {
-    finding->current_offset = finding->voltage_offset = nothing;
-    if (++finding->repetitions == REPETITIONS) {
-        begin_alignment(finding, params);
+    detection->current_offset = detection->voltage_offset = nothing;
+    if (++detection->repetitions == REPETITIONS) {
+        begin_alignment(detection, params);
         return;
     }
-    finding->response = nothing;
+    detection->response = nothing;
     for (int round = 0; round < IMPULSE_ROUNDS; round++) {
-        finding->round[round] = nothing;
+        detection->round[round] = nothing;
     }
-    finding->impulse = 0;
-    enter(finding, INITIAL_POSITION_QUIET);
+    detection->impulse = 0;
+    enter(detection, INITIAL_POSITION_QUIET);
 }
 
 /* Currents and voltages that are measured while there are none. */
-static void listen(struct initial_position *finding, const struct initial_position_params *params,
+static void listen(struct initial_position *detection, const struct initial_position_params *params,
                    struct phases current, struct phases voltage)
 {
-    if (finding->periods >= params->quiet_begin) {
-        add(&finding->current_offset, current);
-        add(&finding->voltage_offset, voltage);
+    if (detection->periods >= params->quiet_begin) {
+        add(&detection->current_offset, current);
+        add(&detection->voltage_offset, voltage);
     }
-    if (++finding->periods == params->quiet_begin + params->quiet_periods) {
-        finding->current_offset = divide(finding->current_offset, params->per_quiet_period);
-        finding->voltage_offset = divide(finding->voltage_offset, params->per_quiet_period);
-        if (num_abs(finding->current_offset.a) < params->quiet_max &&
-            num_abs(finding->current_offset.b) < params->quiet_max) {
-            enter(finding, INITIAL_POSITION_IMPULSES);
+    if (++detection->periods == params->quiet_begin + params->quiet_periods) {
+        detection->current_offset = divide(detection->current_offset, params->per_quiet_period);
+        detection->voltage_offset = divide(detection->voltage_offset, params->per_quiet_period);
+        if (num_abs(detection->current_offset.a) < params->quiet_max &&
+            num_abs(detection->current_offset.b) < params->quiet_max) {
+            enter(detection, INITIAL_POSITION_IMPULSES);
         } else {
-            wait_for_rest(finding, params);
+            wait_for_rest(detection, params);
         }
     }
 }
 
-static struct impulse present_impulse(const struct initial_position *finding,
+static struct impulse present_impulse(const struct initial_position *detection,
                                       const struct initial_position_params *params)
 {
     if (is_published(params)) {
-        return (struct impulse){.in_b = finding->impulse >= 2u,
-                                .negative = finding->impulse % 2u == 1u};
+        return (struct impulse){.in_b = detection->impulse >= 2u,
+                                .negative = detection->impulse % 2u == 1u};
     }
-    return impulse_of(finding->impulse);
+    return impulse_of(detection->impulse);
 }
 
 /* The sample at the end of an impulse. */
-static void take_peak(struct initial_position *finding, struct impulse impulse,
+static void take_peak(struct initial_position *detection, struct impulse impulse,
                       struct phases current)
 {
     const num_t measured = impulse.in_b ? current.b : current.a;
-    const num_t expected = impulse.in_b ? finding->expected.b : finding->expected.a;
-    struct phases *round = &finding->round[impulse.round];
+    const num_t expected = impulse.in_b ? detection->expected.b : detection->expected.a;
+    struct phases *round = &detection->round[impulse.round];
 
     *(impulse.in_b ? &round->b : &round->a) += measured - expected;
-    *(impulse.in_b ? &finding->response.b : &finding->response.a) +=
+    *(impulse.in_b ? &detection->response.b : &detection->response.a) +=
         num_mul_unit(num_abs(measured), UNIT(1.0 / IMPULSES));
 }
 
@@ -283,9 +283,10 @@ static bool winding_responds(const struct initial_position_params *params, num_t
 }
 
 /* The rounds differ by as much as their sum is uncertain. */
-static void evaluate(struct initial_position *finding, const struct initial_position_params *params)
+static void evaluate(struct initial_position *detection,
+                     const struct initial_position_params *params)
 {
-    const struct phases *round = finding->round;
+    const struct phases *round = detection->round;
     const struct phases sum = {round[0].a + round[1].a, round[0].b + round[1].b};
     const num_t asymmetry = length_squared(sum);
     num_t error = params->floor_squared;
@@ -293,19 +294,19 @@ static void evaluate(struct initial_position *finding, const struct initial_posi
     if (!is_published(params)) {
         error += length_squared(difference(round[0], round[1]));
     }
-    finding->asymmetry = num_sqrt(asymmetry);
-    finding->uncertainty = num_sqrt(error);
-    if (!winding_responds(params, finding->response.a) ||
-        !winding_responds(params, finding->response.b)) {
-        enter(finding, INITIAL_POSITION_NOT_FOUND);
+    detection->asymmetry = num_sqrt(asymmetry);
+    detection->uncertainty = num_sqrt(error);
+    if (!winding_responds(params, detection->response.a) ||
+        !winding_responds(params, detection->response.b)) {
+        enter(detection, INITIAL_POSITION_NOT_FOUND);
     } else if (asymmetry > num_mul_coef(error, params->certainty)) {
-        finding->by_impulses = true;
-        finding->angle = angle_of_vector(sum.a, sum.b);
-        enter(finding, INITIAL_POSITION_FOUND);
+        detection->by_impulses = true;
+        detection->angle = angle_of_vector(sum.a, sum.b);
+        enter(detection, INITIAL_POSITION_FOUND);
     } else if (asymmetry > num_mul_coef(params->floor_squared, params->certainty)) {
-        wait_for_rest(finding, params); /* the iron shows something, but not the same each time */
+        wait_for_rest(detection, params); /* the iron shows something, but not the same each time */
     } else {
-        begin_alignment(finding, params);
+        begin_alignment(detection, params);
     }
 }
 
@@ -314,24 +315,24 @@ static void evaluate(struct initial_position *finding, const struct initial_posi
  * `lag` periods later. Its last sample taken, the bridge opens: the diodes bring the current to
  * zero faster than it came, and keep it there.
  */
-static struct initial_position_output give_impulse(struct initial_position *finding,
+static struct initial_position_output give_impulse(struct initial_position *detection,
                                                    const struct initial_position_params *params,
                                                    struct phases current, struct phases voltage)
 {
-    const uint32_t period = finding->periods++;
+    const uint32_t period = detection->periods++;
     const uint32_t begin = 1u + params->lag;
     const uint32_t end = begin + params->impulse_periods;
-    const struct impulse impulse = present_impulse(finding, params);
+    const struct impulse impulse = present_impulse(detection, params);
     struct initial_position_output output = {.bridge_on = period < end, .voltage = nothing};
 
     if (period <= begin) {
-        finding->expected = nothing;
+        detection->expected = nothing;
     } else if (period <= end) {
-        finding->expected = predict_current(&params->model, &finding->winding, finding->expected,
-                                            NUM(0.0), no_turn, voltage);
+        detection->expected = predict_current(&params->model, &detection->winding,
+                                              detection->expected, NUM(0.0), no_turn, voltage);
     }
     if (period == end) {
-        take_peak(finding, impulse, current);
+        take_peak(detection, impulse, current);
     }
     if (period > 0u) {
         output.voltage =
@@ -339,148 +340,150 @@ static struct initial_position_output give_impulse(struct initial_position *find
                                                                      : params->impulse_voltage);
     }
     if (period == end + params->impulse_periods) {
-        finding->periods = 0;
-        if (++finding->impulse == impulses_of(params)) {
-            evaluate(finding, params);
+        detection->periods = 0;
+        if (++detection->impulse == impulses_of(params)) {
+            evaluate(detection, params);
         }
     }
     return output;
 }
 
-double initial_position_confidence(const struct initial_position *finding)
+double initial_position_confidence(const struct initial_position *detection)
 {
-    return num_to_double(finding->asymmetry) / num_to_double(finding->uncertainty);
+    return num_to_double(detection->asymmetry) / num_to_double(detection->uncertainty);
 }
 
 /* 1/(1 + e)^2 = 1 - 2 e + 3 e^2 - ..., where e is below 0.2. */
-num_t initial_position_full_asymmetry(const struct initial_position *finding,
+num_t initial_position_full_asymmetry(const struct initial_position *detection,
                                       const struct initial_position_params *params)
 {
-    const num_t response = num_half(finding->response.a + finding->response.b);
+    const num_t response = num_half(detection->response.a + detection->response.b);
     const num_t excess =
         num_limit(num_mul_coef(response, params->per_response) - NUM(1.0), NUM(0.2));
 
-    return finding->asymmetry -
-           num_mul(finding->asymmetry,
+    return detection->asymmetry -
+           num_mul(detection->asymmetry,
                    excess + excess - num_mul(NUM(3.0), num_mul(excess, excess)));
 }
 
 /* ---- alignment ---- */
 
 /* Turns the vector evenly by a quarter from `from`, and rests. */
-static void turn_vector(struct initial_position *finding,
+static void turn_vector(struct initial_position *detection,
                         const struct initial_position_params *params, angle_t from, bool onwards)
 {
-    const uint32_t turned = finding->periods < params->quarter_periods
-                                ? params->quarter_step * finding->periods
+    const uint32_t turned = detection->periods < params->quarter_periods
+                                ? params->quarter_step * detection->periods
                                 : QUARTER_TURN;
 
-    finding->direction = onwards ? from + turned : from - turned;
+    detection->direction = onwards ? from + turned : from - turned;
 }
 
-/* The magnet's flux has turned from a quarter aside to home; all in units of that flux. */
-static bool rotor_has_followed(const struct initial_position *finding,
+/* The magnet's flux has turned from the offset by a quarter to the final angle; all in units of
+ * that flux. */
+static bool rotor_has_followed(const struct initial_position *detection,
                                const struct initial_position_params *params, struct phases current)
 {
-    const struct sincos home = sincos_of(finding->home);
-    const struct phases change = difference(current, finding->current_before);
-    const struct phases turned = {num_from_unit(home.cos) + num_from_unit(home.sin),
-                                  num_from_unit(home.sin) - num_from_unit(home.cos)};
+    const struct sincos final_angle = sincos_of(detection->final_angle);
+    const struct phases change = difference(current, detection->current_before);
+    const struct phases turned = {num_from_unit(final_angle.cos) + num_from_unit(final_angle.sin),
+                                  num_from_unit(final_angle.sin) - num_from_unit(final_angle.cos)};
     const struct phases error = {
-        finding->flux.a - num_mul_coef(change.a, params->flux_per_current) - turned.a,
-        finding->flux.b - num_mul_coef(change.b, params->flux_per_current) - turned.b};
+        detection->flux.a - num_mul_coef(change.a, params->flux_per_current) - turned.a,
+        detection->flux.b - num_mul_coef(change.b, params->flux_per_current) - turned.b};
 
     return length_squared(error) < NUM(2.0 * 0.4 * 0.4);
 }
 
-static void end_stage(struct initial_position *finding,
+static void end_stage(struct initial_position *detection,
                       const struct initial_position_params *params, struct phases current)
 {
-    switch (finding->stage) {
-    case INITIAL_POSITION_DRAWING:
-        enter(finding, INITIAL_POSITION_ASIDE);
+    switch (detection->stage) {
+    case INITIAL_POSITION_ALIGNING:
+        enter(detection, INITIAL_POSITION_OFFSET);
         break;
-    case INITIAL_POSITION_ASIDE:
-        finding->flux = nothing;
-        finding->current_before = current;
-        enter(finding, INITIAL_POSITION_HOME);
+    case INITIAL_POSITION_OFFSET:
+        detection->flux = nothing;
+        detection->current_before = current;
+        enter(detection, INITIAL_POSITION_FINAL);
         break;
     default:
-        if (rotor_has_followed(finding, params, current)) {
-            finding->angle = finding->home;
-            enter(finding, INITIAL_POSITION_FOUND);
-        } else if (++finding->attempts == ATTEMPTS) {
-            enter(finding, INITIAL_POSITION_NOT_FOUND);
+        if (rotor_has_followed(detection, params, current)) {
+            detection->angle = detection->final_angle;
+            enter(detection, INITIAL_POSITION_FOUND);
+        } else if (++detection->attempts == ATTEMPTS) {
+            enter(detection, INITIAL_POSITION_NOT_FOUND);
         } else {
-            enter(finding, INITIAL_POSITION_ASIDE);
+            enter(detection, INITIAL_POSITION_OFFSET);
         }
     }
 }
 
-/* Resistance while aside and at rest, flux on the way home. */
-static void measure(struct initial_position *finding, const struct initial_position_params *params,
-                    struct phases current, struct phases voltage, num_t along)
+/* Resistance at rest at the offset, flux on the way to the final angle. */
+static void measure(struct initial_position *detection,
+                    const struct initial_position_params *params, struct phases current,
+                    struct phases voltage, num_t along)
 {
-    if (finding->stage == INITIAL_POSITION_HOME) {
-        const struct phases magnet = {voltage.a - num_mul(current.a, finding->resistance),
-                                      voltage.b - num_mul(current.b, finding->resistance)};
+    if (detection->stage == INITIAL_POSITION_FINAL) {
+        const struct phases magnet = {voltage.a - num_mul(current.a, detection->resistance),
+                                      voltage.b - num_mul(current.b, detection->resistance)};
 
-        finding->flux.a += num_mul_coef(magnet.a, params->flux);
-        finding->flux.b += num_mul_coef(magnet.b, params->flux);
-    } else if (finding->stage == INITIAL_POSITION_ASIDE &&
-               finding->periods > params->quarter_periods + params->rest_periods / 2u) {
-        const num_t across_winding = park(voltage, sincos_of(finding->direction)).d;
+        detection->flux.a += num_mul_coef(magnet.a, params->flux);
+        detection->flux.b += num_mul_coef(magnet.b, params->flux);
+    } else if (detection->stage == INITIAL_POSITION_OFFSET &&
+               detection->periods > params->quarter_periods + params->rest_periods / 2u) {
+        const num_t across_winding = park(voltage, sincos_of(detection->direction)).d;
 
-        finding->resistance += num_mul_coef(across_winding - num_mul(along, finding->resistance),
-                                            params->resistance_gain);
+        detection->resistance += num_mul_coef(
+            across_winding - num_mul(along, detection->resistance), params->resistance_gain);
     }
 }
 
-static struct initial_position_output align(struct initial_position *finding,
+static struct initial_position_output align(struct initial_position *detection,
                                             const struct initial_position_params *params,
                                             struct phases current, struct phases voltage)
 {
-    const struct sincos direction = sincos_of(finding->direction);
+    const struct sincos direction = sincos_of(detection->direction);
     const num_t along = park(current, direction).d;
-    const uint32_t length = finding->stage == INITIAL_POSITION_DRAWING
-                                ? params->drawing_periods
+    const uint32_t length = detection->stage == INITIAL_POSITION_ALIGNING
+                                ? params->aligning_periods
                                 : params->quarter_periods + params->rest_periods;
 
-    measure(finding, params, current, voltage, along);
-    finding->current_reference = num_clamp(finding->current_reference + params->current_ramp,
-                                           NUM(0.0), params->alignment_current);
-    finding->voltage += num_mul_coef(finding->current_reference - along, params->current_gain);
-    if (finding->stage == INITIAL_POSITION_ASIDE) {
-        turn_vector(finding, params, finding->home, true);
-    } else if (finding->stage == INITIAL_POSITION_HOME) {
-        turn_vector(finding, params, finding->home + QUARTER_TURN, false);
+    measure(detection, params, current, voltage, along);
+    detection->current_reference = num_clamp(detection->current_reference + params->current_ramp,
+                                             NUM(0.0), params->alignment_current);
+    detection->voltage += num_mul_coef(detection->current_reference - along, params->current_gain);
+    if (detection->stage == INITIAL_POSITION_OFFSET) {
+        turn_vector(detection, params, detection->final_angle, true);
+    } else if (detection->stage == INITIAL_POSITION_FINAL) {
+        turn_vector(detection, params, detection->final_angle + QUARTER_TURN, false);
     }
-    if (++finding->periods == length) {
-        end_stage(finding, params, current);
+    if (++detection->periods == length) {
+        end_stage(detection, params, current);
     }
     return (struct initial_position_output){
         .bridge_on = true,
         .compensated = true,
-        .voltage = inverse_park((struct dq){finding->voltage, NUM(0.0)}, direction)};
+        .voltage = inverse_park((struct dq){detection->voltage, NUM(0.0)}, direction)};
 }
 
-struct initial_position_output initial_position_step(struct initial_position *finding,
+struct initial_position_output initial_position_step(struct initial_position *detection,
                                                      const struct initial_position_params *params,
                                                      struct phases current, struct phases voltage)
 {
-    const struct phases driven = difference(current, finding->current_offset);
-    const struct phases driving = difference(voltage, finding->voltage_offset);
+    const struct phases driven = difference(current, detection->current_offset);
+    const struct phases driving = difference(voltage, detection->voltage_offset);
 
-    switch (finding->stage) {
+    switch (detection->stage) {
     case INITIAL_POSITION_QUIET:
-        listen(finding, params, current, voltage);
+        listen(detection, params, current, voltage);
         return (struct initial_position_output){.bridge_on = true, .voltage = nothing};
     case INITIAL_POSITION_IMPULSES:
-        return give_impulse(finding, params, driven, driving);
-    case INITIAL_POSITION_DRAWING:
-    case INITIAL_POSITION_ASIDE:
-    case INITIAL_POSITION_HOME:
-        return align(finding, params, driven, driving);
+        return give_impulse(detection, params, driven, driving);
+    case INITIAL_POSITION_ALIGNING:
+    case INITIAL_POSITION_OFFSET:
+    case INITIAL_POSITION_FINAL:
+        return align(detection, params, driven, driving);
     case INITIAL_POSITION_FOUND:
     case INITIAL_POSITION_NOT_FOUND:
         break;

@@ -7,7 +7,7 @@
  *
  *   i(+Delta) + i(-Delta) = 6 beta L0 I_f Delta^2 cos(phi),   sin(phi) in phase b
  *
- * whose sign tells the two ends of the magnet apart. What a motor without saturation would have
+ * whose sign distinguishes the two ends of the magnet. What a motor without saturation would have
  * drawn under the voltages that were measured is taken off each sample first, so that dead time, a
  * bus that sags, and unequal impulses leave nothing.
  *
@@ -18,7 +18,7 @@
  *
  * By alignment, where the iron shows too little: a voltage vector draws the rotor in, turned by a
  * current controlled so slowly that the winding's resistance damps the swing. The vector then goes
- * a quarter turn aside and back. The flux that the rotor brings along, the integral of u - R i less
+ * a quarter turn on and back. The flux that the rotor brings along, the integral of u - R i less
  * L times the change of i, must be that of the magnet turned by a quarter: else it has not
  * followed, and the position has not been found.
  *
@@ -58,7 +58,7 @@ struct initial_position_params {
     coef_t resistance_gain;
     coef_t flux;             /* magnet fluxes per voltage and period */
     coef_t flux_per_current; /* L in these units */
-    uint32_t drawing_periods;
+    uint32_t aligning_periods;
     uint32_t quarter_periods; /* in which the vector turns by a quarter */
     angle_t quarter_step;     /* per period */
     uint32_t rest_periods;    /* in which the rotor comes to rest behind it */
@@ -67,9 +67,9 @@ struct initial_position_params {
 enum initial_position_stage {
     INITIAL_POSITION_QUIET,    /* bridge on, no voltage: offsets that come with the bridge */
     INITIAL_POSITION_IMPULSES, /* one after the other */
-    INITIAL_POSITION_DRAWING,  /* alignment: the current comes in, the rotor comes to rest */
-    INITIAL_POSITION_ASIDE,    /* the vector goes a quarter turn on, the resistance is measured */
-    INITIAL_POSITION_HOME,     /* it comes back, the flux is summed up */
+    INITIAL_POSITION_ALIGNING, /* alignment: the current comes in, the rotor comes to rest */
+    INITIAL_POSITION_OFFSET,   /* the vector goes a quarter turn on, the resistance is measured */
+    INITIAL_POSITION_FINAL,    /* it comes back, the flux is summed up */
     INITIAL_POSITION_FOUND,
     INITIAL_POSITION_NOT_FOUND
 };
@@ -89,7 +89,7 @@ struct initial_position {
     uint32_t repetitions;                /* because the rotor was turning */
 
     /* alignment */
-    angle_t home;
+    angle_t final_angle;
     angle_t direction; /* of the vector */
     num_t current_reference;
     num_t voltage; /* along the vector */
@@ -107,7 +107,7 @@ struct initial_position {
 
 struct initial_position_task {
     double period_s;
-    bool acts_at_once;
+    bool zero_delay;
     enum impulse_order order;
     double current_A_per_code;
     double current_range_A;
@@ -133,9 +133,10 @@ bool initial_position_design(struct initial_position_params *params,
                              const struct initial_position_task *task,
                              char error[DESIGN_ERROR_TEXT]);
 
-/* Begins with the bridge open and the rotor at rest. An alignment draws the rotor to `home`. */
-void initial_position_start(struct initial_position *finding,
-                            const struct initial_position_params *params, angle_t home);
+/* Begins with the bridge open and the rotor at rest. An alignment draws the rotor to `final_angle`.
+ */
+void initial_position_start(struct initial_position *detection,
+                            const struct initial_position_params *params, angle_t final_angle);
 
 /* What the bridge is to do. */
 struct initial_position_output {
@@ -148,7 +149,7 @@ struct initial_position_output {
  * One period: currents of S(k), voltages the means over S(k-1)...S(k). In the stages found and not
  * found nothing is left to do; an alignment that has found leaves its current flowing.
  */
-struct initial_position_output initial_position_step(struct initial_position *finding,
+struct initial_position_output initial_position_step(struct initial_position *detection,
                                                      const struct initial_position_params *params,
                                                      struct phases current, struct phases voltage);
 
@@ -156,15 +157,15 @@ struct initial_position_output initial_position_step(struct initial_position *fi
  * The asymmetry, had the impulses had the size they were designed for: a supply that sags makes
  * them smaller, and it goes with their square.
  */
-num_t initial_position_full_asymmetry(const struct initial_position *finding,
+num_t initial_position_full_asymmetry(const struct initial_position *detection,
                                       const struct initial_position_params *params);
 
 /* Background: the asymmetry over its uncertainty; below 5 the impulses are not relied on. */
-double initial_position_confidence(const struct initial_position *finding);
+double initial_position_confidence(const struct initial_position *detection);
 
-static inline bool initial_position_done(const struct initial_position *finding)
+static inline bool initial_position_done(const struct initial_position *detection)
 {
-    return finding->stage >= INITIAL_POSITION_FOUND;
+    return detection->stage >= INITIAL_POSITION_FOUND;
 }
 
 #endif

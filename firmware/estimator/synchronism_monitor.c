@@ -50,14 +50,14 @@ static const double standing_s = 14.4e-3;
 static const double standing_torque = 0.05;
 
 /* Moves that ask for more than the motor has are caught up with in half of this. */
-static const double lagging_s = 0.1;
+static const double behind_s = 0.1;
 
 /* Twice what quick changes of load take to pass. */
-static const double mirrored_s = 6.4e-3;
+static const double opposite_s = 6.4e-3;
 
-static const double torn_load = 1.6; /* of the rated torque */
-static const double torn_s = 3.2e-3;
-static const double doubt_s = 5e-3;
+static const double pull_out_load = 1.6; /* of the rated torque */
+static const double pull_out_s = 3.2e-3;
+static const double warning_s = 5e-3;
 static const double doubtful_s = 20e-3;
 
 static uint32_t block_periods(double period_s)
@@ -118,13 +118,13 @@ synchronism_monitor_design(const struct synchronism_monitor_task *task)
             num_from_double((standing_rad_s + feigned_rad_s) / base->speed_rad_s),
         .standing_speed = num_from_double(standing_rad_s / base->speed_rad_s),
         .full_current = num_from_double(0.99 * task->current_limit_A / base->current_A),
-        .load_limit = num_from_double(torn_load * rated_torque_Nm / base->torque_Nm),
+        .load_limit = num_from_double(pull_out_load * rated_torque_Nm / base->torque_Nm),
         .standing_blocks = blocks(standing_s, block_s),
-        .lagging_blocks = blocks(lagging_s, block_s),
-        .torn_blocks = blocks(torn_s, block_s),
-        .mirrored_blocks = blocks(mirrored_s, block_s),
+        .behind_blocks = blocks(behind_s, block_s),
+        .pull_out_blocks = blocks(pull_out_s, block_s),
+        .opposite_blocks = blocks(opposite_s, block_s),
         .settled_blocks = task->resistance_adapted ? blocks(settled_s, block_s) : UINT32_MAX,
-        .doubt_blocks = blocks(doubt_s, block_s),
+        .warning_blocks = blocks(warning_s, block_s),
         .doubtful_blocks = blocks(doubtful_s, block_s),
     };
 }
@@ -177,9 +177,9 @@ enum synchronism synchronism_monitor_judge_motion(struct synchronism_monitor *mo
     monitor->held = 0u;
     monitor->settled = NUM(0.0);
     monitor->led_speed = NUM(0.0);
-    monitor->mirrored = count(monitor->mirrored, magnitude > params->standing_speed &&
+    monitor->opposite = count(monitor->opposite, magnitude > params->standing_speed &&
                                                      !(monitor->disturbance < allowed));
-    return monitor->mirrored < params->mirrored_blocks ? SYNCHRONISM_SURE : SYNCHRONISM_LOST;
+    return monitor->opposite < params->opposite_blocks ? SYNCHRONISM_SURE : SYNCHRONISM_LOST;
 }
 
 enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *monitor,
@@ -191,7 +191,7 @@ enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *moni
     const num_t allowed =
         params->settled_floor + num_half(monitor->led_speed) + quarter(magnitude - led);
 
-    monitor->mirrored = 0u;
+    monitor->opposite = 0u;
     monitor->led_speed += eighth(led - monitor->led_speed);
     if (monitor->held < params->settled_blocks) {
         monitor->held++;
@@ -221,12 +221,12 @@ enum synchronism synchronism_monitor_judge_load(struct synchronism_monitor *moni
                                                 const struct synchronism_monitor_params *params,
                                                 num_t load_torque)
 {
-    monitor->torn = count(monitor->torn, num_abs(load_torque) > params->load_limit);
-    return stalled_after(monitor, params, monitor->torn, params->torn_blocks);
+    monitor->pull_out = count(monitor->pull_out, num_abs(load_torque) > params->load_limit);
+    return stalled_after(monitor, params, monitor->pull_out, params->pull_out_blocks);
 }
 
-/* Electrical turns beside its reference at which what holds a rotor loses its grip. */
-#define GRIP NUM(0.25)
+/* The load angle at which the current that holds a rotor yields, electrical turns. */
+#define PULL_OUT_ANGLE NUM(0.25)
 
 enum synchronism
 synchronism_monitor_judge_following(struct synchronism_monitor *monitor,
@@ -235,27 +235,27 @@ synchronism_monitor_judge_following(struct synchronism_monitor *monitor,
 {
     const num_t opening = error < NUM(0.0) ? -deficit : deficit;
 
-    monitor->lagging = count(monitor->lagging, monitor->full && num_abs(error) > GRIP &&
-                                                   opening > -params->standing_speed);
-    return stalled_after(monitor, params, monitor->lagging, params->lagging_blocks);
+    monitor->behind = count(monitor->behind, monitor->full && num_abs(error) > PULL_OUT_ANGLE &&
+                                                 opening > -params->standing_speed);
+    return stalled_after(monitor, params, monitor->behind, params->behind_blocks);
 }
 
 enum synchronism synchronism_monitor_judge_grip(struct synchronism_monitor *monitor,
                                                 const struct synchronism_monitor_params *params,
                                                 num_t error)
 {
-    const num_t distance = num_abs(error);
+    const num_t load_angle = num_abs(error);
 
-    if (distance > num_half(GRIP)) {
+    if (load_angle > num_half(PULL_OUT_ANGLE)) {
         monitor->doubtful = params->doubtful_blocks;
     }
-    return distance > GRIP ? SYNCHRONISM_STALLED : SYNCHRONISM_SURE;
+    return load_angle > PULL_OUT_ANGLE ? SYNCHRONISM_STALLED : SYNCHRONISM_SURE;
 }
 
 enum synchronism synchronism_monitor_doubt(struct synchronism_monitor *monitor,
                                            const struct synchronism_monitor_params *params)
 {
-    if (monitor->lagging >= params->doubt_blocks || monitor->standing >= params->doubt_blocks) {
+    if (monitor->behind >= params->warning_blocks || monitor->standing >= params->warning_blocks) {
         monitor->doubtful = params->doubtful_blocks;
     }
     if (monitor->doubtful == 0u) {

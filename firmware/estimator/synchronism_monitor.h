@@ -1,6 +1,6 @@
 /*
  * Does the rotor still run with its estimate? Watches an invariant EKF while the drive is in
- * operation, in blocks of 1.6 ms, and tells two things apart:
+ * operation, in blocks of 1.6 ms, and distinguishes two things:
  *
  * Lost synchronism: the estimate no longer belongs to the rotor. A rotor that stands delta beside
  * its estimate induces, in the estimated frame, Km w (-sin N delta, cos N delta). The q part is
@@ -22,7 +22,7 @@
  * that is just no step to the estimator: so there half of the mean of |w_hat| over eight blocks
  * stands for the quarter.
  *
- * Half a turn beside the rotor the estimate has a second equilibrium: it turns against the rotor,
+ * On the opposite half-turn the estimate has a second equilibrium: it turns against the rotor,
  * and what is left in d, 0.4 Km |w_hat|, draws its angle along. Of a sound estimate nothing is left
  * there for long. Lost, too, in motion faster than the standing speed below of a known resistance,
  *
@@ -31,11 +31,11 @@
  * Stalled: the estimate is sound and says that the rotor does not follow:
  *   standing    all current is in use and yet the rotor stands, or seems to turn no faster than an
  *               error of the resistance that is not known yet feigns: at full current r i / Km
- *   lagging     all current is in use and yet the rotor falls further behind
- *   torn        a load of 1.6 times the rated torque, or, holding, a rotor a quarter of an
- * electrical turn beside its reference, where the current that holds it has lost its grip
+ *   behind      all current is in use and yet the rotor falls further behind
+ *   pull-out    a load of 1.6 times the rated torque, or, holding, a load angle of a quarter of an
+ *               electrical turn, beyond which the current that holds the rotor yields
  *
- * Doubtful: half of what makes a loss, half of the way to being torn off, or no torque left.
+ * Doubtful: half of what makes a loss, half of the load angle of pull-out, or no torque left.
  *
  * Limits. A rotor that stands radiates nothing: a wrong angle shows as soon as it moves, in motion
  * with V_0 / Km (1.6 rad/s on the reference motor) and more. Drawn out of its hold by a load that
@@ -76,12 +76,12 @@ struct synchronism_monitor_params {
     num_t full_current;
     num_t load_limit;
     uint32_t standing_blocks; /* in a row, to be called so */
-    uint32_t lagging_blocks;
-    uint32_t torn_blocks;
+    uint32_t behind_blocks;   /* in a row, falling behind, to be stalled */
+    uint32_t pull_out_blocks; /* likewise, of a load beyond the limit */
     uint32_t settled_blocks;  /* of a hold, until it is */
-    uint32_t mirrored_blocks; /* in a row, to be called so */
-    uint32_t doubt_blocks;    /* in a row, standing or lagging, to be doubted */
-    uint32_t doubtful_blocks; /* that a doubt lasts */
+    uint32_t opposite_blocks; /* in a row, to be on the opposite half-turn */
+    uint32_t warning_blocks;  /* in a row, standing or falling behind, to be doubtful */
+    uint32_t doubtful_blocks; /* that it stays doubtful, from then on */
 };
 
 enum synchronism { SYNCHRONISM_SURE, SYNCHRONISM_DOUBTFUL, SYNCHRONISM_STALLED, SYNCHRONISM_LOST };
@@ -94,11 +94,11 @@ struct synchronism_monitor {
     num_t settled;              /* mean of e_d over eight blocks of a hold */
     num_t led_speed;            /* likewise of |w_hat|, 0 in periods in which the hold leads none */
     uint32_t held;              /* blocks of the hold; in a row, as those below */
-    uint32_t mirrored;
+    uint32_t opposite;
     bool full; /* all current is in use */
     uint32_t standing;
-    uint32_t lagging;
-    uint32_t torn;
+    uint32_t behind;
+    uint32_t pull_out;
     uint32_t doubtful; /* blocks left */
 };
 
@@ -127,8 +127,7 @@ enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *moni
                                                 const struct synchronism_monitor_params *params,
                                                 num_t speed, bool leads);
 
-/* In motion instead: whether the disturbance lasts, as half a turn beside the rotor: lost, or
-   sure. */
+/* In motion instead: whether the disturbance lasts, as on the opposite half-turn: lost, or sure. */
 enum synchronism synchronism_monitor_judge_motion(struct synchronism_monitor *monitor,
                                                   const struct synchronism_monitor_params *params,
                                                   num_t speed, num_t i_d);
@@ -150,7 +149,7 @@ synchronism_monitor_judge_following(struct synchronism_monitor *monitor,
                                     const struct synchronism_monitor_params *params, num_t error,
                                     num_t deficit);
 
-/* In a hold: whether the current still holds the rotor: stalled, or sure. */
+/* In a hold: whether the load angle is that of pull-out: stalled, or sure. */
 enum synchronism synchronism_monitor_judge_grip(struct synchronism_monitor *monitor,
                                                 const struct synchronism_monitor_params *params,
                                                 num_t error);

@@ -69,9 +69,9 @@ enum { DRIVE_LAW_GAINS = 12 };
 enum { DRIVE_DETENT_COEFFICIENTS = 6 };
 
 /*
- * Everything a drive is told before it is enabled: a member for each row of settings_table.h, with
- * its unit, range, default and meaning there. Fill with drive_settings_default first. A real number
- * may be NaN, not given, where the table says that it follows from motor, board and period.
+ * Everything a drive is set to before it is enabled: a member for each row of settings_table.h,
+ * with its unit, range, default and meaning there. Fill with drive_settings_default first. A real
+ * number may be NaN, not given, where the table says that it follows from motor, board and period.
  */
 #define DRIVE_CHOICE_MEMBER(index, member, type, constants, preset, when, sentence)                \
     enum type member;
@@ -135,12 +135,12 @@ enum drive_parameter { DRIVE_PARAMETERS_TABLE(DRIVE_PARAMETER_PLACE) DRIVE_PARAM
  * Sine, set-points, velocity and retarget are planned by drive_background, DRIVE_LEAD_s ahead: they
  * act in the period they are addressed to if they are posted that much earlier, else that much
  * after their posting. Sine and set-points begin at rest and wait for it, as moves do. Velocity and
- * retarget take over at once whatever is in motion when the commands before them have begun,
+ * retarget preempt at once whatever is in motion when the commands before them have begun,
  * with continuous position, speed and acceleration; so does a stop of these four, with the limits
  * they were given (the sine with its own largest acceleration and jerk), DRIVE_LEAD_s after its
  * period. Until the reference rests behind a sine, set-points, velocity or a stop, moves are
- * refused, because where they would start is not known; a retarget ends where it is told, and moves
- * may follow.
+ * refused, because where they would start is not known; a retarget ends where it is asked to, and
+ * moves may follow.
  *
  * A set-point is reached two intervals, DRIVE_LEAD_s and a period after its posting. The stream
  * ends when the last position comes three times; if it runs dry before, the reference comes to rest

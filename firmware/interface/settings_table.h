@@ -26,7 +26,7 @@
 #ifndef STEADYSTEP_SETTINGS_TABLE_H
 #define STEADYSTEP_SETTINGS_TABLE_H
 
-/* What the drive is told of its motor; no preset: a motor file gives all of them. */
+/* What the drive is set to of its motor; no preset: a motor file gives all of them. */
 #define MOTOR_SETTINGS(REAL, COUNT)                                                                \
     REAL(0x2001, resistance_ohm, "ohm", FIXED(1e-3), FIXED(1e3), "R, of one phase")                \
     REAL(0x2002, inductance_H, "H", FIXED(1e-6), FIXED(1.0), "L, of one phase")                    \
@@ -51,7 +51,7 @@
     CHOICE(0x2104, voltage_source, drive_voltage_source, DRIVE_VOLTAGE_SOURCES,                    \
            DRIVE_VOLTAGE_MEASURED, AT_ENABLE, "where the estimator's voltage comes from")          \
     CHOICE(0x2105, initial_position, drive_initial_position, DRIVE_INITIAL_POSITIONS,              \
-           DRIVE_INITIAL_POSITION_TOLD, AT_ENABLE,                                                 \
+           DRIVE_INITIAL_POSITION_ASSUMED, AT_ENABLE,                                              \
            "how a sensorless drive knows where its rotor stands")                                  \
     CHOICE(0x2106, synchronism_policy, drive_synchronism_policy, DRIVE_SYNCHRONISM_POLICIES,       \
            DRIVE_SYNCHRONISM_FAULT, IN_MOTION,                                                     \
@@ -102,7 +102,7 @@
          "step of enabling: hold_on_enable_s before ready; an encoder's zero is found first")      \
     FLAG(0x214c, balance_phases, true, AT_ENABLE,                                                  \
          "step of enabling without an encoder, behind the hold: the ratio of the phases, half a "  \
-         "full step aside and back")                                                               \
+         "full step away and back")                                                                \
     FLAG(0x2142, hold_at_rest, true, AT_ENABLE, "d-axis current at rest; with an encoder false")   \
     FLAG(                                                                                          \
         0x2143, standstill_pulses, false, AT_ENABLE,                                               \
@@ -123,9 +123,9 @@
          "w0 of the state feedback whose damping the hold takes: 200, a quarter of its swing, or " \
          "what the current loop bears")                                                            \
     REAL(0x214a, initial_angle_rad, "rad", FIXED(-1e4), FIXED(1e4), FIXED(0.0), AT_ENABLE,         \
-         "mechanical rotor angle that the drive is told")                                          \
+         "mechanical rotor angle that the drive assumes")                                          \
     REAL(0x214b, initial_angle_error_rad, "rad", FIXED(-10.0), FIXED(10.0), FIXED(0.0), AT_ENABLE, \
-         "added to it, to tell the drive something wrong; for simulation")
+         "added to it, so that the drive assumes something wrong; for simulation")
 
 /* The settings that are one of several: constant, text, sentence. */
 #define DRIVE_FEEDBACK_CHOICES(X)                                                                  \
@@ -150,7 +150,8 @@
       "leg-voltage dividers")
 
 #define DRIVE_INITIAL_POSITION_CHOICES(X)                                                          \
-    X(DRIVE_INITIAL_POSITION_TOLD, "told", "initial_angle_rad, into which the hold draws it")      \
+    X(DRIVE_INITIAL_POSITION_ASSUMED, "assumed",                                                   \
+      "initial_angle_rad, into which the hold draws it")                                           \
     X(DRIVE_INITIAL_POSITION_IMPULSES, "impulses",                                                 \
       "found by voltage impulses within the electrical turn nearest to initial_angle_rad; by "     \
       "alignment if the motor does not show it")                                                   \

@@ -1,7 +1,7 @@
 /*
- * What a port implements for the files of this room, beside serial_line.h and parameter_flash.h;
+ * What a port implements for the files of this module, beside serial_line.h and parameter_flash.h;
  * and its two headers that the build names: STEADYSTEP_DEVICE, the chip as CMSIS-Core wants it
- * told, and STEADYSTEP_FAULTS, what can go wrong at its start.
+ * described, and STEADYSTEP_FAULTS, what can go wrong at its start.
  */
 #ifndef STEADYSTEP_CORTEX_M_PORT_H
 #define STEADYSTEP_CORTEX_M_PORT_H

@@ -56,7 +56,7 @@ static size_t put(struct hal_sil_stream *stream, const uint8_t *bytes, size_t co
     return moved;
 }
 
-/* `until`: stops behind this byte, and tells when it arrived; -1: none. */
+/* `until`: stops behind this byte, and says when it arrived; -1: none. */
 static size_t take(struct hal_sil_stream *stream, uint8_t *bytes, size_t capacity, int until,
                    uint32_t *period)
 {

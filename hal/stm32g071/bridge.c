@@ -122,7 +122,7 @@ bool bridge_hold_open(void)
     return true;
 }
 
-/* Deadlines that passed meanwhile are told with the samples, a trip still forbids. */
+/* Deadlines that passed meanwhile are reported with the samples, a trip still forbids. */
 void bridge_release(void)
 {
     bridge.allowed = bridge.held;

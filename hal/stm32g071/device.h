@@ -1,5 +1,5 @@
 /*
- * The STM32G071 as CMSIS-Core wants it told, and with it the registers and instructions of the
+ * The STM32G071 as CMSIS-Core wants it described, and with it the registers and instructions of the
  * Cortex-M0+. Interrupt lines: RM0444, table of vectors, as far as used; a test compares them with
  * an independent description.
  */

@@ -1,4 +1,4 @@
-/* What this port tells the room of all Cortex-M ports. */
+/* What this port gives the module of all Cortex-M ports. */
 #include "hal/cortex_m/port.h"
 
 #include "hal/cortex_m/parameter_flash.h"

@@ -42,8 +42,9 @@ static struct {
     volatile bool harmed;          /* the line that is coming in */
 
     uint32_t read, lines_read;
-    uint32_t lost_period;                       /* of the last line that was dropped */
-    bool tell_lost, tell_lost_end, tell_harmed; /* HAL_STREAM_LOST, its '\n'; for a beginning */
+    uint32_t lost_period; /* of the last line that was dropped */
+    bool report_lost, report_lost_end,
+        report_harmed; /* HAL_STREAM_LOST, its '\n'; for a beginning */
 } receiver;
 
 static struct {
@@ -61,7 +62,7 @@ static void set_rate(uint64_t clock_Hz)
     LPUART1->brr = (uint32_t)((256u * clock_Hz + BAUD / 2u) / BAUD); /* RM0444 */
 }
 
-void serial_line_tell(const char *text)
+void serial_line_report(const char *text)
 {
     if ((LPUART1->cr1 & LPUART_CR1_UE) == 0) {
         set_rate(HSI16_Hz);
@@ -112,8 +113,8 @@ static uint32_t received(void)
 
 /*
  * What DMA has overwritten, or is about to, is dropped by lines; whole lines behind it stay.
- * Dropped lines are told by one of HAL_STREAM_LOST alone; a line of which only the end is left gets
- * one, too.
+ * Dropped lines are reported by one of HAL_STREAM_LOST alone; a line of which only the end is left
+ * gets one, too.
  */
 static void drop_what_is_lost(uint32_t end)
 {
@@ -133,12 +134,12 @@ static void drop_what_is_lost(uint32_t end)
         dropped = true;
     }
     if (dropped) {
-        receiver.tell_lost = receiver.tell_lost_end = true;
-        receiver.tell_harmed = false;
+        receiver.report_lost = receiver.report_lost_end = true;
+        receiver.report_harmed = false;
     }
     if (end - receiver.read > BYTES_KEPT) {
         receiver.read = end;
-        receiver.tell_harmed = true;
+        receiver.report_harmed = true;
     }
 }
 
@@ -149,19 +150,19 @@ size_t serial_line_read(uint8_t *bytes, size_t capacity, uint32_t *line_period)
 
     drop_what_is_lost(end);
     while (moved < capacity) {
-        if (receiver.tell_lost) {
-            receiver.tell_lost = false;
+        if (receiver.report_lost) {
+            receiver.report_lost = false;
             bytes[moved++] = HAL_STREAM_LOST;
             continue;
         }
-        if (receiver.tell_lost_end) {
-            receiver.tell_lost_end = false;
+        if (receiver.report_lost_end) {
+            receiver.report_lost_end = false;
             *line_period = receiver.lost_period;
             bytes[moved++] = '\n';
             break;
         }
-        if (receiver.tell_harmed) {
-            receiver.tell_harmed = false;
+        if (receiver.report_harmed) {
+            receiver.report_harmed = false;
             bytes[moved++] = HAL_STREAM_LOST;
             continue;
         }
@@ -182,7 +183,7 @@ size_t serial_line_read(uint8_t *bytes, size_t capacity, uint32_t *line_period)
 
             if (*harmed) {
                 *harmed = false;
-                receiver.tell_harmed = true;
+                receiver.report_harmed = true;
                 continue;
             }
             if (byte == '\n') {

@@ -1,5 +1,5 @@
 /*
- * The STM32G474 as CMSIS-Core wants it told, and with it the registers and instructions of the
+ * The STM32G474 as CMSIS-Core wants it described, and with it the registers and instructions of the
  * Cortex-M4F. Interrupt lines: RM0440, table of vectors, as far as used; a test compares them with
  * an independent description.
  */

@@ -36,7 +36,7 @@ extern uint32_t leg_transfers_due;
 void phase_voltage_sampling_configure(void);
 
 /* Whether sums are in step, of an interrupt that comes late, of the first, or of one behind a
-   period without, which is told as a missed deadline. */
+   period without, which is reported as a missed deadline. */
 bool phase_voltage_sampling_in_step(uint32_t left_a, uint32_t left_b);
 
 /* Adds leg + less leg - of 17 groups, in 37 cycles, with registers that an interrupt need not save.

@@ -77,5 +77,5 @@ REQUIRE(IS_CHANNEL(LEG_A_PLUS_CHANNEL) && IS_CHANNEL(LEG_A_MINUS_CHANNEL) &&
 REQUIRE(ENCODER_TIMER == 0 || ENCODER_TIMER == 4 || ENCODER_TIMER == 5 || ENCODER_TIMER == 8,
         "ENCODER_TIMER must be 4, 5 or 8 (TIM4, TIM5, TIM8), or 0: none");
 REQUIRE(ENCODER_TIMER != 0 || ENCODER_COUNTS_PER_TURN == 0,
-        "the build tells of an encoder (STEADYSTEP_ENCODER_COUNTS), the map of none");
+        "the build names an encoder (STEADYSTEP_ENCODER_COUNTS), the map of none");
 REQUIRE(BAUD >= 9600 && BAUD <= 3000000, "BAUD must be 9600...3000000");

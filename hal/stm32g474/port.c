@@ -1,4 +1,4 @@
-/* What this port tells the room of all Cortex-M ports. */
+/* What this port gives the module of all Cortex-M ports. */
 #include "hal/cortex_m/port.h"
 
 #include "hal/cortex_m/interrupts.h"
@@ -25,7 +25,7 @@ const struct hal_facts port_facts = {
     .phase_voltage_V_per_code = PHASE_VOLTAGE_V_PER_CODE,
     .has_phase_voltages = true,
     .bridge_resistance_ohm = BRIDGE_RESISTANCE_OHM,
-    .encoder_counts_per_turn = ENCODER_COUNTS_PER_TURN, /* by the build; 0: settings may tell */
+    .encoder_counts_per_turn = ENCODER_COUNTS_PER_TURN, /* by the build; 0: settings may say */
     .cycle_counter_Hz = CORE_Hz,
     .parameter_page_bytes = FLASH_PAGE_BYTES,
     .parameter_word_bytes = PARAMETER_WORD_BYTES,

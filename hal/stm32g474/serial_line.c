@@ -36,8 +36,8 @@ DMA_BUFFER static struct {
     bool damaged;          /* the line that is being received */
 
     uint32_t read, lines_read;
-    bool behind;      /* the background has dropped bytes of the line it will read next */
-    unsigned telling; /* bytes that are left to tell of what was dropped: LOST, '\n' */
+    bool behind;        /* the background has dropped bytes of the line it will read next */
+    unsigned reporting; /* bytes that are left to report what was dropped: LOST, '\n' */
 } receive;
 
 DMA_BUFFER static struct {
@@ -55,7 +55,7 @@ static void set_rate(uint64_t clock_Hz)
     LPUART1->brr = (uint32_t)((clock_Hz * 256u + BAUD / 2u) / BAUD);
 }
 
-void serial_line_tell(const char *text)
+void serial_line_report(const char *text)
 {
     if ((RCC->apb1enr2 & RCC_APB1ENR2_LPUART1EN) == 0) {
         set_rate(HSI16_Hz);
@@ -133,7 +133,7 @@ static void drop_if_overrun(void)
         receive.overrun = false;
         receive.behind = receive.bytes[(receive.stored - 1u) % RECEIVE_BYTES] != '\n';
         receive.damaged = receive.damaged && receive.behind;
-        receive.telling = 2;
+        receive.reporting = 2;
         receive.read = receive.stored;
         receive.lines_read = receive.lines_ended;
     }
@@ -159,7 +159,7 @@ static bool take_damage(void)
 static bool nothing_came(void)
 {
     return receive.read == receive.stored && stored_behind(receive.read) == 0 && !receive.overrun &&
-           receive.telling == 0;
+           receive.reporting == 0;
 }
 
 size_t serial_line_read(uint8_t *bytes, size_t capacity, uint32_t *line_period)
@@ -170,13 +170,13 @@ size_t serial_line_read(uint8_t *bytes, size_t capacity, uint32_t *line_period)
         return 0;
     }
     drop_if_overrun();
-    if (receive.telling == 2 && capacity > 0) {
+    if (receive.reporting == 2 && capacity > 0) {
         bytes[count++] = HAL_STREAM_LOST;
-        receive.telling--;
+        receive.reporting--;
     }
-    if (receive.telling == 1 && count < capacity) {
+    if (receive.reporting == 1 && count < capacity) {
         bytes[count++] = '\n';
-        receive.telling--;
+        receive.reporting--;
         *line_period = port_control_period();
         return count;
     }

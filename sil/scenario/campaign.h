@@ -72,7 +72,7 @@ class CampaignWatch : public RowReader
 
 struct CampaignKind {
     const char *name, *description;
-    double duration_s; /* of one run, unless told */
+    double duration_s; /* of one run, unless given */
     std::vector<CampaignFigure> figures;
     /* The same on every machine (random_scenario.h). */
     Drawn (*draw)(std::uint64_t seed, double duration_s, const CampaignMotor &motor);

@@ -7,8 +7,8 @@
  * Held, or else the first of: refused (by the drive, with its words), wrong ready (an encoder's
  * zero is off by more than 3 degrees electrical and 3/4 of a count), a fault, lost silently (beyond
  * 90 degrees without a fault), commutation (beyond 45 degrees), position (at the end). A position
- * that only a hold's yielding explains is told apart (hold_yield.h); a zero that the drive does not
- * find, and says so instead of becoming ready, is a refusal.
+ * that only a hold's yielding explains is distinguished (hold_yield.h); a zero that the drive does
+ * not find, and says so instead of becoming ready, is a refusal.
  */
 #include "sil/scenario/campaign.h"
 
@@ -202,7 +202,7 @@ Drawn draw_any_motors(std::uint64_t seed, double duration_s, const CampaignMotor
     return draw_run(seed, duration_s, true);
 }
 
-/* Instead of becoming ready the drive says that it cannot tell where the rotor is. */
+/* Instead of becoming ready the drive says that it does not know where the rotor is. */
 bool not_found(const std::string &failure)
 {
     return failure.find(std::string("fault ") + drive_fault_name(DRIVE_FAULT_POSITION_NOT_FOUND)) !=

@@ -1,11 +1,11 @@
 /*
- * Campaign "slip": is every loss of synchronism told, and none that is not one? The runs are those
- * of slip_scenario.h.
+ * Campaign "slip": is every loss of synchronism reported, and none that is not one? The runs are
+ * those of slip_scenario.h.
  *
- * A slip begins where the estimate is 90 degrees electrical off. It is told by any fault or, with
- * the policy `warn`, by a warning of a loss, or of a stall that stands 20 ms later; missed: none
- * has come by then. False alarm: a loss of synchronism, fault or warning, with less than 45 degrees
- * throughout the 100 ms before it. Only these claim a slip.
+ * A slip begins where the estimate is 90 degrees electrical off. It is reported by any fault or,
+ * with the policy `warn`, by a warning of a loss, or of a stall that stands 20 ms later; missed:
+ * none has come by then. False alarm: a loss of synchronism, fault or warning, with less than 45
+ * degrees throughout the 100 ms before it. Only these claim a slip.
  */
 #include "sil/scenario/campaign.h"
 
@@ -22,7 +22,7 @@ namespace
 
 constexpr double pi = 3.14159265358979323846;
 constexpr std::size_t none = static_cast<std::size_t>(-1);
-constexpr double latest_s = 0.02; /* behind a slip, for it to be told */
+constexpr double latest_s = 0.02; /* behind a slip, for it to be reported */
 
 /* When something happens for the first time. */
 struct First {
@@ -76,8 +76,8 @@ class SlipWatch : public CampaignWatch
         if (slip_.came()) {
             const double behind_s = last_s_ - slip_.time_s;
             const bool late = behind_s > latest_s - record.period_s() / 2;
-            told_.note(record, fault || synchronism == DRIVE_SYNCHRONISM_LOST ||
-                                   (late && synchronism == DRIVE_SYNCHRONISM_STALLED));
+            shown_.note(record, fault || synchronism == DRIVE_SYNCHRONISM_LOST ||
+                                    (late && synchronism == DRIVE_SYNCHRONISM_STALLED));
         }
     }
 
@@ -89,8 +89,8 @@ class SlipWatch : public CampaignWatch
             outcome.verdict = "failed";
             return outcome;
         }
-        const bool slipped = slip_.came(), told = told_.came();
-        const double delay_s = slipped ? (told ? told_.time_s : last_s_) - slip_.time_s : 0;
+        const bool slipped = slip_.came(), shown = shown_.came();
+        const double delay_s = slipped ? (shown ? shown_.time_s : last_s_) - slip_.time_s : 0;
         const bool lost = lost_.came(), stalled = stalled_.came();
         const bool reported = fault_.came() || lost || stalled;
         outcome.verdict = delay_s > latest_s + row_period_s(*result.scenario) / 2 ? "missed"
@@ -104,7 +104,7 @@ class SlipWatch : public CampaignWatch
             counted(reported && !lost && !stalled),
             counted(reported && !slip_is_provoked(result.seed)),
             counted(slipped && doubt_.row < slip_.row),
-            slipped && told ? delay_s * 1e3 : Metrics::none,
+            slipped && shown ? delay_s * 1e3 : Metrics::none,
         };
         return outcome;
     }
@@ -115,7 +115,7 @@ class SlipWatch : public CampaignWatch
     double degrees_;
     First slip_, fault_, doubt_;
     First stalled_, lost_;        /* warnings or faults */
-    First told_;                  /* the slip, by what tells it */
+    First shown_;                 /* the slip, by what reports it */
     std::vector<double> off_deg_; /* of the latest rows */
     double largest_before_loss_deg_ = 0;
     double last_s_ = 0;

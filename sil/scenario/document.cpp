@@ -166,7 +166,7 @@ bool breaks_assertion(const std::string &text)
     return false;
 }
 
-/* The library does not tell where it is: the first line with which the text breaks the assertion,
+/* The library does not say where it is: the first line with which the text breaks the assertion,
    which all that is longer does as well. */
 std::size_t line_of_assertion(const std::string &text)
 {

@@ -31,7 +31,7 @@ struct Incident {
     std::string text() const;   /* "fault stalled at 0.2031 s" */
 };
 
-/* Tells faults and drops from the signals of one period after another. */
+/* Reports faults and drops from the signals of one period after another. */
 class DriveWatch
 {
   public:

@@ -78,7 +78,7 @@ std::string settings_page()
         }
     }
     return "# Settings\n\n"
-           "What a drive is told: the keys of a scenario's `[drive]`, and the "
+           "How a drive is set: the keys of a scenario's `[drive]`, and the "
            "entries of the stored\nrecord. Written by `steadystep-sil settings` from "
            "`settings_table.h`, which declares each once.\n\n"
            "A range or default of \"rated\" is of the motor's rated current. \"follows\": from "
@@ -133,7 +133,7 @@ std::string commands_page()
 {
     std::string text =
         "# Commands\n\n"
-        "What a drive does when it is told: lines of the console, and `command` of a scenario's "
+        "What a drive does on command: lines of the console, and `command` of a scenario's "
         "events, which give all\nparameters; there `set-point` is `set-points`. Written by "
         "`steadystep-sil commands` from `commands_table.h`, which\ndeclares each once.\n\n"
         "Parameters in brackets may be left out. The number, written to object 0x2200, gives the "

@@ -74,8 +74,8 @@ class Chip
         return nullptr;
     }
 
-    /* Resets the chip after the present instruction; `cause` is told to the clock tree, which keeps
-       it for the firmware. Memory keeps its contents. */
+    /* Resets the chip after the present instruction; `cause` is given to the clock tree, which
+       keeps it for the firmware. Memory keeps its contents. */
     virtual void reset(const std::string &cause) = 0;
 
     /* The firmware misuses the hardware: ends the run with this text, the time and the program
@@ -117,7 +117,7 @@ class FlashMemory
     virtual void store(std::uint32_t address, unsigned size, std::uint32_t value) = 0;
     /* End of the operation that a read of this address has to wait for; now or earlier: none. */
     virtual Ticks busy_until(std::uint32_t address) const = 0;
-    /* The core reads here, as data: cells that fail the memory's own check tell so. */
+    /* The core reads here, as data: cells that fail the memory's own check finds. */
     virtual void core_reads(std::uint32_t address, unsigned size)
     {
         static_cast<void>(address);

@@ -121,7 +121,7 @@ ElfImage ElfImage::parse(const std::string &name, const std::vector<std::uint8_t
             const std::string symbol = elf.text(names + elf.word(at));
             const std::uint32_t value = elf.word(at + 4);
             if (symbol.empty() || symbol[0] == '$') {
-                continue; /* mapping symbols tell code from data */
+                continue; /* mapping symbols distinguish code from data */
             }
             image.symbols_[symbol] = value;
             if ((elf.number(at + 12, 1) & 0xf) == type_function) {

@@ -29,7 +29,7 @@ std::shared_ptr<const ImageFiles> read_image(const std::string &image_file)
 
     const std::lock_guard<std::mutex> lock(one_at_a_time);
     const std::string map_file = map_file_of(image_file);
-    std::error_code none; /* a file that is not there is told by who reads it */
+    std::error_code none; /* a file that is not there is reported by who reads it */
     const State state = {
         image_file,
         {fs::last_write_time(image_file, none), fs::last_write_time(map_file, none)},

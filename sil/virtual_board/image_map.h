@@ -30,6 +30,7 @@ struct ImageMap {
     int half_period_counts = 0; /* of its PWM timer; 0: it has no board */
     std::map<std::string, Variable> signals;
     std::map<std::string, unsigned> interrupts; /* handler -> number of the exception */
+    std::vector<std::uint32_t> enabling;        /* begin what the interrupt may run from flash */
     CostRules rules;
     std::vector<std::string> stages;
     struct Instruction {
@@ -41,10 +42,10 @@ struct ImageMap {
     /* Reads the file beside the image. Throws std::invalid_argument: no such file, not of this
        image, not of this form. */
     static ImageMap read(const std::string &file, const ElfImage &image);
-    /* Reads it and tells a chip what its instructions cost. */
+    /* Reads it and gives a chip what its instructions cost. */
     static ImageMap read(const std::string &file, const ElfImage &image, InstructionCosts &costs);
     /* Throws std::invalid_argument if the chip has no memory where the map has code. */
-    void tell(InstructionCosts &costs) const;
+    void give(InstructionCosts &costs) const;
 
     const Variable &signal(const std::string &name) const; /* throws std::invalid_argument */
 };

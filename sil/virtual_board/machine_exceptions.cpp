@@ -226,7 +226,7 @@ void Machine::leave(std::uint32_t exception_return)
     if (above_control_ > 0) {
         --above_control_;
     }
-    if (next != 0) { /* tail-chaining: the frame stays, another handler takes over */
+    if (next != 0) { /* tail-chaining: the frame stays, another handler is entered */
         if (next == control_exception_) {
             begin_control();
         } else if (above_control_ > 0) {
@@ -259,7 +259,7 @@ void Machine::fault(const std::string &what, std::uint32_t status)
             throw Failure(std::string("lockup by a ") + failure.what());
         }
     }
-    const bool fetch = (status & fault_bus_fetch) != 0; /* it is told where the jump is */
+    const bool fetch = (status & fault_bus_fetch) != 0; /* it is reported where the jump is */
     core_.set(CoreRegister::pc, (fetch ? core_.get(CoreRegister::pc) : pc_) | 1);
     const unsigned own = (status & 0xffff0000) != 0 ? exception::usage_fault : exception::bus_fault;
     unsigned taken = exception::hard_fault;

@@ -52,7 +52,7 @@ struct VirtualBoard::Impl {
           stall([this] { hold_up(); })
     {
         machine.attach(device);
-        image->map.tell(machine.costs());
+        image->map.give(machine.costs());
         machine.load(image->elf);
         memory.emplace(machine, image->map);
         machine.stops_behind_control_interrupt = true;
@@ -131,7 +131,7 @@ VirtualBoard::VirtualBoard(const plant::Config &plant, const std::string &image_
     drive_settings stored = settings;
     stored.encoder_counts_per_turn = plant.sensors.encoder_counts_per_turn;
     if (settings.feedback ==
-        DRIVE_FEEDBACK_SENSORLESS) { /* what it is told is a setting of its own */
+        DRIVE_FEEDBACK_SENSORLESS) { /* its counts are a setting of their own */
         stored.initial_angle_rad += stored.initial_angle_error_rad;
         stored.initial_angle_error_rad = 0;
     }

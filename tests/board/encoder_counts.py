@@ -15,7 +15,7 @@ from pathlib import Path
 from mutants import compile_commands, output_of, relink
 
 COUNTS = "4000"
-# What the configuration of BUILD has fetched or was told.
+# What the configuration of BUILD has fetched or was given.
 HANDED_ON = ("CMSIS_DIR", "STEADYSTEP_MOTOR", "STEADYSTEP_BOARD_NUMERIC", "STEADYSTEP_PIN_MAP")
 
 

@@ -5,7 +5,7 @@ usage: every_scenario.py ROOT SIMULATOR IMAGE [OPTION]...
 
 Fails if drive_hash, trace_hash or the failure of one differ, or if fewer than 106 are taken. Those that
 ask for another board (16-bit sensors, another period, delay or range), or for what images leave to
-simulations, are refused by the simulator: they are counted, no more. Expectations that are not held are told; whether that is a failure says
+simulations, are refused by the simulator: they are counted, no more. Expectations that are not held are reported; whether that is a failure says
 the scenario's own test. OPTION: of `steadystep-sil run`.
 """
 

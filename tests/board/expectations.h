@@ -1,4 +1,4 @@
-/* What is expected of a run of an image, told one by one and counted. */
+/* What is expected of a run of an image, reported one by one and counted. */
 #ifndef STEADYSTEP_TESTS_BOARD_EXPECTATIONS_H
 #define STEADYSTEP_TESTS_BOARD_EXPECTATIONS_H
 

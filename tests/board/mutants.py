@@ -202,7 +202,7 @@ MUTANTS = [
         '} record __attribute__((section(".no_init")));',
         "} record;",
         "starts-fail-for-ever",
-        "behind three starts that failed the board stays off and tells why",
+        "behind three starts that failed the board stays off and says why",
     ),
     Mutant(
         "the rest of a line that has lost its beginning is obeyed",

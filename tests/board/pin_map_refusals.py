@@ -86,9 +86,9 @@ def motors(compiler, root, cmsis, scratch):
     for name, value, motor, expected in MOTORS:
         text, count = re.subn(rf"(?m)^(#define {name}) +\(.*\)$", rf"\1 {value}", source)
         trial.write_text(text, encoding="utf-8")
-        told = {"root": root, "motor": root / f"sil/motors/{motor}.toml", "version": "0", "board": "stm32g474"}
-        told |= {"pin-map": trial, "numeric": "float", "flags": ""}
-        words_of = [word for key, what in told.items() for word in (f"--{key}", str(what))]
+        said = {"root": root, "motor": root / f"sil/motors/{motor}.toml", "version": "0", "board": "stm32g474"}
+        said |= {"pin-map": trial, "numeric": "float", "flags": ""}
+        words_of = [word for key, what in said.items() for word in (f"--{key}", str(what))]
         subprocess.run([sys.executable, root / "tools/board_image.py", *words_of, image], check=True)
         said = words(compiler, root, cmsis, trial, [image])
         refused = f"STEADYSTEP_MOTOR {motor}: " in said

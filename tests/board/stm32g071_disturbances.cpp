@@ -116,7 +116,7 @@ void converter_stops(const ElfImage &image)
     expect(run.machine.resets().size() == 1 && run.machine.resets().front() == "watchdog",
            "and the watchdog resets the board");
     const std::string text = run.board.serial().take_output();
-    expect(count(text, "started by: watchdog") == 1, "which tells it");
+    expect(count(text, "started by: watchdog") == 1, "which reports it");
 }
 
 void lines_overflow(const ElfImage &image)
@@ -132,7 +132,7 @@ void lines_overflow(const ElfImage &image)
     const std::string text = run.board.serial().take_output();
     const std::size_t kept = count(text, "ok cycles");
     std::printf("  %zu lines of 200 are answered\n", kept);
-    expect(count(text, "error: bytes of the line were lost") == 1, "lost lines are told once");
+    expect(count(text, "error: bytes of the line were lost") == 1, "lost lines are reported once");
     expect(kept >= 10 && kept <= 16 && count(text, "error") == 1,
            "whole lines behind them are kept");
     expect(count(run.type("cycles\n", 30 * ms), "ok cycles") == 1, "the next line is obeyed");
@@ -240,7 +240,7 @@ void program_leaves_memory(const ElfImage &image)
     const std::string text = run.board.serial().take_output();
     expect(count(text, "started by: crash: hard fault at 0x") == 1 && count(text, " lr 0x") == 1 &&
                count(text, " in period ") == 1,
-           "and is told at the next start");
+           "and is reported at the next start");
 }
 
 } // namespace

@@ -34,7 +34,7 @@ constexpr std::uint64_t deadline_cycles = 5760; /* 90 us */
 constexpr std::uint32_t ready = 5600;           /* latest: offsets, hold, balance of the phases */
 constexpr std::uint32_t periods = ready + 4000, trip_period = ready + 3600;
 
-/* As hal/stm32g071/port.c tells them. */
+/* As hal/stm32g071/port.c gives them. */
 hal_facts board_facts()
 {
     hal_facts facts = {};
@@ -246,7 +246,7 @@ int run(const std::string &file)
            "the move of 2 rad under 0.1 N m ends within 10 mrad");
     std::printf("  moved by %.5f rad\n", moved_theta - ready_theta);
     expect(memory.signals().fault == DRIVE_FAULT_HARDWARE_OVERCURRENT,
-           "the drive tells the trip as its fault");
+           "the drive reports the trip as its fault");
     expect(misplaced == 0, "the duties of S(k) act on their legs from S(k+1) on");
     expect(board.counters.outside_low_state == 0, "currents are sampled in the low state");
     expect(board.counters.updates_elsewhere == 0, "compares load at the peak only");

@@ -151,7 +151,7 @@ class Powered
     {
         return device.power_stage().bridge_on();
     }
-    /* Until the board has told why it started, at most half a second; what it has written. */
+    /* Until the board has reported why it started, at most half a second; what it has written. */
     std::string start()
     {
         std::string text;

@@ -41,7 +41,7 @@ void debugger_halts(Expectations &expectations, const std::string &image)
         expectations.expect(!run.bridge_on(), "and does not close when the program goes on");
         run.run_for(20 * ms);
         expectations.expect(!run.bridge_on() && count(run.output(), "fault: deadline-missed") == 1,
-                            "as the drive has missed a deadline, which it tells");
+                            "as the drive has missed a deadline, which it reports");
         expectations.expect(count(run.type("disable\n", 20 * ms), "ok disable") == 1,
                             "disable clears the fault");
     }
@@ -51,7 +51,7 @@ void debugger_halts(Expectations &expectations, const std::string &image)
 
 /*
  * While a control interrupt is held up beyond the next S(k), so that it is not the missing
- * interrupt that tells: the trigger timer stands from here to the peak, which starts it again.
+ * interrupt that reports it: the trigger timer stands from here to the peak, which starts it again.
  */
 void conversions_are_lost(Expectations &expectations, const std::string &image)
 {
@@ -68,7 +68,7 @@ void conversions_are_lost(Expectations &expectations, const std::string &image)
                         "conversions out of step with the period open the bridge");
     expectations.expect(
         count(run.start(), "started by: crash: leg-voltage conversions out of step or lost") == 1,
-        "and are told at the next start");
+        "and are reported at the next start");
 }
 
 /* A comparator trips for less than a cycle between the look at the break flags and the write that
@@ -89,7 +89,7 @@ void break_while_closing(Expectations &expectations, const std::string &image)
     (void)run.start();
     const std::string text = run.type("enable\n", enable_time);
     expectations.expect(closed == 1 && open, "a trip while the bridge closes opens it within 1 us");
-    expectations.expect(count(text, "fault: hardware-overcurrent") == 1, "and is told");
+    expectations.expect(count(text, "fault: hardware-overcurrent") == 1, "and is reported");
     expectations.expect(count(run.type("disable\n", 20 * ms), "ok disable") == 1 && run.enable(),
                         "disable clears the fault");
 }
@@ -114,7 +114,7 @@ void program_leaves_memory(Expectations &expectations, const std::string &image)
     expectations.expect(run.machine.resets().size() == 1 &&
                             count(text, "started by: crash: bus fault at 0x") == 1 &&
                             count(text, " in period ") == 1,
-                        "and is told at the next start");
+                        "and is reported at the next start");
     run.machine.reset("pin");
     expectations.expect(count(run.start(), "started by: reset pin") == 1,
                         "but not at the one behind");

@@ -26,7 +26,7 @@ void lines_overflow(Expectations &expectations, const std::string &image)
     std::printf("  %zu lines of 100 are answered\n", kept);
     expectations.expect(count(text, "error: bytes of the line were lost") == 1 &&
                             count(text, "error") == 1 && kept < 100,
-                        "more lines than there is room for: the loss is told once");
+                        "more lines than there is room for: the loss is reported once");
     expectations.expect(count(run.type("cycles\n", 30 * ms), "ok cycles") == 1,
                         "the next line is obeyed");
 

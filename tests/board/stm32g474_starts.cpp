@@ -13,7 +13,7 @@ constexpr std::uint32_t MOE = 1u << 15;
 /* Hardware that does not do what it must, by what a register then says; RM0440. */
 struct Failure {
     PlantedBits bits;
-    const char *told; /* hal/stm32g474/faults.h */
+    const char *reported; /* hal/stm32g474/faults.h */
 };
 
 constexpr PlantedBits pll_unlocked = {0x40021000, 1u << 25, 0}; /* RCC.CR PLLRDY */
@@ -52,7 +52,7 @@ void run_until_reset(Powered &run, std::size_t resets)
 
 } // namespace
 
-/* A start that fails once; the next one succeeds and tells why the first did not. */
+/* A start that fails once; the next one succeeds and says why the first did not. */
 void starts_fail(Expectations &expectations, const std::string &image)
 {
     Powered run(image);
@@ -64,9 +64,10 @@ void starts_fail(Expectations &expectations, const std::string &image)
         run_until_reset(run, 1);
         run.device.planted.clear();
         const std::string text = run.start();
-        expectations.expect(run.machine.resets() == std::vector<std::string>{"software"} &&
-                                count(text, std::string("started by: crash: ") + failure.told) == 1,
-                            std::string("told: ") + failure.told);
+        expectations.expect(
+            run.machine.resets() == std::vector<std::string>{"software"} &&
+                count(text, std::string("started by: crash: ") + failure.reported) == 1,
+            std::string("reported: ") + failure.reported);
     }
     expectations.expect(closed == 0, "no failing start closes the bridge");
 }
@@ -81,7 +82,7 @@ void starts_fail_for_ever(Expectations &expectations, const std::string &image)
     run.run_for(20 * ms);
     const std::string why = "steadystep stays off, three starts failed: crash: PLL does not lock";
     expectations.expect(run.machine.resets().size() == 3 && count(run.output(), why) == 1,
-                        "behind three starts that failed the board stays off and tells why");
+                        "behind three starts that failed the board stays off and says why");
     expectations.expect(count(run.type("enable\n", 20 * ms), "ready") == 0 && closed == 0,
                         "and closes no bridge");
     run.device.planted.clear();

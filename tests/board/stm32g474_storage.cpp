@@ -49,7 +49,7 @@ drive_settings defaults()
     return settings;
 }
 
-/* Stored: feedback by an encoder, whose counts per turn are the build's to tell. */
+/* Stored: feedback by an encoder, whose counts per turn are the build's to give. */
 drive_settings with_encoder()
 {
     drive_settings stored = defaults();

@@ -123,7 +123,7 @@ class Program(unittest.TestCase):
                 picture = pathlib.Path(scratch, "envelope.png").read_bytes()
                 self.assertEqual(picture[:4], b"\x89PNG")
 
-    def test_a_drive_that_is_told_a_wrong_angle_slips_on_the_map(self):
+    def test_a_drive_that_assumes_a_wrong_angle_slips_on_the_map(self):
         with tempfile.TemporaryDirectory() as scratch:
             done = self.call(scratch, "--set", "drive.hold_on_enable=false",
                              "--set", "drive.initial_angle_error_rad=0.063")

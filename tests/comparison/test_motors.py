@@ -107,7 +107,7 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(verdicts(run, summary(run, missed=7)), ["held", "position"])
         self.assertEqual(verdicts(run, summary(run, missed=3)), ["position", "held"])
 
-    def test_what_the_hold_is_computed_to_yield_is_told_apart(self):
+    def test_what_the_hold_is_computed_to_yield_is_distinguished(self):
         run = run_of("rest", REAL)
         bound = KIM.full_step_rad / 5
         for by, missed, limit_rad, expected in (
@@ -189,7 +189,7 @@ class Program(unittest.TestCase):
                 text=True, check=False)
             self.assertEqual(again.returncode, 0, again.stdout + again.stderr)
 
-    def test_a_drive_that_is_told_a_wrong_angle_does_not_hold(self):
+    def test_a_drive_that_assumes_a_wrong_angle_does_not_hold(self):
         with tempfile.TemporaryDirectory() as scratch:
             wrong = pathlib.Path(scratch, "wrong")
             wrong.write_text(f"#!/bin/sh\nexec '{PROGRAM}' \"$@\" "

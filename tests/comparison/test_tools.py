@@ -171,7 +171,7 @@ class Table(unittest.TestCase):
         self.assertEqual(results.percentile_95([1.0] * 19 + [9.0]), 1.0)
         self.assertIsNone(results.percentile_95([1, None]))
 
-    def test_a_fault_and_a_lost_rotor_are_told_apart(self):
+    def test_a_fault_and_a_lost_rotor_are_distinguished(self):
         fault, lost, fine = self.cells(summary(fault="overcurrent"), summary(final_rad=0.2),
                                        summary())
         self.assertEqual((fault.lost, lost.lost, fine.lost), ("fault", "lost", ""))

@@ -39,7 +39,7 @@ class Build:
         self.linked = {}        # (numeric, test): sources
 
     def compile(self, tree, source, numeric, target):
-        """Compiles `source` of `tree`; returns the house's files it depends on."""
+        """Compiles `source` of `tree`; returns the project's files it depends on."""
         target.parent.mkdir(parents=True, exist_ok=True)
         command = [self.compiler, *FLAGS, f"-DSTEADYSTEP_NUM=NUM_{numeric.upper()}",
                    f"-I{tree}", f"-I{self.unity}", "-MMD", "-MF", f"{target}.d",

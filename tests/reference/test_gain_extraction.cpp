@@ -5,7 +5,7 @@
  *
  * The paper does not state the condition of Figs 1-6. This one reproduces them: the motor stands,
  * the filter starts from zero, one period later the brake is switched on with 0.1 N m, and the
- * current control (PI of 1500 rad/s) is told the current that balances it. The transient is then
+ * current control (PI of 1500 rad/s) is given the current that balances it. The transient is then
  * the filter's own. A position loop in its place moves the rotor and adds 0.9 ms to every rise.
  */
 #include <cmath>

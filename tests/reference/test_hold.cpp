@@ -153,8 +153,8 @@ motor_params drawn_motor(std::uint64_t number)
 
 using Kind = invariant_ekf_gains invariant_ekf_hold_gains::*;
 
-constexpr Kind quiet_hold = &invariant_ekf_hold_gains::quiet;
-constexpr Kind following_hold = &invariant_ekf_hold_gains::following;
+constexpr Kind settled_hold = &invariant_ekf_hold_gains::quiet;
+constexpr Kind load_step_hold = &invariant_ekf_hold_gains::following;
 
 /* The hold of the defaults; false: refused. */
 bool default_hold(const motor_params &motor, double current_A, Hold &hold, Kind kind)
@@ -205,7 +205,7 @@ static void the_check_says_what_the_whole_loop_does(void)
     for (std::uint64_t number = 0; number < 200; number++) {
         const motor_params motor = drawn_motor(number);
         for (const double share : {0.5, 1.0}) {
-            for (const Kind kind : {quiet_hold, following_hold}) {
+            for (const Kind kind : {settled_hold, load_step_hold}) {
                 Hold hold{};
                 if (!default_hold(motor, share * motor.rated_current_A, hold, kind)) {
                     continue;
@@ -228,13 +228,13 @@ static void the_default_hold_of_every_motor_is_damped(void)
     int well_damped = 0;
     constexpr int motors = 200;
     for (std::uint64_t number = 0; number < motors; number++) {
-        Hold quiet{};
-        Hold following{};
+        Hold settled{};
+        Hold load_step{};
         const motor_params motor = drawn_motor(number);
-        if (default_hold(motor, NAN, quiet, quiet_hold) &&
-            default_hold(motor, NAN, following, following_hold)) {
+        if (default_hold(motor, NAN, settled, settled_hold) &&
+            default_hold(motor, NAN, load_step, load_step_hold)) {
             const double least =
-                std::min(damping_in_one_piece(quiet), damping_in_one_piece(following));
+                std::min(damping_in_one_piece(settled), damping_in_one_piece(load_step));
             damped += least >= HOLD_DAMPING_MIN ? 1 : 0;
             well_damped += least >= 0.2 ? 1 : 0;
         }
@@ -247,13 +247,13 @@ static void the_default_hold_of_every_motor_is_damped(void)
 
 /* The drive notices a step by what its estimate shows of it: two thirds of the bare load, and less.
  */
-static void what_a_quiet_hold_shows_of_a_load_step_is_what_the_whole_loop_does(void)
+static void what_a_settled_hold_shows_of_a_load_step_is_what_the_whole_loop_does(void)
 {
     double least = 1;
     double most = 0;
     for (std::uint64_t number = 0; number < 100; number++) {
         Hold hold{};
-        if (!default_hold(drawn_motor(number), NAN, hold, quiet_hold)) {
+        if (!default_hold(drawn_motor(number), NAN, hold, settled_hold)) {
             continue;
         }
         const double load_Nm = 0.1 * hold.motor.torque_constant_Nm_A * hold.current_A;
@@ -342,7 +342,7 @@ int main()
     RUN_TEST(the_check_says_what_the_whole_loop_does);
     RUN_TEST(the_default_hold_of_every_motor_is_damped);
     RUN_TEST(a_load_too_heavy_for_what_the_drop_leaves_of_the_back_emf_is_refused);
-    RUN_TEST(what_a_quiet_hold_shows_of_a_load_step_is_what_the_whole_loop_does);
+    RUN_TEST(what_a_settled_hold_shows_of_a_load_step_is_what_the_whole_loop_does);
     RUN_TEST(a_load_step_of_the_share_stated_is_borne_and_one_beyond_is_not);
     return UNITY_END();
 }

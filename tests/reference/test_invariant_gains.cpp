@@ -249,9 +249,9 @@ void a_load_step_leaves_nothing_behind()
     }
 }
 
-/* What load and displacement have wrong together, in balance, shows in no current; the quiet hold
+/* What load and displacement have wrong together, in balance, shows in no current; the settled hold
    takes it back all the same, and still shows none. */
-void the_quiet_hold_returns_without_an_innovation()
+void the_settled_hold_returns_without_an_innovation()
 {
     for (const motor_params &motor : reference::motors()) {
         const double current = 0.5 * motor.rated_current_A;
@@ -261,15 +261,15 @@ void the_quiet_hold_returns_without_an_innovation()
         VectorXd error = VectorXd::Zero(STATES);
         error(LOAD) = 1.0;
         error(ANGLE) = -1.0 / stiffness;
-        const Course quiet = course(motor, gains, current, error, 100);
+        const Course settled = course(motor, gains, current, error, 100);
         const double w_h = std::sqrt(stiffness / motor.inertia_kgm2);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-6, std::exp(-100 * period_s * w_h / 3.0), quiet.error(LOAD));
-        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.0, quiet.innovations / motor.rated_current_A);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, std::exp(-100 * period_s * w_h / 3.0), settled.error(LOAD));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.0, settled.innovations / motor.rated_current_A);
     }
 }
 
 /* The slower of the two modes of return and offset has 7 times the time of the return. */
-void a_quiet_hold_finds_an_offset_while_the_rotor_could_swing_fifteen_times()
+void a_settled_hold_finds_an_offset_while_the_rotor_could_swing_fifteen_times()
 {
     for (const motor_params &motor : reference::motors()) {
         const double current = 0.5 * motor.rated_current_A;
@@ -360,8 +360,8 @@ void angle_gain_without_its_sign_loses_one_direction()
 /*
  * A constant load and its displacement have no current signature: one error stays, none grows. The
  * offset of the voltage is constant in a held frame, so it is one of the errors at rest, where the
- * quiet hold learns it; a rotor that swings about the frame does not turn it. At a lasting speed,
- * which a held rotor has not, the quiet hold's return to its load may feed the angle error, with
+ * settled hold learns it; a rotor that swings about the frame does not turn it. At a lasting speed,
+ * which a held rotor has not, the settled hold's return to its load may feed the angle error, with
  * 0.2 1/s, and with 0.6 1/s where a stiff hold returns within 10 ms: at 1 rad/s such a rotor has
  * left its quarter turn after 31 ms, and the error has grown by 2 %.
  */
@@ -516,8 +516,8 @@ int main()
     RUN_TEST(motion_gains_are_the_steady_kalman_gain_at_5_rad_s);
     RUN_TEST(hold_gains_are_the_steady_kalman_gain_at_1_rad_s);
     RUN_TEST(a_load_step_leaves_nothing_behind);
-    RUN_TEST(the_quiet_hold_returns_without_an_innovation);
-    RUN_TEST(a_quiet_hold_finds_an_offset_while_the_rotor_could_swing_fifteen_times);
+    RUN_TEST(the_settled_hold_returns_without_an_innovation);
+    RUN_TEST(a_settled_hold_finds_an_offset_while_the_rotor_could_swing_fifteen_times);
     RUN_TEST(estimation_error_decays_at_every_speed_and_current_of_every_motor);
     RUN_TEST(estimation_error_of_the_reference_motor_decays_in_six_milliseconds);
     RUN_TEST(a_voltage_offset_is_found_at_every_speed_and_current_of_every_motor);

@@ -33,8 +33,8 @@ def electrical_degrees(rad):
 def found(order, depth, numeric, step):
     """Errors of the angle and net motion, degrees electrical."""
     angle_rad = (step + OFF_GRID) / ANGLES * TURN_RAD
-    # Told wrong by up to 0.4 electrical turn, another amount for each angle.
-    told_wrong_rad = 0.4 * TURN_RAD * math.sin(2.4 * step)
+    # Assumed wrong by up to 0.4 electrical turn, another amount for each angle.
+    assumed_wrong_rad = 0.4 * TURN_RAD * math.sin(2.4 * step)
     answer = run(
         "run",
         "initial-position",
@@ -50,7 +50,7 @@ def found(order, depth, numeric, step):
         "--set",
         f'drive.initial_position="{order}"',
         "--set",
-        f"drive.initial_angle_error_rad={told_wrong_rad!r}",
+        f"drive.initial_angle_error_rad={assumed_wrong_rad!r}",
     )
     try:
         metrics = json.loads(answer.stdout)[0]["metrics"]["all"]

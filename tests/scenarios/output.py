@@ -235,9 +235,9 @@ def a_creep_that_the_sensing_hides_is_reported(folder):
     for speed, blind in (("0.1", 0.11507), ("0.2", None)):
         done = run_small(folder, SMALL, "--set", "plant.current_range_A=100", "--set",
                          "event=" + motion.replace("SPEED", speed), "--set", "duration_s=0.2")
-        told = summary_of(folder)["blind_below_rad_s"]
-        CHECKS.that(told is None if blind is None else abs(told - blind) < 1e-4,
-                    f"{speed} rad/s: {told}")
+        said = summary_of(folder)["blind_below_rad_s"]
+        CHECKS.that(said is None if blind is None else abs(said - blind) < 1e-4,
+                    f"{speed} rad/s: {said}")
         CHECKS.that(("blind: +-100 A for a 3 A motor: creep below 0.12 rad/s is out of reach"
                      in done.stdout) == (blind is not None), f"{speed} rad/s: {done.stdout}")
 

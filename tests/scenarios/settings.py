@@ -78,16 +78,16 @@ def precedence(folder):
 
 
 def plant_stays(folder):
-    """The drive is told another motor; the one that turns is the scenario's."""
+    """The drive is set to another motor; the one that turns is the scenario's."""
     (folder / "small.toml").write_text(SMALL, encoding="utf-8")
     (folder / "a.toml").write_text("resistance_ohm = 0.5\n", encoding="utf-8")
-    told = summary(folder, "small.toml", "--settings", "a.toml")
-    error = told["metrics"]["all"]["resistance_estimate_error_ratio"]
-    CHECKS.that(told["motor"] == "bendjedia-2012", f"motor: {told['motor']}")
-    CHECKS.that(told["settings"] == "a.toml" and "--settings a.toml" in told["reproduce"],
-                f"how to repeat it: {told['reproduce']}")
+    said = summary(folder, "small.toml", "--settings", "a.toml")
+    error = said["metrics"]["all"]["resistance_estimate_error_ratio"]
+    CHECKS.that(said["motor"] == "bendjedia-2012", f"motor: {said['motor']}")
+    CHECKS.that(said["settings"] == "a.toml" and "--settings a.toml" in said["reproduce"],
+                f"how to repeat it: {said['reproduce']}")
     CHECKS.that(error is not None and error > 0.01, f"the drive believes the file: {error}")
-    CHECKS.that(told["trace_hash"] != summary(folder, "small.toml")["trace_hash"],
+    CHECKS.that(said["trace_hash"] != summary(folder, "small.toml")["trace_hash"],
                 "another result")
 
 

@@ -1,4 +1,4 @@
-"""What a drive does against what it is asked is told with its time, and must be expected exactly."""
+"""What a drive does against what it is asked is reported with its time, and must be expected exactly."""
 import json
 import pathlib
 from xml.etree import ElementTree

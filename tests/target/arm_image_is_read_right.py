@@ -103,7 +103,7 @@ REFUSED = {
     ),
     "call through a pointer": (
         "void (*volatile hook)(void);\nint interrupt(void) { hook(); return 0; }\n",
-        ["interrupt", "blx", "goes where nothing tells"],
+        ["interrupt", "blx", "goes where nothing says"],
     ),
 }
 
@@ -186,10 +186,10 @@ def check_variables(compiler):
         place = variables.place(expression)
         wrong += check(expression, (place.address - base, place.size, place.type), expected)
     for expression, text in MISPLACED.items():
-        told = refusal(lambda: variables.place(expression))
-        wrong += check(f"{expression}: {told}", text in told, True)
-    told = refusal(lambda: image_map.signals(elf))
-    return wrong + check(f"signals: {told}", "no member `drive`" in told, True)
+        said = refusal(lambda: variables.place(expression))
+        wrong += check(f"{expression}: {said}", text in said, True)
+    said = refusal(lambda: image_map.signals(elf))
+    return wrong + check(f"signals: {said}", "no member `drive`" in said, True)
 
 
 def check_map(compiler, m4f):
@@ -223,8 +223,8 @@ def main(command):
                 wrong += check(what, count(compiler.image(program), turns), expected)
         for what, (program, texts) in REFUSED.items():
             analysis = longest_path.Analysis(compiler.image(program))
-            told = refusal(lambda: analysis.row("any", "interrupt"))
-            wrong += check(f"{what}: {told}", all(text in told for text in texts), True)
+            said = refusal(lambda: analysis.row("any", "interrupt"))
+            wrong += check(f"{what}: {said}", all(text in said for text in texts), True)
         wrong += check_variables(compiler)
         wrong += check_map(compiler, m4f)
     return 1 if wrong else 0

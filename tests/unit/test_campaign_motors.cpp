@@ -156,7 +156,7 @@ void the_end_is_judged_to_a_sixteenth_of_a_step_and_a_fifth_with_detent()
 
 /* Noticed are 6.7 % of the rated torque, 13.5 % of what half of it holds: 7.7 degrees, and what
    half a code of 15 mV feigns, 0.05 rad/s, in 29 ms. Detent torque and friction come on top. */
-void what_a_hold_is_computed_to_yield_is_told_apart()
+void what_a_hold_is_computed_to_yield_is_distinguished()
 {
     Course bare, with_detent;
     const double yields_rad = bare.with_motor().limit_rad();
@@ -248,7 +248,7 @@ int main()
     RUN_TEST(the_estimate_decides_between_commutation_and_a_silent_loss);
     RUN_TEST(a_fault_is_a_fault_and_what_is_estimated_behind_it_says_nothing);
     RUN_TEST(the_end_is_judged_to_a_sixteenth_of_a_step_and_a_fifth_with_detent);
-    RUN_TEST(what_a_hold_is_computed_to_yield_is_told_apart);
+    RUN_TEST(what_a_hold_is_computed_to_yield_is_distinguished);
     RUN_TEST(loads_that_go_unnoticed_add_up_until_the_next_motion);
     RUN_TEST(detent_torque_steeper_than_the_law_is_stiff_is_a_limit_with_an_encoder);
     RUN_TEST(ready_is_wrong_with_a_zero_that_is_off);

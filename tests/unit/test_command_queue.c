@@ -16,7 +16,7 @@ void tearDown(void)
 {
 }
 
-/* A move whose profile's jerk tells it from the others. */
+/* A move whose profile's jerk distinguishes it from the others. */
 static bool put(int64_t mark, uint32_t at_period)
 {
     const struct queued_command command = {

@@ -234,7 +234,7 @@ static void test_what_the_drive_would_drop_is_refused(void)
     answers("enable", "ok enable at=");
 }
 
-static void test_commands_that_a_fault_keeps_from_acting_are_told(void)
+static void test_commands_that_a_fault_keeps_from_acting_are_reported(void)
 {
     char line[60];
 
@@ -496,7 +496,7 @@ int main(void)
     RUN_TEST(test_set_points_are_a_stream);
     RUN_TEST(test_what_is_not_understood_is_refused_with_what_was_expected);
     RUN_TEST(test_what_the_drive_would_drop_is_refused);
-    RUN_TEST(test_commands_that_a_fault_keeps_from_acting_are_told);
+    RUN_TEST(test_commands_that_a_fault_keeps_from_acting_are_reported);
     RUN_TEST(test_a_disable_for_later_leaves_the_one_that_waits);
     RUN_TEST(test_a_stop_for_later_leaves_the_one_that_waits);
     RUN_TEST(test_a_disable_for_later_counts_from_its_period_on);

@@ -382,7 +382,7 @@ static void motion_gains_are_the_optimum_found_for_the_reference_motor(void)
     TEST_ASSERT_TRUE(gains.load_return == 0.0 && gains.load_settle == 0.0);
 }
 
-static void quiet_hold_gains_of_the_reference_motor(void)
+static void settled_hold_gains_of_the_reference_motor(void)
 {
     struct invariant_ekf_hold_gains hold;
     const struct invariant_ekf_gains *gains = &hold.quiet;
@@ -455,7 +455,7 @@ int main(void)
     RUN_TEST(a_long_refusal_is_cut_to_fit);
     RUN_TEST(paper_gain_at_standstill_is_the_one_extracted);
     RUN_TEST(motion_gains_are_the_optimum_found_for_the_reference_motor);
-    RUN_TEST(quiet_hold_gains_of_the_reference_motor);
+    RUN_TEST(settled_hold_gains_of_the_reference_motor);
     RUN_TEST(a_hold_that_follows_leaves_the_offset_alone_and_lets_no_load_return);
     RUN_TEST(an_unloaded_hold_learns_the_offset_alone);
     return UNITY_END();

@@ -208,7 +208,7 @@ static void test_the_first_hold_aligns_the_rotor_and_finds_the_resistance(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 24.0, signals().bus_V);
 }
 
-static void test_current_sensors_that_differ_are_balanced_and_the_rotor_is_home_again(void)
+static void test_current_sensors_that_differ_are_balanced_and_the_rotor_comes_back(void)
 {
     double furthest_rad = 0.0;
 
@@ -262,7 +262,8 @@ static void enable_with_encoder(const struct motor_params *with, double angle_ra
     TEST_ASSERT_EQUAL_STRING("operation-enabled", drive_state_name(drive.supervision.state));
 }
 
-/* Far from home; by how much the rotor stands off its count's middle the drive cannot see. */
+/* Far from the final angle; by how much the rotor stands off its count's middle the drive cannot
+ * see. */
 static void test_an_encoder_is_aligned_with_a_rotor_at_rest(void)
 {
     for (int m = 0; m < 2; m++) {
@@ -295,7 +296,7 @@ static void test_the_drive_knows_what_the_bridge_takes_away(void)
     TEST_ASSERT_NUM_WITHIN(0.02 / 24.0, -DEAD_TIME_LOSS_V / 24.0, drive.actuation.loss.a);
 }
 
-static void test_without_adaptation_the_resistance_stays_as_it_was_told(void)
+static void test_without_adaptation_the_resistance_stays_as_it_was_set(void)
 {
     motor.motor.resistance_ohm = 0.45;
     settings.resistance_adaptation = false;
@@ -407,7 +408,7 @@ static void test_the_steady_state_ekf_serves_a_slow_move(void)
  * At rest a displaced rotor and a loaded one look alike, so the first hold cannot undo all of it;
  * the back-EMF of the first move can.
  */
-static void test_twenty_electrical_degrees_told_wrong_are_found_by_the_first_move(void)
+static void test_twenty_electrical_degrees_assumed_wrong_are_found_by_the_first_move(void)
 {
     settings.initial_angle_error_rad = 20.0 / 360.0 * TWO_PI / 50.0;
     enable();
@@ -437,11 +438,11 @@ int main(void)
     RUN_TEST(test_a_motor_slower_than_the_control_is_refused);
     RUN_TEST(test_a_law_without_current_control_lowers_the_speed_limit_itself);
     RUN_TEST(test_the_first_hold_aligns_the_rotor_and_finds_the_resistance);
-    RUN_TEST(test_current_sensors_that_differ_are_balanced_and_the_rotor_is_home_again);
+    RUN_TEST(test_current_sensors_that_differ_are_balanced_and_the_rotor_comes_back);
     RUN_TEST(test_an_encoder_is_aligned_with_a_rotor_at_rest);
     RUN_TEST(test_on_both_ways_of_the_alignment_the_rotor_stands_where_it_is_held);
     RUN_TEST(test_the_drive_knows_what_the_bridge_takes_away);
-    RUN_TEST(test_without_adaptation_the_resistance_stays_as_it_was_told);
+    RUN_TEST(test_without_adaptation_the_resistance_stays_as_it_was_set);
     RUN_TEST(test_a_move_is_followed_without_lag_and_ends_where_it_should);
     RUN_TEST(test_without_feed_forward_the_rotor_lags_by_twice_the_speed_over_the_bandwidth);
     RUN_TEST(test_a_load_is_estimated_and_carried_while_turning);
@@ -449,7 +450,7 @@ int main(void)
     RUN_TEST(test_a_bus_that_sags_to_14_V_in_motion_is_made_up_for_in_two_periods);
     RUN_TEST(test_the_pid_holds_its_place_and_follows);
     RUN_TEST(test_the_steady_state_ekf_serves_a_slow_move);
-    RUN_TEST(test_twenty_electrical_degrees_told_wrong_are_found_by_the_first_move);
+    RUN_TEST(test_twenty_electrical_degrees_assumed_wrong_are_found_by_the_first_move);
     RUN_TEST(test_a_disable_in_motion_opens_the_bridge_at_once);
     return UNITY_END();
 }

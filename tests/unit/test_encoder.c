@@ -63,7 +63,7 @@ static void test_there_and_back_is_where_it_was(void)
     TEST_ASSERT_EQUAL_UINT32(start.fraction, position.fraction);
 }
 
-static void test_any_number_of_counts_is_told_exactly(void)
+static void test_any_number_of_counts_is_converted_exactly(void)
 {
     static const int32_t counts[] = {1, -1, 65535, -65536, 65537, INT32_MAX, INT32_MIN, -123456789};
     const struct encoder_params params[] = {{0xfedcba9876543210u}, {0xffffffffffffffffu}, {1u}};
@@ -106,7 +106,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_counts_add_up_without_rounding_over_a_million_turns);
     RUN_TEST(test_there_and_back_is_where_it_was);
-    RUN_TEST(test_any_number_of_counts_is_told_exactly);
+    RUN_TEST(test_any_number_of_counts_is_converted_exactly);
     RUN_TEST(test_a_counter_that_wraps_goes_on);
     RUN_TEST(test_a_count_with_a_known_zero_means_its_middle);
     return UNITY_END();

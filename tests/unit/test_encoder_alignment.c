@@ -30,15 +30,16 @@ static struct encoder_alignment_params params;
 static struct encoder_alignment alignment;
 static enum encoder_alignment_event event;
 
-/* Torques as shares of Km times the stronger current, angles in electrical rad from home. */
+/* Torques as shares of Km times the stronger current, angles in electrical rad from the final
+ * angle. */
 static struct {
     double damping; /* ratio, at the stronger current */
     double friction;
     double load, load_begins_s, load_ends_s;
     double detent[3]; /* once, twice, four times an electrical turn */
     double detent_phase;
-    double encoder_phase;   /* rad by which the first count begins before home */
-    double counts_ratio;    /* counts that come per count that is told */
+    double encoder_phase;   /* rad by which the first count begins before the final angle */
+    double counts_ratio;    /* counts that come per count that is set */
     unsigned loaded_ways;   /* a bit for each */
     double stop;            /* an end stop's angle */
     bool jammed;            /* from the first stop on */
@@ -422,7 +423,7 @@ static void test_a_swing_that_dies_out_slowly_is_waited_for(void)
     TEST_ASSERT_DOUBLE_WITHIN(1.5 * count_rad() * swing_step(), 0.0, rotor.speed * swing_step());
 }
 
-static void test_four_times_the_inertia_that_it_was_told_does_no_harm(void)
+static void test_four_times_the_inertia_that_it_assumes_does_no_harm(void)
 {
     rotor.frequency_ratio = 0.5;
     rotor.damping = 0.1;
@@ -452,7 +453,7 @@ static void test_the_rotor_is_placed_before_it_is_led_so_that_the_hold_can_damp(
     design();
     rotor.angle = 2.0;
     encoder_alignment_start(&alignment, count());
-    while (alignment.stage == ALIGNMENT_DRAWING) {
+    while (alignment.stage == ALIGNMENT_ALIGNING) {
         period();
         if (event == ALIGNMENT_PLACES) {
             placed = (double)alignment.rotor / 4294967296.0 * TWO_PI - rotor.angle;
@@ -481,7 +482,7 @@ int main(void)
     RUN_TEST(test_without_current_nothing_is_believed);
     RUN_TEST(test_a_turning_point_is_not_taken_for_rest);
     RUN_TEST(test_a_swing_that_dies_out_slowly_is_waited_for);
-    RUN_TEST(test_four_times_the_inertia_that_it_was_told_does_no_harm);
+    RUN_TEST(test_four_times_the_inertia_that_it_assumes_does_no_harm);
     RUN_TEST(test_it_stays_within_half_a_turn_and_takes_as_long_as_it_says);
     RUN_TEST(test_the_rotor_is_placed_before_it_is_led_so_that_the_hold_can_damp);
     return UNITY_END();

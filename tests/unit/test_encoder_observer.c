@@ -146,7 +146,7 @@ static void test_the_resistance_is_learned_in_the_hold_and_nowhere_else(void)
                                   base.resistance_ohm);
 }
 
-static void test_the_load_that_is_told_is_where_it_begins(void)
+static void test_the_load_that_is_preset_is_where_it_begins(void)
 {
     design(FINE);
     encoder_observer_reset(&observer, &params, (struct position){0, 0},
@@ -224,7 +224,7 @@ int main(void)
     RUN_TEST(test_a_load_step_is_learned_with_the_triple_pole);
     RUN_TEST(test_a_coarse_encoder_is_known_to_a_count);
     RUN_TEST(test_the_resistance_is_learned_in_the_hold_and_nowhere_else);
-    RUN_TEST(test_the_load_that_is_told_is_where_it_begins);
+    RUN_TEST(test_the_load_that_is_preset_is_where_it_begins);
     RUN_TEST(test_placing_moves_the_estimate_and_what_follows_from_it);
     RUN_TEST(test_a_rotor_that_is_placed_bears_what_its_current_holds);
     RUN_TEST(test_counts_that_feign_half_the_top_speed_are_refused);

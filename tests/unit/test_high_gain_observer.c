@@ -36,10 +36,10 @@ void tearDown(void)
 {
 }
 
-static void reset(double told_rad)
+static void reset(double assumed_rad)
 {
     TEST_ASSERT_TRUE_MESSAGE(high_gain_observer_design(&params, &model, &task, error), error);
-    high_gain_observer_reset(&observer, &params, position_from_rad(told_rad, 50),
+    high_gain_observer_reset(&observer, &params, position_from_rad(assumed_rad, 50),
                              (struct position){0, 0}, model.nominal_resistance, 0);
 }
 

@@ -40,7 +40,7 @@ struct saturable {
 
 static struct per_unit base;
 static struct initial_position_params params;
-static struct initial_position finding;
+static struct initial_position detection;
 static struct saturable motor;
 static char error[DESIGN_ERROR_TEXT];
 static uint32_t periods;
@@ -163,19 +163,20 @@ static double sampled(double current_A)
 }
 
 /* Until it is found, or not. What is returned at S(k) acts from S(k+1) on, but off at once. */
-static void find(double home_rad)
+static void find(double final_rad)
 {
     struct initial_position_output now = {.bridge_on = false};
     struct initial_position_output next;
     bool was_on = false;
 
-    initial_position_start(&finding, &params, (angle_t)(int64_t)(home_rad / TWO_PI * 4294967296.0));
-    for (periods = 0; !initial_position_done(&finding); periods++) {
+    initial_position_start(&detection, &params,
+                           (angle_t)(int64_t)(final_rad / TWO_PI * 4294967296.0));
+    for (periods = 0; !initial_position_done(&detection); periods++) {
         const double offset_A = was_on ? OFFSET_A : 0.0;
         const double offset_V = was_on ? OFFSET_V : 0.0;
 
         next = initial_position_step(
-            &finding, &params,
+            &detection, &params,
             bench_phases(sampled(current_a() + offset_A), sampled(current_b() - offset_A),
                          base.current_A),
             bench_phases(motor.u_a + offset_V, motor.u_b + offset_V, base.voltage_V));
@@ -189,18 +190,19 @@ static void find(double home_rad)
 
 static double error_degrees(void)
 {
-    return remainder((double)finding.angle / 4294967296.0 * TWO_PI - motor.angle, TWO_PI) / DEGREE;
+    return remainder((double)detection.angle / 4294967296.0 * TWO_PI - motor.angle, TWO_PI) /
+           DEGREE;
 }
 
 static void is_found_by_impulses(void)
 {
-    TEST_ASSERT_EQUAL(INITIAL_POSITION_FOUND, finding.stage);
-    TEST_ASSERT_TRUE(finding.by_impulses);
+    TEST_ASSERT_EQUAL(INITIAL_POSITION_FOUND, detection.stage);
+    TEST_ASSERT_TRUE(detection.by_impulses);
 }
 
 static double confidence(void)
 {
-    return num_to_double(finding.asymmetry) / num_to_double(finding.uncertainty);
+    return num_to_double(detection.asymmetry) / num_to_double(detection.uncertainty);
 }
 
 /* ---- impulses ---- */
@@ -230,7 +232,7 @@ static void test_the_asymmetry_is_what_saturation_makes(void)
     is_found_by_impulses();
     peak = 0.7 * TRIP_A;
     TEST_ASSERT_DOUBLE_WITHIN(0.15, 1.0,
-                              num_to_double(finding.asymmetry) * base.current_A / 8.0 /
+                              num_to_double(detection.asymmetry) * base.current_A / 8.0 /
                                   (3.0 * motor.saturation * MAGNET_A * peak * peak));
 }
 
@@ -300,7 +302,7 @@ static void test_a_rotor_that_turns_is_waited_for(void)
     motor.friction_Nm = 80e-3;
     find(0.0);
     is_found_by_impulses();
-    TEST_ASSERT_TRUE(finding.repetitions > 0u);
+    TEST_ASSERT_TRUE(detection.repetitions > 0u);
     TEST_ASSERT_DOUBLE_WITHIN(3.5, 0.0, error_degrees());
 }
 
@@ -309,7 +311,7 @@ static void test_an_open_winding_is_not_taken_for_a_position(void)
     motor.broken_a = true;
     place(0.5);
     find(0.0);
-    TEST_ASSERT_EQUAL(INITIAL_POSITION_NOT_FOUND, finding.stage);
+    TEST_ASSERT_EQUAL(INITIAL_POSITION_NOT_FOUND, detection.stage);
     TEST_ASSERT_TRUE(periods < 300u);
 }
 
@@ -326,11 +328,11 @@ static void test_a_motor_that_no_impulse_can_fill_is_refused(void)
 
 static void is_found_by_alignment(void)
 {
-    TEST_ASSERT_EQUAL(INITIAL_POSITION_FOUND, finding.stage);
-    TEST_ASSERT_FALSE(finding.by_impulses);
+    TEST_ASSERT_EQUAL(INITIAL_POSITION_FOUND, detection.stage);
+    TEST_ASSERT_FALSE(detection.by_impulses);
 }
 
-static void test_without_saturation_the_rotor_is_drawn_home(void)
+static void test_without_saturation_the_rotor_is_aligned(void)
 {
     for (int step = 0; step < 12; step += EVERY) {
         setUp();
@@ -340,7 +342,7 @@ static void test_without_saturation_the_rotor_is_drawn_home(void)
         is_found_by_alignment();
         TEST_ASSERT_TRUE(confidence() < 5.0);
         TEST_ASSERT_DOUBLE_WITHIN(3.0, 0.0, error_degrees());
-        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.0 / TWO_PI, (double)finding.angle / 4294967296.0);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.0 / TWO_PI, (double)detection.angle / 4294967296.0);
     }
 }
 
@@ -373,7 +375,8 @@ static void test_the_alignment_is_gentle(void)
     place(2.0);
     find(1.0);
     is_found_by_alignment();
-    TEST_ASSERT_DOUBLE_WITHIN(0.02, 1.5 / base.current_A, num_to_double(finding.current_reference));
+    TEST_ASSERT_DOUBLE_WITHIN(0.02, 1.5 / base.current_A,
+                              num_to_double(detection.current_reference));
     TEST_ASSERT_TRUE(fabs(motor.speed) < 0.05);
 }
 
@@ -383,7 +386,7 @@ static void test_a_rotor_that_does_not_follow_is_not_found(void)
     motor.friction_Nm = 1.0;
     place(1.1);
     find(1.0);
-    TEST_ASSERT_EQUAL(INITIAL_POSITION_NOT_FOUND, finding.stage);
+    TEST_ASSERT_EQUAL(INITIAL_POSITION_NOT_FOUND, detection.stage);
 }
 
 int main(void)
@@ -398,7 +401,7 @@ int main(void)
     RUN_TEST(test_a_rotor_that_turns_is_waited_for);
     RUN_TEST(test_an_open_winding_is_not_taken_for_a_position);
     RUN_TEST(test_a_motor_that_no_impulse_can_fill_is_refused);
-    RUN_TEST(test_without_saturation_the_rotor_is_drawn_home);
+    RUN_TEST(test_without_saturation_the_rotor_is_aligned);
     RUN_TEST(test_the_alignment_leaves_the_angle_without_torque);
     RUN_TEST(test_the_alignment_bears_a_wrong_resistance);
     RUN_TEST(test_the_alignment_is_gentle);

@@ -16,10 +16,10 @@ static struct invariant_ekf_params params;
 static struct invariant_ekf ekf;
 static struct bench_motor motor;
 
-static void start_at(double angle_rad, double told_rad)
+static void start_at(double angle_rad, double assumed_rad)
 {
     motor = (struct bench_motor){.motor = bench_params, .angle_rad = angle_rad};
-    invariant_ekf_reset(&ekf, &params, position_from_rad(told_rad, 50), model.nominal_resistance,
+    invariant_ekf_reset(&ekf, &params, position_from_rad(assumed_rad, 50), model.nominal_resistance,
                         0);
 }
 
@@ -428,7 +428,7 @@ static void test_a_load_step_in_hold_is_followed_before_the_rotor_has_turned_far
 }
 
 /* Without motion nothing may drift: a minute of hold is 600,000 such periods. */
-static void test_a_quiet_hold_stays_where_it_is(void)
+static void test_a_settled_hold_stays_where_it_is(void)
 {
     hold(0.0, 3000);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.0, angle_error_electrical_deg());
@@ -441,7 +441,7 @@ static void test_a_quiet_hold_stays_where_it_is(void)
  * 3/w_h, and y the rate that the offset learned meanwhile makes; after 10 ms x is 0.371 of what it
  * was.
  */
-static void test_a_quiet_hold_returns_to_its_load_with_the_angle(void)
+static void test_a_settled_hold_returns_to_its_load_with_the_angle(void)
 {
     const double stiffness_Nm_rad = 50.0 * 0.157 * HOLD_A;
     const double away_Nm = 0.02;
@@ -486,7 +486,7 @@ static void test_a_hold_begins_with_the_load_of_the_motion(void)
     TEST_ASSERT_NUM_WITHIN(0.0, num_to_double(ekf.estimate.rotor.load_torque), ekf.settled_load);
 }
 
-static void test_a_reset_forgets_all_but_what_it_is_told(void)
+static void test_a_reset_forgets_all_but_what_it_is_set_to(void)
 {
     turn(45.0, 300);
     hold(0.0, 50);
@@ -521,10 +521,10 @@ int main(void)
     RUN_TEST(test_a_voltage_offset_across_the_current_is_found_in_hold);
     RUN_TEST(test_a_hold_of_150_ms_calibrates_the_resistance_from_half_to_one_and_a_half);
     RUN_TEST(test_a_load_step_in_hold_is_followed_before_the_rotor_has_turned_far);
-    RUN_TEST(test_a_quiet_hold_stays_where_it_is);
-    RUN_TEST(test_a_quiet_hold_returns_to_its_load_with_the_angle);
+    RUN_TEST(test_a_settled_hold_stays_where_it_is);
+    RUN_TEST(test_a_settled_hold_returns_to_its_load_with_the_angle);
     RUN_TEST(test_in_an_unloaded_hold_an_offset_is_no_load);
     RUN_TEST(test_a_hold_begins_with_the_load_of_the_motion);
-    RUN_TEST(test_a_reset_forgets_all_but_what_it_is_told);
+    RUN_TEST(test_a_reset_forgets_all_but_what_it_is_set_to);
     return UNITY_END();
 }

@@ -62,7 +62,7 @@ static void test_the_legs_give_the_voltage_asked_for(void)
 }
 
 /* What the rest of the drive takes for commanded is what the whole counts give. */
-static void test_the_voltage_told_is_that_of_the_legs(void)
+static void test_the_voltage_reported_is_that_of_the_legs(void)
 {
     settle_at_bus(1.1);
     for (int i = -110; i <= 110; i++) {
@@ -161,7 +161,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_legs_switch_evenly_around_the_middle);
     RUN_TEST(test_the_legs_give_the_voltage_asked_for);
-    RUN_TEST(test_the_voltage_told_is_that_of_the_legs);
+    RUN_TEST(test_the_voltage_reported_is_that_of_the_legs);
     RUN_TEST(test_no_voltage_is_half_time_on_every_leg);
     RUN_TEST(test_any_voltage_leaves_four_microseconds_with_all_low_sides_on);
     RUN_TEST(test_the_reciprocal_of_the_bus_follows_within_four_periods);

@@ -1,4 +1,4 @@
-/* The reference generator: where the drive is told to be, period by period. */
+/* The reference generator: where the drive is to be, period by period. */
 #include <string.h>
 #include <unity.h>
 
@@ -30,7 +30,7 @@ static const struct profile_move smooth = {.shape = PROFILE_SMOOTH,
 
 static struct reference_params params;
 static struct reference reference;
-static struct profile profile; /* the one the reference has taken over */
+static struct profile profile; /* the one the reference has begun */
 static char error[DESIGN_ERROR_TEXT];
 
 void setUp(void)
@@ -480,7 +480,7 @@ static void test_a_stop_at_rest_leaves_the_next_move_alone(void)
                             angle_of(reference.next.position));
 }
 
-static void test_a_stop_shortens_the_profile_that_was_handed_over(void)
+static void test_a_stop_shortens_the_profile_that_was_begun(void)
 {
     begin(&trapezoid);
     for (int k = 0; k < 700; k++) {
@@ -515,7 +515,7 @@ static void test_a_profile_begins_with_the_step_behind_its_load(void)
 static void test_after_a_stop_a_move_starts_from_where_the_reference_rests(void)
 {
     struct profile follow_on;
-    struct profile_move home = smooth;
+    struct profile_move back = smooth;
 
     begin(&trapezoid);
     TEST_ASSERT_TRUE(profile_plan(&follow_on, profile.target, &smooth, &drive, error));
@@ -525,8 +525,8 @@ static void test_after_a_stop_a_move_starts_from_where_the_reference_rests(void)
     reference_stop(&reference);
     run_to_rest();
     TEST_ASSERT_FALSE(reference_load(&reference, &follow_on)); /* planned from the old target */
-    home.position_rad = 0.0;
-    follows_the_continuous_profile(&home);
+    back.position_rad = 0.0;
+    follows_the_continuous_profile(&back);
     TEST_ASSERT_EQUAL_INT64(0, angle_of(reference.next.position));
 }
 
@@ -846,7 +846,7 @@ int main(void)
     RUN_TEST(test_a_stop_while_decelerating_still_lands_on_the_target);
     RUN_TEST(test_a_move_stopped_before_it_begins_stays_where_it_is);
     RUN_TEST(test_a_stop_at_rest_leaves_the_next_move_alone);
-    RUN_TEST(test_a_stop_shortens_the_profile_that_was_handed_over);
+    RUN_TEST(test_a_stop_shortens_the_profile_that_was_begun);
     RUN_TEST(test_a_profile_begins_with_the_step_behind_its_load);
     RUN_TEST(test_after_a_stop_a_move_starts_from_where_the_reference_rests);
     RUN_TEST(test_a_move_is_refused_while_another_one_runs);

@@ -89,7 +89,7 @@ void of_both_the_torque_constant_counts()
     TEST_ASSERT_EQUAL_DOUBLE(0.21, motor.params.torque_constant_Nm_A);
 }
 
-void the_drive_is_told_rotor_and_load_together()
+void the_drive_is_set_to_rotor_and_load_together()
 {
     const Scratch scratch;
     const Motor motor =
@@ -173,7 +173,7 @@ int main()
     UNITY_BEGIN();
     RUN_TEST(the_holding_torque_gives_the_torque_constant);
     RUN_TEST(of_both_the_torque_constant_counts);
-    RUN_TEST(the_drive_is_told_rotor_and_load_together);
+    RUN_TEST(the_drive_is_set_to_rotor_and_load_together);
     RUN_TEST(a_load_does_not_count_as_a_rotor);
     RUN_TEST(a_detent_torque_is_the_peak_of_its_harmonics);
     RUN_TEST(without_one_it_is_a_share_of_the_holding_torque);

@@ -106,11 +106,11 @@ double difference_deg(const Recorded &recorded, const firmware_image &image)
     void *drive = memory.get();
     const auto board = std::make_unique<hal_sil>();
     char error[DRIVE_ERROR_TEXT] = "";
-    const drive_settings told = settings();
+    const drive_settings given = settings();
     double sum = 0;
     std::size_t count = 0;
     hal_sil_init(board.get(), &recorded.facts);
-    TEST_ASSERT_TRUE_MESSAGE(image.init(drive, &board->board, &told, error), error);
+    TEST_ASSERT_TRUE_MESSAGE(image.init(drive, &board->board, &given, error), error);
     for (std::size_t k = 0; k < recorded.samples.size(); k++) {
         drive_signals signals;
         for (const drive_command &each : due(static_cast<std::uint32_t>(k)))

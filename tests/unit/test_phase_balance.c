@@ -23,7 +23,7 @@ static struct {
     uint32_t seed;
 } world;
 
-static angle_t home;
+static angle_t final_angle;
 static uint32_t taken; /* periods */
 
 void setUp(void)
@@ -40,7 +40,7 @@ void setUp(void)
     world.gain_a = world.gain_b = 1.0;
     world.current_A = hold_current_A;
     world.seed = 1;
-    home = 0;
+    final_angle = 0;
 }
 
 void tearDown(void)
@@ -62,7 +62,7 @@ static num_t measured(double value, double code, double in)
 static struct channels samples(void)
 {
     const double angle =
-        TWO_PI * (double)(angle_t)(home + (angle_t)balance.held.offset) / 4294967296.0;
+        TWO_PI * (double)(angle_t)(final_angle + (angle_t)balance.held.offset) / 4294967296.0;
     const struct bench_vector i = bench_to_phases(world.current_A, 0.0, angle);
     const double A = bench_facts.current_A_per_code, V = bench_facts.phase_voltage_V_per_code;
 
@@ -84,14 +84,14 @@ static enum phase_balance_event run_to(enum phase_balance_event end)
 
         event = phase_balance_step(&balance, &params, &now);
         taken++;
-    } while (event != end && event != PHASES_TOO_DIFFERENT && event != PHASES_AT_HOME);
+    } while (event != end && event != PHASES_TOO_DIFFERENT && event != PHASES_AT_FINAL);
     return event;
 }
 
 static enum phase_balance_event compare(void)
 {
     taken = 0;
-    phase_balance_start(&balance, home);
+    phase_balance_start(&balance, final_angle);
     return run_to(PHASES_COMPARED);
 }
 
@@ -145,7 +145,7 @@ static void test_it_is_found_from_wherever_the_rotor_is_held(void)
     world.noise_codes = 1.0;
     world.gain_a = 1.02;
     for (uint32_t sixteenth = 0; sixteenth < 16; sixteenth++) {
-        home = sixteenth << 28 | 0x1234567u;
+        final_angle = sixteenth << 28 | 0x1234567u;
         finds_it();
     }
 }
@@ -206,11 +206,11 @@ static void test_a_phase_without_current_is_refused(void)
     TEST_ASSERT_EQUAL(PHASES_TOO_DIFFERENT, compare());
 }
 
-static void test_the_rotor_is_led_by_half_a_step_at_most_and_home(void)
+static void test_the_rotor_is_led_by_half_a_step_at_most_and_to_its_final_angle(void)
 {
     int32_t furthest = 0;
 
-    phase_balance_start(&balance, home);
+    phase_balance_start(&balance, final_angle);
     while (balance.stage != PHASES_BALANCED) {
         const struct channels now = samples();
 
@@ -226,9 +226,9 @@ static void test_the_rotor_is_led_by_half_a_step_at_most_and_home(void)
 static void test_it_takes_no_longer_than_it_says(void)
 {
     for (uint32_t sixteenth = 0; sixteenth < 16; sixteenth++) {
-        home = sixteenth << 28;
+        final_angle = sixteenth << 28;
         TEST_ASSERT_EQUAL(PHASES_COMPARED, compare());
-        TEST_ASSERT_EQUAL(PHASES_AT_HOME, run_to(PHASES_AT_HOME));
+        TEST_ASSERT_EQUAL(PHASES_AT_FINAL, run_to(PHASES_AT_FINAL));
         TEST_ASSERT_LESS_OR_EQUAL_UINT32(phase_balance_periods(&params), taken);
     }
     TEST_ASSERT_LESS_THAN_UINT32(2500u, phase_balance_periods(&params)); /* 0.25 s */
@@ -244,7 +244,7 @@ int main(void)
     RUN_TEST(test_scaled_by_it_both_phases_show_one_resistance);
     RUN_TEST(test_what_no_sound_board_shows_is_refused);
     RUN_TEST(test_a_phase_without_current_is_refused);
-    RUN_TEST(test_the_rotor_is_led_by_half_a_step_at_most_and_home);
+    RUN_TEST(test_the_rotor_is_led_by_half_a_step_at_most_and_to_its_final_angle);
     RUN_TEST(test_it_takes_no_longer_than_it_says);
     return UNITY_END();
 }

@@ -209,7 +209,7 @@ void test_channels_periods_and_seeds_are_independent()
     TEST_ASSERT_DOUBLE_WITHIN(five_standard_errors, 0.0, correlation(3, 1, 1, 0, 0));
     TEST_ASSERT_DOUBLE_WITHIN(five_standard_errors, 0.0, correlation(3, 1, 1, 1, 1));
     TEST_ASSERT_DOUBLE_WITHIN(five_standard_errors, 0.0, correlation(4, 1, 0, 0, 0));
-    TEST_ASSERT_DOUBLE_WITHIN(0.02, 1.0, correlation(3, 1, 0, 0, 0)); /* the test can tell */
+    TEST_ASSERT_DOUBLE_WITHIN(0.02, 1.0, correlation(3, 1, 0, 0, 0)); /* the test can see it */
 }
 
 void test_the_same_seed_repeats_a_run_and_another_does_not()

@@ -100,7 +100,7 @@ static void test_a_bus_out_of_range_is_a_fault(void)
     }
 }
 
-/* A short pulls the bus down and may delay the interrupt: the comparator tells why. */
+/* A short pulls the bus down and may delay the interrupt: the comparator says why. */
 static void test_of_several_faults_the_cause_is_named(void)
 {
     samples.bus_voltage = bus_code(5.0);

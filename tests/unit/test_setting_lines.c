@@ -1,4 +1,4 @@
-/* Settings on the console: what a flashed board is told. */
+/* Settings on the console: how a flashed board is set. */
 #include "firmware/application/settings_record.h"
 #include "firmware/drive/drive_hash.h"
 #include "tests/unit/console_bench.h"

@@ -1,4 +1,4 @@
-/* What a drive may be told before it is enabled. */
+/* What a drive may be set to before it is enabled. */
 #include "firmware/drive/default_settings.h"
 #include <stddef.h>
 #include <string.h>
@@ -47,7 +47,7 @@ static void test_the_defaults_are_those_of_the_interface(void)
     TEST_ASSERT_TRUE(settings.hold_on_enable);
 }
 
-static void test_what_only_a_simulation_asks_for_is_told_by_name(void)
+static void test_what_only_a_simulation_asks_for_is_refused_by_name(void)
 {
     TEST_ASSERT_NULL(simulation_only_setting(&settings));
     settings.initial_angle_error_rad = -0.01;
@@ -365,7 +365,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_defaults_are_those_of_the_interface);
-    RUN_TEST(test_what_only_a_simulation_asks_for_is_told_by_name);
+    RUN_TEST(test_what_only_a_simulation_asks_for_is_refused_by_name);
     RUN_TEST(test_the_defaults_pass_the_check);
     RUN_TEST(test_ranges_and_units_are_those_of_the_contract);
     RUN_TEST(test_every_setting_may_take_the_bounds_of_its_range);

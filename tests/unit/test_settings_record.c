@@ -227,7 +227,7 @@ static void test_a_stored_choice_means_what_it_meant(void)
                                        "csmc-servo",
                                        "smc"};
     static const char *const feedbacks[] = {"sensorless", "encoder"};
-    static const char *const positions[] = {"told", "impulses", "published-impulses"};
+    static const char *const positions[] = {"assumed", "impulses", "published-impulses"};
     static const char *const policies[] = {"fault", "warn", "off"};
 
     for (size_t i = 0; i < sizeof laws / sizeof laws[0]; i++) {

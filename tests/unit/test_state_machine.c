@@ -310,7 +310,7 @@ static void test_a_disable_for_later_does_not_clear_the_boards_trip(void)
     TEST_ASSERT_TRUE(fake_board.trip_latched);
 }
 
-static void test_a_drive_starts_at_the_angle_it_is_told(void)
+static void test_a_drive_starts_at_the_angle_it_assumes(void)
 {
     settings.initial_angle_rad = 0.3;
     settings.initial_angle_error_rad = -0.05;
@@ -361,7 +361,7 @@ static void test_enabling_begins_with_all_blocks_at_rest(void)
     TEST_ASSERT_FALSE(drive.reference.next.moving);
 }
 
-/* ---- finding the position ---- */
+/* ---- initial position detection ---- */
 
 static void disabling_works_at_once(void)
 {
@@ -374,7 +374,7 @@ static void disabling_works_at_once(void)
 }
 
 /* On this board no current flows: that is not taken for a position. */
-static void begin_finding(void)
+static void begin_detection(void)
 {
     settings.calibrate_offsets = false;
     settings.initial_position = DRIVE_INITIAL_POSITION_IMPULSES;
@@ -386,13 +386,13 @@ static void begin_finding(void)
 
 static void test_a_position_that_cannot_be_found_is_a_fault_with_a_name(void)
 {
-    begin_finding();
+    begin_detection();
     run(400);
     has_fault(DRIVE_FAULT_POSITION_NOT_FOUND);
     disabling_works_at_once();
 }
 
-static void test_finding_the_position_follows_the_offsets(void)
+static void test_initial_position_detection_follows_the_offsets(void)
 {
     settings.initial_position = DRIVE_INITIAL_POSITION_IMPULSES;
     power_up();
@@ -405,42 +405,42 @@ static void test_finding_the_position_follows_the_offsets(void)
 
 static void test_a_fault_opens_the_bridge_while_the_position_is_found(void)
 {
-    begin_finding();
+    begin_detection();
     samples.current_a = 4000;
     run(1);
     has_fault(DRIVE_FAULT_OVERCURRENT);
     samples = samples_at_rest;
-    begin_finding();
+    begin_detection();
     samples.bus_voltage = 1000;
     run(1);
     has_fault(DRIVE_FAULT_BUS_VOLTAGE);
 }
 
-static void test_finding_the_position_can_be_ended_at_once(void)
+static void test_initial_position_detection_can_be_ended_at_once(void)
 {
-    begin_finding();
+    begin_detection();
     run(100); /* into the impulses */
     disabling_works_at_once();
 }
 
 static void test_motion_is_refused_until_the_position_is_found(void)
 {
-    begin_finding();
+    begin_detection();
     must_refuse(move_to(0.1), "the drive is being enabled, wait until it is ready");
 }
 
-/* What is found is the angle; the turn is that of the angle told. */
-static void the_start_is(double told_rad, double found_turns, double expected_rad)
+/* What is found is the angle; the turn is that of the angle assumed. */
+static void the_start_is(double assumed_rad, double found_turns, double expected_rad)
 {
-    settings.initial_angle_rad = told_rad;
-    begin_finding();
+    settings.initial_angle_rad = assumed_rad;
+    begin_detection();
     state_machine_position_found(&drive, (angle_t)(int64_t)(found_turns * 4294967296.0));
     is_in(DRIVE_ALIGNING, true);
     the_reference_is_at(expected_rad);
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, expected_rad, signals().theta_est_rad);
 }
 
-static void test_the_rotor_is_in_the_electrical_turn_nearest_to_the_angle_told(void)
+static void test_the_rotor_is_in_the_electrical_turn_nearest_to_the_angle_assumed(void)
 {
     const double turn_rad = TWO_PI / 50.0;
 
@@ -1043,15 +1043,15 @@ int main(void)
     RUN_TEST(test_after_a_trip_of_the_board_the_drive_can_be_enabled_again);
     RUN_TEST(test_after_a_trip_of_the_board_disable_and_enable_can_be_posted_at_once);
     RUN_TEST(test_a_disable_for_later_does_not_clear_the_boards_trip);
-    RUN_TEST(test_a_drive_starts_at_the_angle_it_is_told);
+    RUN_TEST(test_a_drive_starts_at_the_angle_it_assumes);
     RUN_TEST(test_enabling_an_enabled_drive_changes_nothing);
     RUN_TEST(test_enabling_begins_with_all_blocks_at_rest);
     RUN_TEST(test_a_position_that_cannot_be_found_is_a_fault_with_a_name);
-    RUN_TEST(test_finding_the_position_follows_the_offsets);
+    RUN_TEST(test_initial_position_detection_follows_the_offsets);
     RUN_TEST(test_a_fault_opens_the_bridge_while_the_position_is_found);
-    RUN_TEST(test_finding_the_position_can_be_ended_at_once);
+    RUN_TEST(test_initial_position_detection_can_be_ended_at_once);
     RUN_TEST(test_motion_is_refused_until_the_position_is_found);
-    RUN_TEST(test_the_rotor_is_in_the_electrical_turn_nearest_to_the_angle_told);
+    RUN_TEST(test_the_rotor_is_in_the_electrical_turn_nearest_to_the_angle_assumed);
     RUN_TEST(test_a_drive_can_be_disabled_from_everywhere);
     RUN_TEST(test_a_disable_flushes_the_moves_before_it);
     RUN_TEST(test_after_disabling_the_drive_can_be_enabled_and_moved_again);

@@ -106,7 +106,7 @@ static void test_a_step_is_that_of_the_paper(void)
     }
 }
 
-static void test_a_reset_forgets_all_but_what_it_is_told(void)
+static void test_a_reset_forgets_all_but_what_it_is_set_to(void)
 {
     set((struct state){0.5, 0.5, 20.0, 1.0, 0.1});
     steady_state_ekf_reset(&ekf, &params, position_from_rad(2.0, 50), NUM(0.1));
@@ -199,7 +199,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_step_is_that_of_the_paper);
-    RUN_TEST(test_a_reset_forgets_all_but_what_it_is_told);
+    RUN_TEST(test_a_reset_forgets_all_but_what_it_is_set_to);
     RUN_TEST(test_the_phase_currents_shown_are_the_measured_ones);
     RUN_TEST(test_moderate_speeds_are_tracked_both_ways);
     RUN_TEST(test_the_euler_predictor_is_stable_up_to_57_rad_s);

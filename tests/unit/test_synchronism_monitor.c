@@ -1,4 +1,4 @@
-/* Each signature of the synchronism monitor: what it is told by, and what is not one. */
+/* Each signature of the synchronism monitor: what it is shown by, and what is not one. */
 #include "firmware/estimator/synchronism_monitor.h"
 #include "tests/unit/bench.h"
 #include "tests/unit/num_assert.h"
@@ -159,14 +159,14 @@ static void test_a_rotor_half_a_turn_beside_its_estimate_is_lost(void)
     for (unsigned i = 0; i < sizeof speeds_rad_s / sizeof speeds_rad_s[0]; i++) {
         const double speed = speeds_rad_s[i];
         const double back_emf_V = bench_params.torque_constant_Nm_A * speed;
-        struct course mirrored = {.speed_rad_s = speed, .disturbance_V = 0.4 * back_emf_V};
+        struct course opposite = {.speed_rad_s = speed, .disturbance_V = 0.4 * back_emf_V};
 
         synchronism_monitor_reset(&monitor, &params);
-        TEST_ASSERT_NOT_EQUAL(SYNCHRONISM_LOST, after(&mirrored, 4.0 * BLOCK_S));
-        TEST_ASSERT_EQUAL_INT(SYNCHRONISM_LOST, block(&mirrored));
-        mirrored.disturbance_V = 0.24 * back_emf_V;
+        TEST_ASSERT_NOT_EQUAL(SYNCHRONISM_LOST, after(&opposite, 4.0 * BLOCK_S));
+        TEST_ASSERT_EQUAL_INT(SYNCHRONISM_LOST, block(&opposite));
+        opposite.disturbance_V = 0.24 * back_emf_V;
         synchronism_monitor_reset(&monitor, &params);
-        TEST_ASSERT_NOT_EQUAL(SYNCHRONISM_LOST, after(&mirrored, 1.0));
+        TEST_ASSERT_NOT_EQUAL(SYNCHRONISM_LOST, after(&opposite, 1.0));
     }
 }
 
@@ -325,7 +325,7 @@ static void test_a_load_far_beyond_the_rated_torque_is_a_stall(void)
     expect(SYNCHRONISM_SURE, (struct course){.load_Nm = 0.74, .speed_rad_s = 30.0}, 1.0);
 }
 
-static void test_a_held_rotor_a_quarter_turn_away_has_been_torn_off(void)
+static void test_a_load_angle_of_a_quarter_turn_is_pull_out(void)
 {
     struct course c = {.i_d_A = 1.5, .holding = true, .error_turns = -0.26};
 
@@ -338,7 +338,7 @@ static void test_a_held_rotor_a_quarter_turn_away_has_been_torn_off(void)
     expect(SYNCHRONISM_SURE, c, 1.0);
 }
 
-static void test_a_doubt_lasts_for_20_ms(void)
+static void test_doubtful_lasts_for_20_ms(void)
 {
     const struct course doubtful = {.holding = true, .error_turns = 0.2};
     int blocks = 0;
@@ -371,12 +371,12 @@ static void test_the_times_follow_the_control_period(void)
     TEST_ASSERT_EQUAL_UINT32(16, params.block_periods);
     TEST_ASSERT_EQUAL_UINT32(32, half.block_periods);
     TEST_ASSERT_EQUAL_UINT32(params.standing_blocks, half.standing_blocks);
-    TEST_ASSERT_EQUAL_UINT32(params.torn_blocks, half.torn_blocks);
+    TEST_ASSERT_EQUAL_UINT32(params.pull_out_blocks, half.pull_out_blocks);
     task.period_s = 4.0 * PERIOD_S;
     const struct synchronism_monitor_params slow = synchronism_monitor_design(&task);
 
     TEST_ASSERT_EQUAL_UINT32(SYNCHRONISM_STEPS, slow.block_periods);
-    TEST_ASSERT_EQUAL_UINT32(params.torn_blocks / 2u, slow.torn_blocks);
+    TEST_ASSERT_EQUAL_UINT32(params.pull_out_blocks / 2u, slow.pull_out_blocks);
 }
 
 int main(void)
@@ -399,8 +399,8 @@ int main(void)
     RUN_TEST(test_a_rotor_that_falls_behind_for_a_tenth_of_a_second_is_stalled);
     RUN_TEST(test_a_lag_with_current_to_spare_is_the_laws_own);
     RUN_TEST(test_a_load_far_beyond_the_rated_torque_is_a_stall);
-    RUN_TEST(test_a_held_rotor_a_quarter_turn_away_has_been_torn_off);
-    RUN_TEST(test_a_doubt_lasts_for_20_ms);
+    RUN_TEST(test_a_load_angle_of_a_quarter_turn_is_pull_out);
+    RUN_TEST(test_doubtful_lasts_for_20_ms);
 #if STEADYSTEP_NUM != NUM_FIXED
     RUN_TEST(test_a_disturbance_that_is_no_number_is_a_loss);
 #endif

@@ -1,6 +1,6 @@
 /*
  * The device of the core's tests: a flash that is never programmed, and a probe that keeps what a
- * program tells it and raises interrupts when it is asked to (programs/program.h).
+ * program says and raises interrupts when it is asked to (programs/program.h).
  */
 #ifndef STEADYSTEP_TESTS_PROBE_DEVICE_H
 #define STEADYSTEP_TESTS_PROBE_DEVICE_H

@@ -217,7 +217,7 @@ void unprivileged_code_is_refused()
     TEST_ASSERT_EQUAL_size_t(1, run.probe.log.size());
 }
 
-void stack_below_its_limit_is_told()
+void stack_below_its_limit_is_reported()
 {
     const Run run("deep_stack");
     assert_contains("stack overflow", run.failure);
@@ -282,7 +282,7 @@ int main()
     RUN_TEST(word_across_a_boundary_is_read_or_a_fault);
     RUN_TEST(jump_astray_is_a_bus_fault);
     RUN_TEST(unprivileged_code_is_refused);
-    RUN_TEST(stack_below_its_limit_is_told);
+    RUN_TEST(stack_below_its_limit_is_reported);
     RUN_TEST(stops_between_instructions_change_nothing);
     RUN_TEST(reset_starts_anew_and_keeps_memory);
     return UNITY_END();

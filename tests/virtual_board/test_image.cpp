@@ -80,7 +80,7 @@ void drives_as_the_sil_board_does_bit_for_bit()
     TEST_ASSERT_TRUE(simulated.plant().state().theta_rad == board.plant().state().theta_rad);
 }
 
-void overrun_opens_the_bridge_within_the_period_and_is_told()
+void overrun_opens_the_bridge_within_the_period_and_is_reported()
 {
     VirtualBoard board(plant_config(), image, simulated_firmware->numeric, settings());
     board.type("enable");
@@ -128,7 +128,7 @@ int main(int argc, char **argv)
     simulated_firmware = fixed ? &firmware_image_fixed : &firmware_image_float;
     UNITY_BEGIN();
     RUN_TEST(drives_as_the_sil_board_does_bit_for_bit);
-    RUN_TEST(overrun_opens_the_bridge_within_the_period_and_is_told);
+    RUN_TEST(overrun_opens_the_bridge_within_the_period_and_is_reported);
     RUN_TEST(control_interrupt_stays_within_its_budget_and_its_memory);
     return UNITY_END();
 }

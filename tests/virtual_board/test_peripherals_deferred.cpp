@@ -1,4 +1,4 @@
-/* Results that a converter puts off until somebody looks: nobody can tell. */
+/* Results that a converter puts off until somebody looks: nobody can see it. */
 #include <cstring>
 
 #include "tests/virtual_board/device_bench.h"

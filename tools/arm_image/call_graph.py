@@ -193,7 +193,7 @@ def _stack_growth(image, instruction, node):
     if base in ("sub", "add") and match:
         size = _constant(image, match.group(1), instruction, node.instructions)
         if size is None:
-            raise ValueError(f"{node.name}: stack frame of a size that nothing tells")
+            raise ValueError(f"{node.name}: stack frame of a size that nothing says")
         signed = size - (1 << 32) if size >> 31 else size
         return signed if base == "sub" else max(-signed, 0)
     return 0

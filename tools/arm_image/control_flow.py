@@ -29,7 +29,7 @@ class Function:
 
     def __init__(self, image, function, targets_of):
         """`targets_of(instruction, body)`: where an indirect call or jump may go, None if it
-        cannot be told."""
+        cannot be known."""
         self.start, self.size, self.name = function
         self._image = image
         self._targets_of = targets_of
@@ -95,7 +95,7 @@ class Function:
         if not targets:
             raise ValueError(
                 f"{self._image.path}: {self.name} at {instruction.address:#x}:"
-                f" {instruction.mnemonic} {instruction.operands} goes where nothing tells"
+                f" {instruction.mnemonic} {instruction.operands} goes where nothing says"
             )
         inside = [t for t in targets if self.start <= t < self.start + max(self.size, 2)]
         # A BL into the middle of its own function is a jump: no other reaches as far on ARMv6-M.

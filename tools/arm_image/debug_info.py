@@ -1,4 +1,4 @@
-"""What the image's debug information (DWARF) tells: source lines, constants of a type."""
+"""What the image's debug information (DWARF) says: source lines, constants of a type."""
 
 import bisect
 import os.path
@@ -81,7 +81,7 @@ def members(path, wanted):
 
 def flash_of(path, root, folder):
     """Bytes of the code that comes from a folder of sources: sizes of its functions with their
-    constants. Tables and texts, some hundred bytes, are not told apart from the test's and left out.
+    constants. Tables and texts, some hundred bytes, are not distinguished from the test's and left out.
     """
     source = SourceLines(path, root)
     with open(path, "rb") as file:

@@ -168,7 +168,7 @@ class Image:
 
     def function_from(self, address):
         """(start, size, name) of the function from an address on. Library code in assembly is
-        entered in the middle, too, and goes on behind the end that its symbol tells."""
+        entered in the middle, too, and goes on behind the end that its symbol says."""
         start, size, name = self.function_at(address)
         if start == address:
             return start, size, name

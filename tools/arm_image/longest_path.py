@@ -214,7 +214,7 @@ def _reaching(ends, jumps, nodes):
 
 class _Graph:
     """Longest distances in one function. A run is a chain (before, block or (loop, turns)), so that
-    it can be told afterwards what it consists of."""
+    it can be said afterwards what it consists of."""
 
     def __init__(self, function, weights, edges, bounds):
         self._function = function

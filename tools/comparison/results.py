@@ -109,9 +109,9 @@ class Comparison:
         for entry in self.entries:
             if entry.note:
                 notes.setdefault(entry.note, []).append(entry.name)
-        told = [f"{', '.join(names)}: {note}" for note, names in notes.items()]
+        said = [f"{', '.join(names)}: {note}" for note, names in notes.items()]
         return (f"Not tuned for {self.motor.id}, so no statement about these laws on it: "
-                f"{'; '.join(told)}." if told else "")
+                f"{'; '.join(said)}." if said else "")
 
     def cell(self, entry, plant, move):
         return self.cells[entry.name, plant.name, move.name]

@@ -47,7 +47,7 @@ def tunables_of(law, period_s):
 
 
 def fixed_settings(law, motor):
-    """What a law has to be told besides."""
+    """What a law has to be given besides."""
     if law == "stmms":  # without current control it refuses speeds of N w L / R > 4
         return {"drive.speed_limit_rad_s": float(f"{3.999 * motor.electrical_corner_rad_s:.4g}")}
     if law == "csmc-servo":  # the sine's

@@ -1,4 +1,4 @@
-"""A row of a data sheet as a motor file: what is stated is taken over, what is missing is assumed
+"""A row of a data sheet as a motor file: what is stated is taken, what is missing is assumed
 and said."""
 from decimal import Decimal
 
@@ -23,7 +23,7 @@ NEEDED = (*TEXTS, "step_angle", "resistance", "inductance", "rated_current", "ro
 
 SUPPLIES_V = (24, 36, 48)
 HEADROOM = 4  # supply / (R x rated current) at least
-# Bearings and iron: what the motors of the house were given, for a holding torque of 0.3 N m.
+# Bearings and iron: what the motors of the library were given, for a holding torque of 0.3 N m.
 FRICTION_Nms_rad, OF_TORQUE_Nm = Decimal("1e-4"), Decimal("0.3")
 
 

@@ -14,7 +14,7 @@ SCENARIOS = ("--scenarios", CATALOGUE / "scenarios")
 
 
 class Local:
-    """This machine; as many calls at a time as there are cores, unless told."""
+    """This machine; as many calls at a time as there are cores, unless set."""
 
     def __init__(self, jobs=None):
         self.jobs = jobs or os.cpu_count() or 1

@@ -1,6 +1,6 @@
 /*
  * Regular results that are put off. While their sequence raises no interrupt and DMA moves them
- * round a ring, nobody can tell when they come but by registers: they are formed, in their order,
+ * round a ring, nobody can see when they come but by registers: they are formed, in their order,
  * when the core looks at one of those (Adc::look), and at the latest at the next peak, for which
  * they are (Adc::settle). So 68 results of a period cost no event each, and neither do the triggers
  * of their sequences (trigger.h). What the core finds in the ring's memory without such a look may
@@ -44,7 +44,7 @@ void Adc::plan()
     }
 }
 
-/* Whether a result that comes now can be told by registers only. */
+/* Whether a result that comes now can be seen in registers only. */
 bool Adc::silent()
 {
     if (dmamux_.changes() != route_changes_) {
@@ -177,7 +177,7 @@ void Adc::settle(Ticks until, Ticks triggered_before)
     }
 }
 
-/* Up to now; behind a write what is still to come does so by an event, since it may be told by more
+/* Up to now; behind a write what is still to come does so by an event, since it may be seen in more
    than registers from now on. */
 void Adc::look(Access access)
 {

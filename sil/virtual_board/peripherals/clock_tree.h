@@ -77,7 +77,7 @@ class Rcc : public RegisterBlock
     }
 
     void check();                   /* limits of supply and flash at the present clock */
-    unsigned wait_states = 0;       /* told by the flash */
+    unsigned wait_states = 0;       /* set by the flash */
     std::function<void()> on_clock; /* called after HCLK or a bus clock has changed */
 
   protected:

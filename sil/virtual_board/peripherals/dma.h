@@ -38,7 +38,7 @@ class Dma : public RegisterBlock
     bool transfer(unsigned channel, std::uint32_t *where);
     class Ring;
     /* Whether a channel fetches from one register for ever and raises no interrupt: only its
-       registers tell how far it is. */
+       registers show how far it is. */
     bool silent(unsigned channel) const;
     /* Rises with every write that may change what a channel does. */
     unsigned changes() const
@@ -65,7 +65,7 @@ class Dma : public RegisterBlock
     std::array<std::uint32_t, channels> loaded_{}; /* items when the channel was enabled */
 };
 
-/* A silent channel that is known to read the register of a peripheral, which hands over what that
+/* A silent channel that is known to read the register of a peripheral, which passes on what that
    holds, many items at once. The channel's registers show them when this is gone. */
 class Dma::Ring
 {

@@ -61,7 +61,7 @@ class Flash : public RegisterBlock, public FlashMemory
 
     Rcc &rcc_;
     std::vector<std::uint8_t> memory_;
-    std::vector<bool> damaged_; /* double words that two and more bits of the check tell wrong */
+    std::vector<bool> damaged_; /* double words that two and more bits of the check show wrong */
     unsigned key_step_ = 0;
     unsigned bank_ = 0; /* of the present operation */
     bool busy_ = false;

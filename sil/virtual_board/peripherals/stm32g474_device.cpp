@@ -165,7 +165,7 @@ void Stm32g474Device::reset(const std::string &cause)
             mapping.peripheral->reset();
         }
     }
-    rcc_.reset(); /* last: it tells the chip its clock */
+    rcc_.reset(); /* last: it gives the chip its clock */
     power_stage_.chip_reset();
 }
 

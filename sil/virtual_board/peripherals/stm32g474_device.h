@@ -36,7 +36,7 @@ class Stm32g474Device : public Device
         return flash_;
     }
     void reset(const std::string &cause) override;
-    /* A debugger has halted the core, or lets it go on: DBGMCU tells which timers stand still. */
+    /* A debugger has halted the core, or lets it go on: DBGMCU says which timers stand still. */
     void halt(bool halted);
 
     Rcc &rcc()

@@ -73,7 +73,7 @@ Timer::Timer(Chip &chip, const TimerKind &kind, Triggers &triggers, std::functio
     if (kind_.general) {
         triggers_in_ = &triggers_.listen(
             [this](Trigger source, TriggerEdge edge) { triggered(source, edge); });
-        triggers_.choose(*triggers_in_, 0); /* until the slave controller is told one */
+        triggers_.choose(*triggers_in_, 0); /* until the slave controller is set to one */
     }
 }
 
@@ -256,7 +256,7 @@ void Timer::stop()
     }
 }
 
-/* Whether nobody can tell when an overflow comes, but those that let it come late. */
+/* Whether nobody can see when an overflow comes, but those that let it come late. */
 bool Timer::may_be_late(Ticks period) const
 {
     return at(DIER) == 0 && field(at(CR2), 4, 3) == 2 && (at(CR1) & UDIS) == 0 &&

@@ -2,7 +2,7 @@
  * General and basic timers (TIM2, 3, 4, 6, 7, 15): up-counting with prescaler and auto-reload,
  * update event, compare flags and their interrupt, TRGO on reset, enable or update, slave modes
  * reset and trigger from another timer, encoder mode 3. Time between events is computed, not
- * stepped, and overflows that nobody can tell but by registers and by triggers that may come late
+ * stepped, and overflows that nobody can see but by registers and by triggers that may come late
  * cost no event each. RM0440, chapters "General-purpose timers" and "Basic timers".
  */
 #ifndef STEADYSTEP_VIRTUAL_BOARD_TIMER_H

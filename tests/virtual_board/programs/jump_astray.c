@@ -1,7 +1,7 @@
 /* A jump to what is no memory, and one to a return from an exception while there is none. */
 #include "program.h"
 
-__attribute__((used)) static void tell(uint32_t *frame)
+__attribute__((used)) static void report(uint32_t *frame)
 {
     PROBE->log = frame[6];
     PROBE->log = CFSR;
@@ -9,7 +9,7 @@ __attribute__((used)) static void tell(uint32_t *frame)
     frame[6] = frame[5] & ~1u; /* behind the call */
 }
 
-HARD_FAULT_CALLS(tell)
+HARD_FAULT_CALLS(report)
 
 static void jump(uint32_t address)
 {

@@ -4,7 +4,7 @@
  */
 #include "program.h"
 
-__attribute__((used)) static void tell(uint32_t *frame)
+__attribute__((used)) static void report(uint32_t *frame)
 {
     const uint32_t address = frame[6];
     const uint32_t first_half = *(const volatile uint16_t *)address;
@@ -13,7 +13,7 @@ __attribute__((used)) static void tell(uint32_t *frame)
     frame[6] = address + (first_half >= 0xe800u ? 4u : 2u);
 }
 
-HARD_FAULT_CALLS(tell)
+HARD_FAULT_CALLS(report)
 
 /* `name` begins at the instruction. */
 #define INSTRUCTION(name, code)                                                                    \

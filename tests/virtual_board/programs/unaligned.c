@@ -1,13 +1,13 @@
 /* A word that lies across a boundary of words: what the core makes of it. */
 #include "program.h"
 
-__attribute__((used)) static void tell(uint32_t *frame)
+__attribute__((used)) static void report(uint32_t *frame)
 {
     PROBE->log = frame[6];
     frame[6] += 2u;
 }
 
-HARD_FAULT_CALLS(tell)
+HARD_FAULT_CALLS(report)
 
 static volatile uint32_t words[2];
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Checks the arrows between the rooms of the house on their includes, so that it cannot rot.
+"""Checks the dependencies of the modules on their includes, so that they cannot rot.
 
-usage: arrows.py ROOT         exit 1 and one line file:line per violation
-       arrows.py --self-test ROOT   plants violations in a copy and expects each to be found
+usage: dependencies.py ROOT         exit 1 and one line file:line per violation
+       dependencies.py --self-test ROOT   plants violations in a copy and expects each to be found
 """
 import pathlib
 import re
@@ -16,9 +16,9 @@ NUMERIC = ["firmware/numeric/", "firmware/linkage.h", "firmware/rare.h", "firmwa
 MOTOR = ["firmware/motor/", "firmware/interface/settings_table.h", *NUMERIC]
 DESIGN = ["firmware/design/", *MOTOR]  # blocks are scaled from its gains at start-up
 
-# What each room may include, by prefix; the longest matching room decides. A file is a room of its
+# What each module may include, by prefix; the longest matching one decides. A file is a module of its
 # own where the contract names it. "board.h's" stands for all that board.h itself exposes.
-ROOMS = {
+MODULES = {
     "firmware/linkage.h": [],
     "firmware/rare.h": [],
     "firmware/simulation.h": [],
@@ -84,7 +84,7 @@ def includes(path):
 
 
 def exposed(root, header, found=None):
-    """The headers of the house that `header` includes, directly or through others, and itself."""
+    """The headers of the project that `header` includes, directly or through others, and itself."""
     found = set() if found is None else found
     if header not in found and (root / header).is_file():
         found.add(header)
@@ -94,21 +94,21 @@ def exposed(root, header, found=None):
     return found
 
 
-def room_of(name):
-    rooms = [room for room in ROOMS if name.startswith(room)]
-    return max(rooms, key=len, default=None)
+def module_of(name):
+    modules = [module for module in MODULES if name.startswith(module)]
+    return max(modules, key=len, default=None)
 
 
 def check_file(root, name, board_exposes):
     """Yields (line, text) for each violation in one source."""
-    room = room_of(name)
-    if room is None:
-        yield 1, "belongs to no room that tests/house/arrows.py knows"
+    module = module_of(name)
+    if module is None:
+        yield 1, "belongs to no module that tests/structure/dependencies.py knows"
         return
     firmware = name.startswith("firmware/")
     simulation = (name.startswith(("sil/plant/", "sil/board/", "sil/virtual_board/", "hal/sil/"))
                   and not name.startswith("sil/plant/bench_"))  # those measure time
-    allowed = ROOMS[room]
+    allowed = MODULES[module]
     for number, ours, target in includes(root / name):
         if not ours:
             if firmware and target not in C_HEADERS:
@@ -116,10 +116,10 @@ def check_file(root, name, board_exposes):
             elif simulation and target in BANNED_IN_SIMULATION:
                 yield number, f"a deterministic simulation must not include <{target}>"
         elif not (root / target).is_file():
-            yield number, f'"{target}" is no path from the root of the house'
+            yield number, f'"{target}" is no path from the root of the project'
         elif not (target.startswith(tuple(allowed))
                   or "board.h's" in allowed and target in board_exposes):
-            yield number, f'{room} must not include "{target}"'
+            yield number, f'{module} must not include "{target}"'
     if not name.startswith("firmware/numeric/"):
         for number, line in code_lines(root / name):
             match = NUMBER_FORMAT.search(line)
@@ -187,4 +187,4 @@ def self_test(root):
 
 
 if __name__ == "__main__":
-    sys.exit(check.of_root(__doc__, violations, self_test, sys.argv[1:], "violations of the arrows"))
+    sys.exit(check.of_root(__doc__, violations, self_test, sys.argv[1:], "violations of the dependencies"))

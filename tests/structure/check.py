@@ -1,4 +1,4 @@
-"""What the checks of the house have in common."""
+"""What the checks of the structure have in common."""
 import pathlib
 import sys
 
