@@ -13,6 +13,7 @@
 #include "firmware/drive/command_queue.h"
 #include "firmware/drive/expectation.h"
 #include "firmware/interface/drive_interface.h"
+#include "firmware/drive/following_error.h"
 #include "firmware/drive/measurement.h"
 #include "firmware/drive/offset_calibration.h"
 #include "firmware/drive/parameter_store.h"
@@ -78,6 +79,7 @@ struct drive_params {
     union position_law_params law; /* large, so behind what every law uses */
     struct detent_compensation_params detent;
     struct bridge_loss_params bridge_loss;
+    struct following_error_params following;
 };
 
 /* States, faults and the count of periods: state_machine.h. */
@@ -160,6 +162,7 @@ struct drive {
     int32_t encoder_count; /* of this S(k) */
     struct expectation expectation;
     struct synchronism_supervision synchronism;
+    struct following_error following; /* with an encoder, in the monitor's place */
     struct prepared_input input;
     struct command_queue commands;
 
