@@ -128,8 +128,10 @@ struct enabling {
         struct phase_balance balance;
         struct encoder_alignment alignment;
     };
-    struct phase_balance_params balance_params;
-    struct encoder_alignment_params alignment_params;
+    union {
+        struct phase_balance_params balance_params;
+        struct encoder_alignment_params alignment_params;
+    };
     num_t phase_imbalance; /* as last found */
 };
 
