@@ -1,4 +1,7 @@
-/* What comes of the synchronism monitor's verdicts in a drive: estimator/synchronism_monitor.h. */
+/*
+ * What comes of the synchronism monitor's verdicts in a drive: estimator/synchronism_monitor.h.
+ * With an encoder the following error is watched in its place: following_error.h.
+ */
 #ifndef STEADYSTEP_SYNCHRONISM_H
 #define STEADYSTEP_SYNCHRONISM_H
 
