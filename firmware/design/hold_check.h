@@ -47,6 +47,12 @@ static inline double hold_torque_Nm(const struct motor_params *motor, double hol
     return motor->torque_constant_Nm_A * hold_current_A;
 }
 
+/* Heat, W, that the hold makes of the winding as long as it lasts. */
+static inline double hold_heat_W(const struct motor_params *motor, double hold_current_A)
+{
+    return motor->resistance_ohm * hold_current_A * hold_current_A;
+}
+
 /*
  * Speed, rad/s, up to which the hold leads the rotor: an eighth of w_h, so that detent torque,
  * which comes four times per electrical turn, stays below the resonance, but no more than where the

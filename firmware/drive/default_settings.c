@@ -6,8 +6,10 @@
 #include "firmware/design/mechanical_control_design.h"
 #include "firmware/drive/board_limits.h"
 
-/* Of the rated current. */
-#define HOLD_CURRENT_SHARE 0.5
+/* Of the rated current; half of it with pulses, which need the difference up to the trip for
+   theirs, and with the paper's filter, whose own hold has half. */
+#define HOLD_CURRENT_SHARE      1.0
+#define HOLD_CURRENT_SHARE_HALF 0.5
 
 /* Where the hold does not bear that: down to 6 % of it. */
 #define HOLD_CURRENT_STEP  0.7
@@ -74,13 +76,30 @@ static bool bears(const struct drive_settings *settings, double period_s, double
            hold_control_check(&task, limit);
 }
 
+static double hold_current_wanted(const struct drive_settings *settings)
+{
+    const bool half =
+        settings->standstill_pulses || settings->estimator == DRIVE_ESTIMATOR_STEADY_STATE_EKF;
+    const double share = half ? HOLD_CURRENT_SHARE_HALF : HOLD_CURRENT_SHARE;
+    const double wanted_A = share * settings->motor.rated_current_A;
+    const double trip_A = HOLD_TRIP_SHARE * settings->overcurrent_trip_A;
+
+    return trip_A < wanted_A ? trip_A : wanted_A; /* a trip that follows is a NaN still */
+}
+
+static bool holds_at_times(const struct drive_settings *settings)
+{
+    return settings_ask_for_hold(settings) || !settings->encoder_zero_known;
+}
+
 /* With the default law of an encoder 2000, else 1500, and twice what a stiff hold swings with. */
 static double current_bandwidth(const struct drive_settings *settings, double period_s)
 {
     const double hold_current_A = settings->hold_current_A == settings->hold_current_A
                                       ? settings->hold_current_A
-                                      : HOLD_CURRENT_SHARE * settings->motor.rated_current_A;
-    const double swing = 2.0 * hold_frequency(&settings->motor, hold_current_A);
+                                      : hold_current_wanted(settings);
+    const double swing =
+        holds_at_times(settings) ? 2.0 * hold_frequency(&settings->motor, hold_current_A) : 0.0;
     const double least = fast(settings) ? 2000.0 : 1500.0;
 
     return smaller(larger(swing, least), CURRENT_BANDWIDTH_PERIOD_MAX / period_s);
@@ -119,13 +138,13 @@ static double count_bandwidth_max(const struct motor_params *motor, double perio
  * 5 to 8 % of the holding torque throws a rotor off its hills as fast as 0.75 to 0.95 of the
  * frequency with which half the rated current holds it.
  */
-#define WINDING_SWING_SHARE 0.8
+#define WINDING_SWING_SHARE  0.8
+#define DETENT_CURRENT_SHARE 0.5
 
 static double swing_bandwidth(const struct motor_params *motor)
 {
-    const double hold_current_A = HOLD_CURRENT_SHARE * motor->rated_current_A;
     const double winding = WINDING_SWING_SHARE * electromechanical_frequency(motor);
-    const double detent = hold_frequency(motor, hold_current_A);
+    const double detent = hold_frequency(motor, DETENT_CURRENT_SHARE * motor->rated_current_A);
 
     return larger(winding, detent);
 }
@@ -142,7 +161,7 @@ static double observer_bandwidth(const struct drive_settings *settings, double p
                : smaller(wanted, count_bandwidth_max(&settings->motor, period_s, counts_per_turn));
 }
 
-/* The hold current is half the rated current, or what of it the hold's own check passes. */
+/* The hold current is the rated current, or what of it the hold's own check passes. */
 bool default_settings_step(struct default_settings_search *search, struct drive_settings *settings,
                            double period_s, uint32_t encoder_counts_per_turn)
 {
@@ -154,7 +173,7 @@ bool default_settings_step(struct default_settings_search *search, struct drive_
             smaller(law_bandwidth_wanted(settings), law_bandwidth_max(settings, period_s)));
         put(&settings->observer_bandwidth_rad_s,
             observer_bandwidth(settings, period_s, encoder_counts_per_turn));
-        search->hold_current_A = HOLD_CURRENT_SHARE * settings->motor.rated_current_A;
+        search->hold_current_A = hold_current_wanted(settings);
     }
     if (!given && search->refused < HOLD_CURRENT_STEPS &&
         !bears(settings, period_s, search->hold_current_A)) {

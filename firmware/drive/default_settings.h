@@ -5,6 +5,9 @@
 #include "firmware/design/hold_check.h"
 #include "firmware/interface/drive_interface.h"
 
+/* Of the overcurrent trip: what a held rotor's current may reach. */
+#define HOLD_TRIP_SHARE 0.7
+
 /* The hold that these settings ask for. */
 static inline struct hold_task hold_task_of(const struct drive_settings *settings, double period_s)
 {

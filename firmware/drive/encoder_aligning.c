@@ -2,15 +2,13 @@
 
 #include "firmware/design/elementary.h"
 #include "firmware/design/hold_frequency.h"
-
-/* Share of the overcurrent trip that a held rotor's current may reach. */
-static const double alignment_trip = 0.7;
+#include "firmware/drive/default_settings.h"
 
 double encoder_aligning_current_A(const struct drive_settings *settings, struct hold_task hold)
 {
     const double rated = settings->motor.rated_current_A;
     const double allowed = rated < settings->current_limit_A ? rated : settings->current_limit_A;
-    const double trip = alignment_trip * settings->overcurrent_trip_A;
+    const double trip = HOLD_TRIP_SHARE * settings->overcurrent_trip_A;
     char ignored[DESIGN_ERROR_TEXT];
     double damping_As_rad;
 

@@ -23,6 +23,7 @@ bool drive_hold_bearing_of(const struct drive_settings *given, double period_s,
     }
     *bearing = (struct drive_hold_bearing){
         .current_A = settings.hold_current_A,
+        .heat_W = hold_heat_W(motor, settings.hold_current_A),
         .torque_Nm = torque_Nm,
         .load_step_Nm = HOLD_LOAD_STEP_SHARE * torque_Nm,
         .noticed_step_Nm = holding.load_step_Nm / hold_step_shown(&task, &holding.quiet),

@@ -43,6 +43,7 @@ struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params 
         .rest_periods = hold->rest_periods,
         .swing_periods = hold->swing_periods,
         .load_step = num_from_double(hold->load_step_Nm / base->torque_Nm),
+        .bias_settle = coef_from_double(hold->bias_settle),
         .led_memory = coef_from_double(hold->led_load_memory),
     };
     return params;

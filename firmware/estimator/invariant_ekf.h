@@ -63,12 +63,14 @@ struct invariant_ekf_params {
     uint32_t rest_periods;                   /* behind that, in which none is */
     uint32_t swing_periods;                  /* in which a rotor swings into place */
     num_t load_step;                         /* what a quiet hold takes for a step of the load */
+    coef_t bias_settle;                      /* share per period of settled_bias' way to the bias */
     coef_t led_memory; /* share per period of led_change's way to the change */
 };
 
 struct invariant_ekf {
     struct estimate estimate;
     struct phases bias;         /* offset of the measured voltage */
+    struct phases settled_bias; /* of it, what has lasted in a settled hold */
     num_t innovation_sum;       /* of nu_d since the synchronism monitor has taken it; runs on
                                    without one */
     num_t settled_load;         /* torque that a hold returns to */
@@ -118,10 +120,11 @@ static inline void invariant_ekf_preset_current(struct invariant_ekf *ekf, struc
     ekf->estimate.current = current;
 }
 
-/* A hold begins, and with it the load it returns to: the one that was estimated in motion. */
+/* A hold begins, and with it the load it returns to and the offset: those estimated in motion. */
 static inline void invariant_ekf_settle(struct invariant_ekf *ekf)
 {
     ekf->settled_load = ekf->estimate.rotor.load_torque;
+    ekf->settled_bias = ekf->bias;
     ekf->following_periods = 0u;
 }
 
@@ -135,6 +138,7 @@ static inline void invariant_ekf_expect_load(struct invariant_ekf *ekf)
 static inline void invariant_ekf_forget_bias(struct invariant_ekf *ekf)
 {
     ekf->bias = (struct phases){NUM(0.0), NUM(0.0)};
+    ekf->settled_bias = ekf->bias;
 }
 
 static inline void invariant_ekf_preset_rotor(struct invariant_ekf *ekf, const struct rotor *rotor)
@@ -156,6 +160,7 @@ static inline void invariant_ekf_preset_bias_along(struct invariant_ekf *ekf, st
 
     bias->a += num_mul_unit(along, frame.cos);
     bias->b += num_mul_unit(along, frame.sin);
+    ekf->settled_bias = *bias;
 }
 
 #endif

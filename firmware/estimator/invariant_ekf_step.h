@@ -98,6 +98,15 @@ static inline num_t invariant_ekf_beyond_detent(struct invariant_ekf *ekf,
     return beyond;
 }
 
+static inline void invariant_ekf_settle_bias(struct invariant_ekf *ekf,
+                                             const struct invariant_ekf_params *params)
+{
+    ekf->settled_bias.a +=
+        num_mul_coef_nearest(ekf->bias.a - ekf->settled_bias.a, params->bias_settle);
+    ekf->settled_bias.b +=
+        num_mul_coef_nearest(ekf->bias.b - ekf->settled_bias.b, params->bias_settle);
+}
+
 /* Which of the sets of gains serves this period of the hold. */
 static inline const struct invariant_ekf_gain_set *
 invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
@@ -108,6 +117,7 @@ invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_p
         if (ekf->unloaded_periods == ekf->swing_end) { /* the back-EMF was taken for an offset */
             ekf->bias = (struct phases){NUM(0.0), NUM(0.0)};
         }
+        ekf->settled_bias = ekf->bias; /* no load that it could be mistaken for */
         return &params->unloaded;
     }
 
@@ -118,8 +128,10 @@ invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_p
     if (change > params->load_step &&
         (ekf->following_periods == 0u || num_half(change) > params->load_step)) {
         ekf->following_periods = params->following_periods + params->rest_periods;
+        ekf->bias = ekf->settled_bias;
     }
     if (ekf->following_periods == 0u) {
+        invariant_ekf_settle_bias(ekf, params);
         return &params->holding;
     }
     ekf->following_periods--;

@@ -219,6 +219,7 @@ double drive_blind_speed_rad_s(const struct drive_settings *settings,
 /* What a drive without an encoder bears of a motor, from its hold as it is designed. */
 struct drive_hold_bearing {
     double current_A;         /* of the hold */
+    double heat_W;            /* that it makes of the winding, R current_A^2 */
     double torque_Nm;         /* lasting load that pulls the rotor out of it, Km current_A */
     double load_step_Nm;      /* the same of a load that comes at once, undamped */
     double noticed_step_Nm;   /* a load step of less is not followed: the rotor yields to it */

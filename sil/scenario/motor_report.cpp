@@ -76,6 +76,7 @@ Figures figures_of(const drive_hold_bearing &bearing)
 {
     return {
         {"hold_current_A", bearing.current_A},
+        {"hold_heat_W", bearing.heat_W},
         {"hold_torque_Nm", bearing.torque_Nm},
         {"hold_load_step_Nm", bearing.load_step_Nm},
         {"hold_noticed_step_Nm", bearing.noticed_step_Nm},

@@ -73,6 +73,9 @@ MUTANTS = [
 
     # ---- estimators ----
     Mutant(ESTIMATOR + "invariant_ekf_step.h", "invariant_ekf",
+           "a_rotor_that_crept_under_a_slow_load_is_no_offset_once_it_stops",
+           "        ekf->bias = ekf->settled_bias;\n", ""),
+    Mutant(ESTIMATOR + "invariant_ekf_step.h", "invariant_ekf",
            "the_estimate_locks_from_thirty_electrical_degrees_either_way",
            "num_clamp(speed, -full, full)", "full"),
     Mutant(ESTIMATOR + "invariant_ekf_step.h", "invariant_ekf",

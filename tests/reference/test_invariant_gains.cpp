@@ -189,8 +189,10 @@ void hold_gains_are_the_steady_kalman_gain_at_1_rad_s()
         double load_walk;
     } cases[] = {{holds.quiet, 1e-6}, {holds.following, 6.25e-6}};
     for (const auto &[gains, load_walk] : cases) {
+        const double current_walk = std::pow(0.4 / motor.torque_constant_Nm_A, 2) * load_walk;
+        const double current = current_noise + current_walk;
         VectorXd q(5);
-        q << current_noise, current_noise, 1e-6, 1e-12, load_walk;
+        q << current, current, 1e-6, 1e-12, load_walk;
         const MatrixXd k = kalman_gain(transition(motor, {1.0, 1.5}, 5), q, 9.7e-6, 32768);
         assert_relative(1e-5, k(I_D, 0), gains.k_current_d, "i_d");
         assert_relative(1e-5, k(I_Q, 1), gains.k_current_q, "i_q");
@@ -243,7 +245,7 @@ void a_load_step_leaves_nothing_behind()
         const invariant_ekf_gains gains = hold_design(motor, current).following;
         const double stiffness = motor.rotor_teeth * motor.torque_constant_Nm_A * current;
         const MatrixXd predict = transition_of_the_drive(motor, current);
-        const VectorXd error = course(predict, gains, VectorXd::Unit(STATES, LOAD), 5000).error;
+        const VectorXd error = course(predict, gains, VectorXd::Unit(STATES, LOAD), 20000).error;
         TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, error(LOAD));
         TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, error(ANGLE) * stiffness);
     }

@@ -200,10 +200,10 @@ static void test_the_first_hold_aligns_the_rotor_and_finds_the_resistance(void)
     post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE});
     run(OFFSET_PERIODS + 1501);
     TEST_ASSERT_EQUAL_STRING("operation-enabled", drive_state_name(drive.supervision.state));
-    TEST_ASSERT_DOUBLE_WITHIN(0.01, 1.5, signals().i_d_A);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 3.0, signals().i_d_A);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.45, signals().resistance_est_ohm);
     TEST_ASSERT_DOUBLE_WITHIN(2e-4, 0.0, motor.angle_rad);
-    TEST_ASSERT_DOUBLE_WITHIN(0.05, 0.45 * 1.5, signals().u_d_V);
+    TEST_ASSERT_DOUBLE_WITHIN(0.05, 0.45 * 3.0, signals().u_d_V);
     TEST_ASSERT_DOUBLE_WITHIN(0.05, 0.0, signals().u_q_V);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 24.0, signals().bus_V);
 }
@@ -245,6 +245,7 @@ static const struct motor_params light = {
     .rotor_teeth = 50,
 };
 
+/* Aligned by the rated current; half of it holds. */
 static void enable_with_encoder(const struct motor_params *with, double angle_rad)
 {
     encoder_facts.encoder_counts_per_turn = 4000;
@@ -252,6 +253,7 @@ static void enable_with_encoder(const struct motor_params *with, double angle_ra
     drive_settings_default(&settings, with);
     drive_settings_select_feedback(&settings, DRIVE_FEEDBACK_ENCODER);
     settings.calibrate_offsets = false;
+    settings.hold_current_A = 0.5 * with->rated_current_A;
     motor = (struct bench_motor){.motor = *with, .angle_rad = angle_rad};
     power_up();
     post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE});

@@ -61,8 +61,7 @@ static void test_what_follows_is_said_with_what_follows(void)
 {
     const char *const answer = bench_ask("get hold_current_A");
 
-    TEST_ASSERT_NOT_NULL(
-        strstr(answer, "hold_current_A=1.5(follows) A; 0.03...3; default follows"));
+    TEST_ASSERT_NOT_NULL(strstr(answer, "hold_current_A=3(follows) A; 0.03...3; default follows"));
     TEST_ASSERT_NOT_NULL(strstr(bench_ask("get law_gains.2"), "law_gains.2=(not given); "));
 }
 
@@ -70,7 +69,7 @@ static void test_a_begin_lists_those_that_begin_so(void)
 {
     answers("get hold_*",
             "ok get hold_on_enable=true hold_at_rest=true hold_on_enable_s=0.15 "
-            "hold_current_A=1.5(follows) hold_ramp_s=0.01 hold_delay_s=0.015(follows) "
+            "hold_current_A=3(follows) hold_ramp_s=0.01 hold_delay_s=0.0108166892(follows) "
             "hold_bandwidth_rad_s=200(follows)\n");
     TEST_ASSERT_NOT_NULL(strstr(bench_ask("get *"), " more: give a longer begin\n"));
 }
@@ -101,7 +100,7 @@ static void enable(void)
 static void test_what_is_set_is_in_force_once_stored_and_started_again(void)
 {
     answers("set hold_current_A 1.2", "ok set hold_current_A=1.2; acts at the next enable\n");
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.5, drive->settings.hold_current_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 3.0, drive->settings.hold_current_A);
     answers("set detent_torque_Nm.6 -0.01",
             "ok set detent_torque_Nm.6=-0.01; acts at the next enable\n");
     answers("store", "ok store\n");
@@ -113,7 +112,7 @@ static void test_what_is_set_is_in_force_once_stored_and_started_again(void)
     answers("defaults", "ok defaults\n");
     answers("store", "ok store\n");
     start();
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.5, drive->settings.hold_current_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 3.0, drive->settings.hold_current_A);
 }
 
 /* Of the next 400 periods, and of the gains. */

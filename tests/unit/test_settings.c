@@ -170,9 +170,9 @@ static void test_what_is_not_given_follows_from_motor_and_period(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 300.0, settings.law_bandwidth_rad_s);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 1500.0, settings.current_bandwidth_rad_s);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 1000.0, settings.observer_bandwidth_rad_s);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.5, settings.hold_current_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 3.0, settings.hold_current_A);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 200.0, settings.hold_bandwidth_rad_s);
-    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.015, settings.hold_delay_s);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 4.2 / 388.3, settings.hold_delay_s);
 }
 
 /* The rotor alone, without its load: it swings seven times as fast in the hold. */
@@ -180,9 +180,9 @@ static void test_a_light_rotor_gets_a_wider_and_sooner_hold(void)
 {
     settings.motor.inertia_kgm2 /= 49.0;
     default_settings_apply(&settings, 1e-4, 0u);
-    TEST_ASSERT_DOUBLE_WITHIN(1.0, 0.25 * 7.0 * 274.6, settings.hold_bandwidth_rad_s);
+    TEST_ASSERT_DOUBLE_WITHIN(1.0, 0.25 * 7.0 * 388.3, settings.hold_bandwidth_rad_s);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3000.0, settings.current_bandwidth_rad_s);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 4.2 / (7.0 * 274.6), settings.hold_delay_s);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 4.2 / (7.0 * 388.3), settings.hold_delay_s);
 }
 
 static void test_what_is_given_stays(void)

@@ -27,7 +27,7 @@ void tearDown(void)
 static void choose_others(struct drive_settings *others)
 {
     others->current_limit_A = 1.7;
-    others->overcurrent_trip_A = 4.0;
+    others->overcurrent_trip_A = 5.0;
     others->motion_current_A = 0.3;
     others->synchronism_policy = DRIVE_SYNCHRONISM_WARN;
 }

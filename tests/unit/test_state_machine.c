@@ -243,7 +243,7 @@ static void test_the_hold_current_is_in_when_the_alignment_ends(void)
     power_up();
     post_kind(DRIVE_COMMAND_ENABLE);
     run(HOLD_PERIODS + 1u);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 1.5, signals().i_d_ref_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 3.0, signals().i_d_ref_A);
 }
 
 static void test_enabling_waits_for_the_period_it_is_addressed_to(void)
@@ -989,6 +989,7 @@ static void test_a_hold_command_holds_without_the_delay(void)
 
 static void test_the_drive_holds_by_itself_15_ms_after_a_move(void)
 {
+    settings.hold_delay_s = 0.015;
     enable();
     drive.params.reference.creep_speed = NUM(0.0);
     must_post(move_to(0.003)); /* near, for a board where nothing moves */
