@@ -33,7 +33,7 @@ Figures parameters_of(const Motor &motor)
     };
 }
 
-/* The rotor on the magnetic spring of half the rated current swings at the last of them. */
+/* The rotor on the magnetic spring of the rated current swings at the last of them. */
 Figures consequences_of(const Motor &motor)
 {
     const motor_params &of = motor.params;
@@ -42,7 +42,7 @@ Figures consequences_of(const Motor &motor)
         {"electrical_time_constant_s", of.inductance_H / of.resistance_ohm},
         {"back_emf_speed_rad_s", of.supply_V / of.torque_constant_Nm_A},
         {"hold_frequency_rad_s", std::sqrt(of.rotor_teeth * of.torque_constant_Nm_A *
-                                           of.rated_current_A / 2 / of.inertia_kgm2)},
+                                           of.rated_current_A / of.inertia_kgm2)},
     };
     if (motor.rotor_inertia_kgm2.has_value()) {
         figures.push_back({"rotor_inertia_kgm2", *motor.rotor_inertia_kgm2});

@@ -3,7 +3,7 @@ import re
 
 BEGIN, END = "<!-- tools/datasheet --library writes from here -->", "<!-- to here -->"
 HEADINGS = ("motor", "class", "R, Ω", "L, mH", "I, A", "Km, N·m/A", "T, N·m", "J, g·cm²",
-            "detent, mN·m", "N", "supply, V", "√(N Km I/2 / J), rad/s")
+            "detent, mN·m", "N", "supply, V", "√(N Km I / J), rad/s")
 
 
 def row_of(motor):
