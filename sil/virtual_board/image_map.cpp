@@ -120,8 +120,8 @@ void read_run(const Json &run, const std::vector<InstructionCost> &kinds, ImageM
 
 ImageMap parse(const Json &json, const ElfImage &image)
 {
-    if (json.at("format") != 3) {
-        throw std::invalid_argument("is of another format than 3; tools/image_map writes it");
+    if (json.at("format") != 4) {
+        throw std::invalid_argument("is of another format than 4; tools/image_map writes it");
     }
     if (json.at("identity").at("fnv1a") != identity_of(image)) {
         throw std::invalid_argument("is the map of another image; build both anew");
@@ -142,6 +142,7 @@ ImageMap parse(const Json &json, const ElfImage &image)
     for (const auto &[name, place] : json.at("signals").items()) {
         map.signals[name] = {place.at(0), place.at(1), place.at(2)};
     }
+    map.enabling = json.at("enabling").get<std::vector<std::uint32_t>>();
     for (const Json &interrupt : json.at("interrupts")) {
         map.interrupts[interrupt.at(0)] = interrupt.at(1);
     }
@@ -181,6 +182,7 @@ void ImageMap::give(InstructionCosts &costs) const
     costs.stand_in = false;
     costs.rules = rules;
     costs.stages = stages;
+    costs.enabling = enabling;
     for (const Instruction &instruction : code) {
         InstructionCost *const entry = costs.find(instruction.address);
         if (entry == nullptr) {

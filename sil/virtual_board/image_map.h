@@ -30,6 +30,7 @@ struct ImageMap {
     int half_period_counts = 0; /* of its PWM timer; 0: it has no board */
     std::map<std::string, Variable> signals;
     std::map<std::string, unsigned> interrupts; /* handler -> number of the exception */
+    std::vector<std::uint32_t> enabling;        /* begin what the interrupt may run from flash */
     CostRules rules;
     std::vector<std::string> stages;
     struct Instruction {

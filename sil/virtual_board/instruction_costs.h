@@ -74,6 +74,8 @@ class InstructionCosts
 
     CostRules rules;
     std::vector<std::string> stages = {"other"};
+    /* Begin what the control interrupt may run from flash, being no part of operation. */
+    std::vector<std::uint32_t> enabling;
     /* Without a map every instruction costs 1.5 cycles on the average; with one, an instruction
        that it does not name is an error. */
     bool stand_in = true;

@@ -74,15 +74,6 @@ void Machine::load(const ElfImage &image)
     }
     stack_limit_ = image.symbol("stack_bottom");
     stack_top_ = image.symbol("stack_top");
-    enabling_.clear();
-    for (const char *name :
-         {"encoder_aligning_step", "find_position_or_power_up", "finding_position_cycle",
-          "offset_calibration_step", "phase_balancing_start", "phase_balancing_step", "power_up",
-          "start_enabling"}) {
-        if (const auto step = image.symbol(name)) {
-            enabling_.push_back(*step & ~1u); /* tools/arm_image/interrupt_code.py */
-        }
-    }
     account_.set_stages(costs_.stages);
     entry_stage_ = stage_named(costs_.stages, "sampling");
     exit_stage_ = stage_named(costs_.stages, "outputs");

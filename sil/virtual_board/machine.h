@@ -250,8 +250,6 @@ class Machine final : private CoreObserver, public Chip
     std::uint64_t stall_cycles_ = 0;
 
     std::optional<std::uint32_t> stack_limit_, stack_top_;
-    std::vector<std::uint32_t>
-        enabling_; /* begin what may lie in flash, being no part of operation */
     std::vector<std::string> resets_;
     std::string fault_;
 };

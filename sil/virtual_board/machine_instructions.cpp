@@ -243,7 +243,8 @@ CodePlace Machine::place_of(std::uint32_t address) const
     if (fast.bytes == 0 || fast.contains(address)) {
         return CodePlace::as_wanted;
     }
-    if (std::find(enabling_.begin(), enabling_.end(), address) != enabling_.end()) {
+    const std::vector<std::uint32_t> &enabling = costs_.enabling;
+    if (std::find(enabling.begin(), enabling.end(), address) != enabling.end()) {
         return CodePlace::flash_by_intent;
     }
     return description_.flash.contains(address) ? CodePlace::flash : CodePlace::elsewhere;

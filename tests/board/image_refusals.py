@@ -25,7 +25,7 @@ def stages_of_first_run(content, instructions):
 
 # change of the map, in the simulator's words
 MAPS = [
-    (lambda content: content.update(format=1), "is of another format than 3"),
+    (lambda content: content.update(format=1), "is of another format than 4"),
     (lambda content: content.update(core="m0plus"), "is for a core m0plus"),
     (lambda content: content["identity"].update(fnv1a="0"), "is the map of another image"),
     (lambda content: first_run(content, "costs", "0"), "that it does not describe"),

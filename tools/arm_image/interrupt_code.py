@@ -25,6 +25,11 @@ FLASH = range(0x08000000, 0x08080000)
 VENEER = re.compile(r"__(.+)_veneer")
 
 
+def enabling(image):
+    """Addresses of what may run from flash, as far as the image has it."""
+    return [start for start, _, name in image.functions if base_name(name) in ENABLING]
+
+
 def loaded_constants(image, node):
     """Values that a function loads whole: literals, and pairs of MOVW and MOVT."""
     low = {}
