@@ -72,7 +72,7 @@ struct hal_facts {
     double phase_voltage_V_per_code;
     bool has_phase_voltages;
     uint32_t encoder_counts_per_turn; /* 0: no encoder */
-    bool acts_at_once; /* only in a simulation: the duties of S(k) act S(k)...S(k+1), without the
+    bool zero_delay; /* only in a simulation: the duties of S(k) act S(k)...S(k+1), without the
                           period of delay of the diagram */
     double bridge_resistance_ohm; /* both conducting switches in series with a phase */
     uint32_t cycle_counter_Hz;
@@ -92,7 +92,7 @@ struct hal {
 
     /* Allows the gates to follow the outputs; false if a hardware trip is latched. < 1 us. */
     bool (*bridge_enable)(void *context);
-    /* All gates off, immediate, safe from anywhere; clears a latched trip. < 1 us. */
+    /* All gates off at once, safe from anywhere; clears a latched trip. < 1 us. */
     void (*bridge_disable)(void *context);
     /* Free-running, wraps at 2^32, facts.cycle_counter_Hz. < 1 us. */
     uint32_t (*cycle_count)(void *context);

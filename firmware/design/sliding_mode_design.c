@@ -32,7 +32,7 @@ bool sliding_mode_current_bandwidth_check(const struct sliding_mode_task *task,
                                           char error[DESIGN_ERROR_TEXT])
 {
     const bool delayed = task->delay_periods > 0u;
-    const double most = delayed ? SLIDING_MODE_DELAYED_MAX : SLIDING_MODE_IMMEDIATE_MAX;
+    const double most = delayed ? SLIDING_MODE_DELAYED_MAX : SLIDING_MODE_ZERO_DELAY_MAX;
 
     if (!motor_check(task->motor, task->period_s, error) ||
         !design_require_positive(error, "current_bandwidth_rad_s", task->current_bandwidth_rad_s,

@@ -18,8 +18,8 @@
  * unstable from 1 on. The drive's prediction takes the delay out as far as R and L are right, which
  * these laws are there not to rely on. Without a delay z - 1 + g settles in one period at 1.
  */
-#define SLIDING_MODE_DELAYED_MAX   0.25
-#define SLIDING_MODE_IMMEDIATE_MAX 1.0
+#define SLIDING_MODE_DELAYED_MAX    0.25
+#define SLIDING_MODE_ZERO_DELAY_MAX 1.0
 
 /* Superscript indices of the paper: k0^1 and k0^2 are k0_d and k0_q, k1^2 and k2^2 are k1 and k2.
  */

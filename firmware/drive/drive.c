@@ -66,7 +66,7 @@ static bool design_detection(struct drive *drive, const struct drive_settings *s
     const struct hal_facts *facts = drive->board->facts;
     const struct initial_position_task task = {
         .period_s = period_s,
-        .acts_at_once = facts->acts_at_once,
+        .zero_delay = facts->zero_delay,
         .order = settings->initial_position == DRIVE_INITIAL_POSITION_PUBLISHED_IMPULSES
                      ? IMPULSE_ORDER_PUBLISHED
                      : IMPULSE_ORDER_PALINDROMIC,
@@ -174,7 +174,7 @@ static bool check_simulation(const struct drive_settings *settings, const struct
         return true;
     }
     const char *setting =
-        facts->acts_at_once ? "a board without delay" : simulation_only_setting(settings);
+        facts->zero_delay ? "a board without delay" : simulation_only_setting(settings);
 
     if (setting == NULL) {
         return true;
@@ -270,7 +270,7 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
     drive->enabling.calibration_params =
         offset_calibration_design(facts, &settings->motor, &drive->base);
     params->path.feed_forward = settings->feed_forward;
-    params->path.zero_delay = facts->acts_at_once;
+    params->path.zero_delay = facts->zero_delay;
     params->path.bridge_loss_compensation = settings->bridge_loss_compensation;
     params->path.infers_voltage =
         settings->voltage_source == DRIVE_VOLTAGE_COMMANDED || !facts->has_phase_voltages;

@@ -41,7 +41,7 @@ static void go_on(struct drive *drive, const struct sample_set *now)
     }
 }
 
-/* Measures on its own: a sample set that is handed over would cost the default path registers. */
+/* Measures on its own: a sample set that is passed in would cost the default path registers. */
 __attribute__((noinline)) struct hal_outputs
 finding_position_cycle(struct drive *drive, const struct hal_samples *samples)
 {

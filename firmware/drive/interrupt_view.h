@@ -48,7 +48,7 @@ static inline uint32_t interrupt_view_commands_dropped(const struct drive *drive
     return INTERRUPT_VIEW(uint32_t, drive->commands.dropped);
 }
 
-/* The plan that the reference has taken over last. */
+/* The plan that the reference has begun last. */
 static inline const struct motion_plan *interrupt_view_plan(const struct drive *drive)
 {
     return INTERRUPT_VIEW(const struct motion_plan *, drive->reference.plan);

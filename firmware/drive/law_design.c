@@ -35,7 +35,7 @@ bool law_design(const struct drive *drive, const struct drive_settings *settings
         .motor = &settings->motor,
         .base = &drive->base,
         .period_s = facts->control_period_s,
-        .delay_periods = facts->acts_at_once ? 0u : 1u,
+        .delay_periods = facts->zero_delay ? 0u : 1u,
         .bandwidth_rad_s = settings->law_bandwidth_rad_s,
         .current_bandwidth_rad_s = settings->current_bandwidth_rad_s,
         .speed_limit_rad_s = settings->speed_limit_rad_s,

@@ -69,7 +69,7 @@ void planner_follow(struct drive *drive)
     }
 }
 
-/* What has become of the plan that was to take over. */
+/* What has become of the plan that was to preempt. */
 static void settle_offer(struct drive *drive)
 {
     struct planner *p = &drive->planner;
@@ -115,7 +115,7 @@ static void offer(struct drive *drive, const struct take_over *take_over,
     command_queue_put_take_over(&drive->commands, take_over);
 }
 
-/* Behind the handover, to rest in case the continuation does not come. */
+/* Behind the point of continuation, to rest in case the continuation does not come. */
 static void append_tail(struct planner *p, struct motion_plan *plan)
 {
     struct motion_state end = p->end;
@@ -141,7 +141,8 @@ static bool continue_plan(struct planner *p, struct motion_plan *plan)
     return true;
 }
 
-/* The plan in force has passed its handover, or the drive its rest: nothing can follow it. */
+/* The plan in force has passed its point of continuation, or the drive its rest: nothing can follow
+ * it. */
 static bool too_late(const struct drive *drive)
 {
     const struct reference *r = &drive->reference;
@@ -188,7 +189,7 @@ static void continue_motion(struct drive *drive)
     }
 }
 
-/* Where the plan that takes over in `at_period` begins. */
+/* Where the plan that preempts in `at_period` begins. */
 static bool begin_plan(struct drive *drive, struct motion_plan *plan, uint32_t at_period)
 {
     struct planner *p = &drive->planner;

@@ -3,10 +3,10 @@
  * plans for the reference (motion_plan.h). Everything here belongs to the background, which reaches
  * the interrupt by two pointers alone, each written when what it points to is complete:
  *
- *   take-over     a plan that begins in a given period, from where the reference will be then. That
+ *   preemption    a plan that begins in a given period, from where the reference will be then. That
  *                 is known from a copy of the reference, run ahead by the reference's own code. The
  *                 interrupt accepts it only if it is there indeed.
- *   continuation  a plan that begins where the plan in force hands over.
+ *   continuation  a plan that begins at a point of the plan in force: a bumpless transfer.
  *
  * Two plans are kept: the one in force and the one offered.
  */
@@ -27,9 +27,9 @@ enum planner_motion {
 
 struct planner {
     struct motion_plan plan[2];
-    const struct motion_plan *offered; /* to be taken over; NULL: none */
+    const struct motion_plan *offered; /* to preempt; NULL: none */
     const struct motion_plan *last;    /* the last one accepted or offered as continuation */
-    struct motion_state end;           /* at the handover of `last` */
+    struct motion_state end;           /* where `last` is continued */
     enum planner_motion motion;
     enum planner_motion offered_motion;
     bool offered_is_stop;

@@ -5,7 +5,7 @@
 #include "firmware/drive/drive.h"
 
 /*
- * In a period that the pulses hide from the estimator: `winding` becomes what its model expects.
+ * In a period that the pulses blank to the estimator: `winding` becomes what its model expects.
  * The current that the iron adds to a pulse is not of the model; the voltage that it takes at the
  * resistance is left out of the driving one. Else each pulse, of either sign, would leave a current
  * along the flux that the estimator takes for a resistance.

@@ -109,7 +109,7 @@ bool initial_position_design(struct initial_position_params *params,
 
     params->model = *model;
     params->order = task->order;
-    params->lag = task->acts_at_once ? 0u : 1u;
+    params->lag = task->zero_delay ? 0u : 1u;
     if (!design_impulse(params, task->period_s, peak_A / base->current_A)) {
         return design_refuse_limit(
             error, (struct refusal){.quantity = "current of an initial position impulse",

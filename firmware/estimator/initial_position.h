@@ -107,7 +107,7 @@ struct initial_position {
 
 struct initial_position_task {
     double period_s;
-    bool acts_at_once;
+    bool zero_delay;
     enum impulse_order order;
     double current_A_per_code;
     double current_range_A;

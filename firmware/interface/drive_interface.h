@@ -135,7 +135,7 @@ enum drive_parameter { DRIVE_PARAMETERS_TABLE(DRIVE_PARAMETER_PLACE) DRIVE_PARAM
  * Sine, set-points, velocity and retarget are planned by drive_background, DRIVE_LEAD_s ahead: they
  * act in the period they are addressed to if they are posted that much earlier, else that much
  * after their posting. Sine and set-points begin at rest and wait for it, as moves do. Velocity and
- * retarget take over at once whatever is in motion when the commands before them have begun,
+ * retarget preempt at once whatever is in motion when the commands before them have begun,
  * with continuous position, speed and acceleration; so does a stop of these four, with the limits
  * they were given (the sine with its own largest acceleration and jerk), DRIVE_LEAD_s after its
  * period. Until the reference rests behind a sine, set-points, velocity or a stop, moves are

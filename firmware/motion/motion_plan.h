@@ -10,8 +10,8 @@
  * exactly what the interrupt reaches, and plan after plan begins where the one before is.
  *
  * A plan begins from any speed and acceleration and ends at rest, or goes on at constant speed for
- * ever. Where more is to come, `handover` says behind which segment; the segments after it bring
- * the reference to rest if it does not come in time.
+ * ever. Where more is to come, `handover` says behind which segment it begins; the segments after
+ * it bring the reference to rest if it does not come in time.
  *
  * Runs in the background, in double precision.
  */
@@ -39,7 +39,7 @@ struct motion_segment {
 };
 
 struct motion_plan {
-    struct motion_state from; /* where it takes over: one period before it begins */
+    struct motion_state from; /* where it preempts: one period before it begins */
     uint32_t epoch;           /* of the reference it was made for */
     int64_t speed_jump;       /* at its begin; 0 but for a sine without a ramp, and what rounding
                                  leaves of a target, far below 2^-32 turn in a period */
@@ -86,7 +86,7 @@ static inline struct position motion_position(const struct motion_state *state)
 /* `periods` on, with the acceleration of the state and a jerk of 6 jerk_sixth. */
 void motion_run(struct motion_state *state, int64_t jerk_sixth, uint32_t periods);
 
-/* An empty plan that takes over at `from` and has no continuation. */
+/* An empty plan that preempts at `from` and has no continuation. */
 void motion_plan_begin(struct motion_plan *plan, const struct motion_state *from, uint32_t epoch);
 
 /*

@@ -32,7 +32,7 @@ hal_facts facts_of(const plant::Config &config)
     facts.bus_V_per_code = plant::bus_V_per_code(config.sensors);
     facts.phase_voltage_V_per_code = plant::phase_voltage_V_per_code(config.sensors);
     facts.has_phase_voltages = true;
-    facts.acts_at_once = config.bridge.delay_periods == 0;
+    facts.zero_delay = config.bridge.delay_periods == 0;
     facts.encoder_counts_per_turn =
         static_cast<std::uint32_t>(config.sensors.encoder_counts_per_turn);
     return facts;

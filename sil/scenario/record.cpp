@@ -81,7 +81,7 @@ void Record::append(const Row &row)
     }
     hash_ = hash;
     if (started_) {
-        hand_over(row);
+        pass_on(row);
     } else {
         waiting_.push_back(row);
     }
@@ -90,17 +90,17 @@ void Record::append(const Row &row)
 void Record::start_time_here()
 {
     time_zero_row_ = waiting_.size();
-    hand_over_waiting();
+    pass_on_waiting();
 }
 
 void Record::end()
 {
     if (!started_) {
-        hand_over_waiting();
+        pass_on_waiting();
     }
 }
 
-void Record::hand_over(const Row &row)
+void Record::pass_on(const Row &row)
 {
     for (RowReader *const reader : readers_) {
         reader->read(*this, row);
@@ -108,11 +108,11 @@ void Record::hand_over(const Row &row)
     ++rows_;
 }
 
-void Record::hand_over_waiting()
+void Record::pass_on_waiting()
 {
     started_ = true;
     for (const Row &row : waiting_) {
-        hand_over(row);
+        pass_on(row);
     }
     waiting_ = {};
 }

@@ -131,8 +131,8 @@ class Record
     }
 
   private:
-    void hand_over(const Row &row);
-    void hand_over_waiting();
+    void pass_on(const Row &row);
+    void pass_on_waiting();
 
     double period_s_;
     std::vector<RowReader *> readers_;

@@ -30,8 +30,8 @@ PlantValues values_of(const Scenario &scenario)
             scenario.plant.imperfections.coulomb_friction};
 }
 
-void hand_over(const Scenario &scenario, const PlantValues &values, PlantPart part,
-               plant::Plant &plant)
+void set_part(const Scenario &scenario, const PlantValues &values, PlantPart part,
+              plant::Plant &plant)
 {
     switch (part) {
     case PlantPart::motor:
@@ -350,7 +350,7 @@ class Runner
             const double part = (n - course.start + 1) / static_cast<double>(course.periods);
             course.drift.field->of(values_) =
                 part < 1 ? course.from + (course.drift.to - course.from) * part : course.drift.to;
-            hand_over(scenario_, values_, course.drift.field->part, board_.plant());
+            set_part(scenario_, values_, course.drift.field->part, board_.plant());
         }
         if (!courses_.empty()) {
             motor_ = scaled(scenario_.motor.params, values_.scales);
@@ -469,7 +469,7 @@ void disturb(plant::Plant &plant, const Scenario &scenario)
                                                 ": expected sensing that is not exact");
                 }
                 drift.field->of(values) = drift.to;
-                hand_over(scenario, values, drift.field->part, plant);
+                set_part(scenario, values, drift.field->part, plant);
             }
         } catch (const std::invalid_argument &refusal) {
             throw InputError(event.location.text() + ": " + refusal.what());

@@ -226,7 +226,7 @@ void Machine::leave(std::uint32_t exception_return)
     if (above_control_ > 0) {
         --above_control_;
     }
-    if (next != 0) { /* tail-chaining: the frame stays, another handler takes over */
+    if (next != 0) { /* tail-chaining: the frame stays, another handler is entered */
         if (next == control_exception_) {
             begin_control();
         } else if (above_control_ > 0) {

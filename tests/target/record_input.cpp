@@ -120,7 +120,7 @@ void write_header(const replay_case &which, const Recording &recording)
                 facts.current_A_per_code, unsigned{facts.current_zero_code},
                 facts.current_offset_codes, facts.bus_V_per_code, facts.phase_voltage_V_per_code,
                 facts.has_phase_voltages ? "true" : "false", facts.encoder_counts_per_turn,
-                facts.acts_at_once ? "true" : "false", facts.bridge_resistance_ohm,
+                facts.zero_delay ? "true" : "false", facts.bridge_resistance_ohm,
                 facts.cycle_counter_Hz, facts.parameter_page_bytes, facts.parameter_word_bytes);
     std::printf("static const struct replay_samples replay_input[REPLAY_PERIODS] = {\n");
     for (const replay_samples &s : recording.input)

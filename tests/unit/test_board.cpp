@@ -122,7 +122,7 @@ void test_facts_are_those_of_the_stm32_board()
     TEST_ASSERT_TRUE(facts.bus_V_per_code == 31.2 / 4096.0);
     TEST_ASSERT_TRUE(facts.has_phase_voltages);
     TEST_ASSERT_EQUAL_UINT32(0, facts.encoder_counts_per_turn);
-    TEST_ASSERT_FALSE(facts.acts_at_once);
+    TEST_ASSERT_FALSE(facts.zero_delay);
     TEST_ASSERT_EQUAL_PTR(&facts, dummy->board->facts);
 }
 

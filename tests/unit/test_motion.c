@@ -30,7 +30,7 @@ static const struct profile_move smooth = {.shape = PROFILE_SMOOTH,
 
 static struct reference_params params;
 static struct reference reference;
-static struct profile profile; /* the one the reference has taken over */
+static struct profile profile; /* the one the reference has begun */
 static char error[DESIGN_ERROR_TEXT];
 
 void setUp(void)
@@ -485,7 +485,7 @@ static void test_a_stop_at_rest_leaves_the_next_move_alone(void)
                             angle_of(reference.next.position));
 }
 
-static void test_a_stop_shortens_the_profile_that_was_handed_over(void)
+static void test_a_stop_shortens_the_profile_that_was_begun(void)
 {
     begin(&trapezoid);
     for (int k = 0; k < 700; k++) {
@@ -852,7 +852,7 @@ int main(void)
     RUN_TEST(test_a_stop_while_decelerating_still_lands_on_the_target);
     RUN_TEST(test_a_move_stopped_before_it_begins_stays_where_it_is);
     RUN_TEST(test_a_stop_at_rest_leaves_the_next_move_alone);
-    RUN_TEST(test_a_stop_shortens_the_profile_that_was_handed_over);
+    RUN_TEST(test_a_stop_shortens_the_profile_that_was_begun);
     RUN_TEST(test_a_profile_begins_two_periods_after_it_is_loaded);
     RUN_TEST(test_after_a_stop_a_move_starts_from_where_the_reference_rests);
     RUN_TEST(test_a_move_is_refused_while_another_one_runs);

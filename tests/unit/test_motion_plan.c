@@ -64,7 +64,7 @@ static void is_at(const struct motion_state *expected)
     TEST_ASSERT_EQUAL_INT64(expected->acceleration, reference.at.acceleration);
 }
 
-/* A plan from where the reference will be when it takes over in the next interrupt. */
+/* A plan from where the reference will be when it preempts in the next interrupt. */
 static struct motion_plan *new_plan(void)
 {
     struct motion_plan *plan = reference.plan == &plans[0] ? &plans[1] : &plans[0];
@@ -77,7 +77,7 @@ static struct motion_plan *new_plan(void)
     return plan;
 }
 
-static void must_take_over(const struct motion_plan *plan)
+static void must_preempt(const struct motion_plan *plan)
 {
     TEST_ASSERT_TRUE(reference_take_over(&reference, plan));
 }
@@ -90,7 +90,7 @@ static void go_at(double speed)
     if (speed != 0.0) {
         motion_plan_cruise(plan);
     }
-    must_take_over(plan);
+    must_preempt(plan);
 }
 
 static void go_to(struct position target)
@@ -98,7 +98,7 @@ static void go_to(struct position target)
     struct motion_plan *plan = new_plan();
 
     motion_plan_move(plan, &end, target, &limits);
-    must_take_over(plan);
+    must_preempt(plan);
 }
 
 /*
@@ -146,7 +146,7 @@ static void test_the_closed_form_is_the_sum_of_the_additions_bit_for_bit(void)
                                                        .jerk_sixth = -sign * 98765432109};
             plan->segment[1] = (struct motion_segment){.periods = 1};
             plan->segments = 2;
-            must_take_over(plan);
+            must_preempt(plan);
             step();
             expected = end;
             motion_run(&expected, -sign * 98765432109, periods[i]);
@@ -177,7 +177,7 @@ static void test_a_speed_is_reached_without_a_kink_and_kept(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-4, 40.0 / 150.0, num_to_double(reference.next.speed));
 }
 
-/* Whatever the reference does, a new speed takes over without a kink. */
+/* Whatever the reference does, a new speed preempts without a kink. */
 static void test_speeds_follow_one_another_in_mid_change(void)
 {
     static const double speeds[] = {1.0, -1.0, 0.3, 0.31, -0.9, 0.0, 0.5, 0.4999, -0.2, 0.0};
@@ -229,7 +229,7 @@ static void test_a_retarget_takes_the_time_of_a_jerk_limited_move(void)
     TEST_ASSERT_UINT32_WITHIN(3, 1702, periods);
 }
 
-static void test_a_plan_takes_over_a_profile_in_any_phase(void)
+static void test_a_plan_preempts_a_profile_in_any_phase(void)
 {
     static const struct profile_drive drive = {.period_s = 1e-4,
                                                .rotor_teeth = 50,
@@ -339,7 +339,7 @@ static void start_sine(struct sine sine)
     if (more) {
         append_tail(plan);
     }
-    must_take_over(plan);
+    must_preempt(plan);
 }
 
 static void supply_sine(void)
@@ -588,7 +588,7 @@ int main(void)
     RUN_TEST(test_speeds_follow_one_another_in_mid_change);
     RUN_TEST(test_a_new_target_is_reached_exactly_from_any_motion);
     RUN_TEST(test_a_retarget_takes_the_time_of_a_jerk_limited_move);
-    RUN_TEST(test_a_plan_takes_over_a_profile_in_any_phase);
+    RUN_TEST(test_a_plan_preempts_a_profile_in_any_phase);
     RUN_TEST(test_what_is_foreseen_is_what_comes);
     RUN_TEST(test_a_plan_made_for_another_state_or_epoch_is_refused);
     RUN_TEST(test_a_sine_is_followed_to_1e_8_rad_at_any_control_period);

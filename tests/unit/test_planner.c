@@ -439,7 +439,7 @@ static void test_set_points_posted_while_the_first_plan_is_on_offer_overwrite_no
     command_queue_withdraw_take_over(&drive.commands); /* what a refusal leaves */
     drive_background(&drive);
     must_refuse(set_point(wanted(16)), "15 set-points are waiting already");
-    run(2u * LEAD_PERIODS + 2u); /* taken over: there is room again */
+    run(2u * LEAD_PERIODS + 2u); /* it has begun: there is room again */
     must_post(set_point(wanted(16)));
     for (int i = 17; i <= 34; i++) {
         run(10);

@@ -365,7 +365,7 @@ void test_the_filter_shifts_and_reduces_a_sine()
     }
 }
 
-/* What a filter holds back in a period it hands over later: nothing is lost, whatever the bridge,
+/* What a filter holds back in a period it passes on later: nothing is lost, whatever the bridge,
    the bus and the diodes do meanwhile. */
 void test_the_filter_loses_no_voltage_over_time()
 {

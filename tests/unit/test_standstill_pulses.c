@@ -150,7 +150,7 @@ static void test_the_first_pulse_waits_for_the_hold_to_settle(void)
 
 static void test_only_a_pulse_blanks_samples(void)
 {
-    uint32_t hidden = 0;
+    uint32_t blanked = 0;
 
     for (uint32_t k = 0; k < 300u; k++) {
         struct phases voltage = {NUM(0.0), NUM(0.0)};
@@ -162,10 +162,10 @@ static void test_only_a_pulse_blanks_samples(void)
     for (uint32_t k = 0; k < 12u; k++) {
         struct phases voltage = {NUM(0.0), NUM(0.0)};
 
-        hidden += standstill_pulses_blanks_sample(&pulses, &params) ? 1u : 0u;
+        blanked += standstill_pulses_blanks_sample(&pulses, &params) ? 1u : 0u;
         (void)standstill_pulses_add(&pulses, &params, voltage, no_loss, &voltage);
     }
-    TEST_ASSERT_EQUAL_UINT32(6u, hidden);
+    TEST_ASSERT_EQUAL_UINT32(6u, blanked);
 }
 
 static void test_a_disturbance_of_another_size_shows_no_angle(void)

@@ -1,4 +1,4 @@
-"""A row of a data sheet as a motor file: what is stated is taken over, what is missing is assumed
+"""A row of a data sheet as a motor file: what is stated is taken, what is missing is assumed
 and said."""
 from decimal import Decimal
 

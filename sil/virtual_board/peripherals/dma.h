@@ -65,7 +65,7 @@ class Dma : public RegisterBlock
     std::array<std::uint32_t, channels> loaded_{}; /* items when the channel was enabled */
 };
 
-/* A silent channel that is known to read the register of a peripheral, which hands over what that
+/* A silent channel that is known to read the register of a peripheral, which passes on what that
    holds, many items at once. The channel's registers show them when this is gone. */
 class Dma::Ring
 {
