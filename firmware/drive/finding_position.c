@@ -25,16 +25,17 @@ static struct hal_outputs act(struct drive *drive, struct initial_position_outpu
 /* After an alignment its current flows on, now in the d axis of the hold. */
 static void go_on(struct drive *drive, const struct sample_set *now)
 {
-    const struct initial_position *finding = &drive->enabling.detection;
+    const struct initial_position *detection = &drive->enabling.detection;
 
-    state_machine_position_found(drive, finding->angle);
-    standstill_pulses_reset(&drive->standstill.pulses, &drive->standstill.params,
-                            finding->by_impulses ? initial_position_full_asymmetry(
-                                                       finding, &drive->enabling.detection_params)
-                                                 : NUM(0.0));
-    if (!finding->by_impulses) {
-        standstill_hold_preset(&drive->hold, finding->current_reference);
-        current_control_preset(&drive->current_control, (struct dq){finding->voltage, NUM(0.0)});
+    state_machine_position_found(drive, detection->angle);
+    standstill_pulses_reset(
+        &drive->standstill.pulses, &drive->standstill.params,
+        detection->by_impulses
+            ? initial_position_full_asymmetry(detection, &drive->enabling.detection_params)
+            : NUM(0.0));
+    if (!detection->by_impulses) {
+        standstill_hold_preset(&drive->hold, detection->current_reference);
+        current_control_preset(&drive->current_control, (struct dq){detection->voltage, NUM(0.0)});
         estimator_preset_current(&drive->estimator, &drive->params.estimator, now->winding.current);
         estimator_predict(&drive->estimator, &drive->params.estimator, &drive->params.model,
                           drive->actuation.in_force);

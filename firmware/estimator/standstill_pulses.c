@@ -27,7 +27,7 @@ static uint32_t sampled_in(const struct standstill_pulses_params *params)
     return params->pulse_periods + 2u;
 }
 
-static uint32_t last_hidden(const struct standstill_pulses_params *params)
+static uint32_t last_blanked(const struct standstill_pulses_params *params)
 {
     return 2u * params->pulse_periods + 3u;
 }
@@ -35,7 +35,7 @@ static uint32_t last_hidden(const struct standstill_pulses_params *params)
 /* Five periods in which estimator and control are undisturbed. */
 static uint32_t last_period(const struct standstill_pulses_params *params)
 {
-    return last_hidden(params) + 5u;
+    return last_blanked(params) + 5u;
 }
 
 void standstill_pulses_design(struct standstill_pulses_params *params,
@@ -99,7 +99,7 @@ void standstill_pulses_reset(struct standstill_pulses *pulses,
 bool standstill_pulses_blanks_sample(const struct standstill_pulses *pulses,
                                      const struct standstill_pulses_params *params)
 {
-    return !pulses->at_rest && pulses->period >= 2u && pulses->period <= last_hidden(params);
+    return !pulses->at_rest && pulses->period >= 2u && pulses->period <= last_blanked(params);
 }
 
 void standstill_pulses_sample(struct standstill_pulses *pulses,

@@ -211,12 +211,12 @@ bool crash_stays_off(void)
     return record.failures >= STARTS_IN_A_ROW;
 }
 
-_Noreturn void crash_tell(void)
+_Noreturn void crash_report(void)
 {
     for (;;) {
-        serial_line_tell("steadystep stays off, three starts failed: ");
-        serial_line_tell(cause);
-        serial_line_tell("\r\n");
+        serial_line_report("steadystep stays off, three starts failed: ");
+        serial_line_report(cause);
+        serial_line_report("\r\n");
         wait_cycles(16000000); /* both ports start at 16 MHz */
     }
 }

@@ -30,7 +30,7 @@ const char *crash_start_cause(void);
    this one shall not close a bridge; a power cycle or the reset pin begins anew. */
 bool crash_stays_off(void);
 /* Says why, once a second, to whoever listens, for ever; gates and pins are the caller's. */
-_Noreturn void crash_tell(void);
+_Noreturn void crash_report(void);
 /* From the background, all the time: once the start has succeeded, failures in a row count anew. */
 void crash_watch_start(void);
 

@@ -16,6 +16,6 @@ size_t serial_line_read(uint8_t *bytes, size_t capacity, uint32_t *line_period);
 size_t serial_line_write(const uint8_t *bytes, size_t count);
 
 /* Before serial_line_configure, instead of it: sends a text at the clock of reset, and waits. */
-void serial_line_tell(const char *text);
+void serial_line_report(const char *text);
 
 #endif

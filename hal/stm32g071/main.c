@@ -21,7 +21,7 @@ static _Noreturn void stay_off(void)
     clock_of_blocks();
     bridge_start(); /* holds the gates low; no more is started, as any of it may have failed */
     pins_connect();
-    crash_tell();
+    crash_report();
 }
 
 int main(void)

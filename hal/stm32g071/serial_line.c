@@ -62,7 +62,7 @@ static void set_rate(uint64_t clock_Hz)
     LPUART1->brr = (uint32_t)((256u * clock_Hz + BAUD / 2u) / BAUD); /* RM0444 */
 }
 
-void serial_line_tell(const char *text)
+void serial_line_report(const char *text)
 {
     if ((LPUART1->cr1 & LPUART_CR1_UE) == 0) {
         set_rate(HSI16_Hz);

@@ -52,7 +52,7 @@ static _Noreturn void stay_off(void)
 {
     pwm_configure(); /* holds the gates low; no more is started, as any of it may have failed */
     pins_connect();
-    crash_tell();
+    crash_report();
 }
 
 int main(void)

@@ -55,7 +55,7 @@ static void set_rate(uint64_t clock_Hz)
     LPUART1->brr = (uint32_t)((clock_Hz * 256u + BAUD / 2u) / BAUD);
 }
 
-void serial_line_tell(const char *text)
+void serial_line_report(const char *text)
 {
     if ((RCC->apb1enr2 & RCC_APB1ENR2_LPUART1EN) == 0) {
         set_rate(HSI16_Hz);

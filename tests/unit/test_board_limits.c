@@ -130,7 +130,7 @@ static void test_a_speed_limit_that_is_lower_or_widened_by_hand_counts_instead(v
 }
 
 /* A code of 2.93 mA through the winding of a NEMA 11, 6.8 ohm, and its bridge. */
-static void test_the_blind_speed_is_that_whose_back_emf_the_offset_hides(void)
+static void test_the_blind_speed_is_that_whose_back_emf_the_offset_covers(void)
 {
     settings.motor.resistance_ohm = 6.8;
     settings.motor.torque_constant_Nm_A = 0.1;
@@ -159,7 +159,7 @@ int main(void)
     RUN_TEST(test_a_zero_beside_the_middle_of_the_codes_takes_from_the_range);
     RUN_TEST(test_reference_speeds_end_where_back_emf_and_friction_take_the_supply);
     RUN_TEST(test_a_speed_limit_that_is_lower_or_widened_by_hand_counts_instead);
-    RUN_TEST(test_the_blind_speed_is_that_whose_back_emf_the_offset_hides);
+    RUN_TEST(test_the_blind_speed_is_that_whose_back_emf_the_offset_covers);
     RUN_TEST(test_with_an_encoder_no_speed_is_blind);
     return UNITY_END();
 }

@@ -65,7 +65,7 @@ RowRange rows_of(const Rows &rows, const Window &window)
 }
 
 /* 0...0.1 s at 10 rad/s to 1 rad, then rest; the rotor follows 0.01 s behind. */
-void lagging_move(Row &row, std::size_t n)
+void late_move(Row &row, std::size_t n)
 {
     const double time_s = static_cast<double>(n) * period_s;
     row[REFERENCE_MOVING] = n < at(0.1) ? 1 : 0;
@@ -81,7 +81,7 @@ Metrics over(const Rows &rows, const Window &window)
 
 void move_ends_with_the_profile_and_rest_follows()
 {
-    const Rows rows = make_rows(0.2, lagging_move);
+    const Rows rows = make_rows(0.2, late_move);
     const RowRange move = rows_of(rows, {Window::Kind::move});
     const RowRange rest = rows_of(rows, {Window::Kind::rest});
     TEST_ASSERT_EQUAL_size_t(0, move.first);
@@ -150,7 +150,7 @@ void a_pause_does_not_end_a_step()
 
 void explicit_times_include_both_ends()
 {
-    const Rows rows = make_rows(0.1, lagging_move);
+    const Rows rows = make_rows(0.1, late_move);
     const RowRange range = rows_of(rows, {Window::Kind::times, 0.02, 0.05});
     TEST_ASSERT_EQUAL_size_t(at(0.02), range.first);
     TEST_ASSERT_EQUAL_size_t(at(0.05) + 1, range.last);
@@ -175,7 +175,7 @@ void errors_have_their_largest_mean_square_and_last_value()
 
 void the_lag_of_a_move_is_found()
 {
-    const Metrics metrics = over(make_rows(0.2, lagging_move), {Window::Kind::move});
+    const Metrics metrics = over(make_rows(0.2, late_move), {Window::Kind::move});
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.1, metrics.position_error_steady_rad);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.01, metrics.lag_s);
 }
@@ -205,7 +205,7 @@ void a_long_cruise_has_the_same_later_half()
 
 void settling_counts_from_the_end_of_the_reference()
 {
-    const Metrics metrics = over(make_rows(0.2, lagging_move), {Window::Kind::all});
+    const Metrics metrics = over(make_rows(0.2, late_move), {Window::Kind::all});
     /* 2 mrad at 10 rad/s are 0.2 ms before the rotor arrives at 0.11 s. */
     TEST_ASSERT_DOUBLE_WITHIN(2.5e-4, 0.0098, metrics.settling_time_s);
 }
@@ -232,8 +232,7 @@ void overshoot_is_measured_beyond_the_target_in_either_direction()
 
 void a_move_that_does_not_pass_its_target_has_no_overshoot()
 {
-    TEST_ASSERT_EQUAL_DOUBLE(0,
-                             over(make_rows(0.2, lagging_move), {Window::Kind::all}).overshoot_rad);
+    TEST_ASSERT_EQUAL_DOUBLE(0, over(make_rows(0.2, late_move), {Window::Kind::all}).overshoot_rad);
 }
 
 void a_load_step_is_timed_until_90_percent_are_estimated()
