@@ -136,6 +136,33 @@ function(board_program target path)
     -T ${CMAKE_CURRENT_SOURCE_DIR}/memory.ld -Wl,--build-id=none)
 endfunction()
 
+# interrupt_sections(<target>... [IN_FLASH <function>...]): interrupt_sections.ld, which the linker
+# script of the targets includes: what the control interrupt reaches, but for functions that stay in
+# flash. The image with nothing of it placed, `unplaced`, shows it; its sources are the caller's.
+function(interrupt_sections)
+  cmake_parse_arguments(PARSE_ARGV 0 placed "" "" "IN_FLASH")
+  set(sections ${CMAKE_CURRENT_BINARY_DIR}/interrupt_sections.ld)
+  set(no_sections ${CMAKE_CURRENT_BINARY_DIR}/unplaced)
+  file(MAKE_DIRECTORY ${no_sections})
+  file(TOUCH ${no_sections}/interrupt_sections.ld)
+  add_executable(unplaced)
+  board_program(unplaced ${pin_map})
+  target_link_options(unplaced PRIVATE -L ${no_sections})
+  file(GLOB image_readers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tools/arm_image/*.py)
+  add_custom_command(OUTPUT ${sections}
+    COMMAND ${PROJECT_SOURCE_DIR}/tools/interrupt_sections
+            $<TARGET_FILE:unplaced> ${sections} ${placed_IN_FLASH}
+    DEPENDS unplaced ${PROJECT_SOURCE_DIR}/tools/interrupt_sections ${image_readers}
+    COMMENT "What the control interrupt reaches"
+    VERBATIM)
+  add_custom_target(interrupt_sections DEPENDS ${sections})
+  foreach(program IN LISTS placed_UNPARSED_ARGUMENTS)
+    add_dependencies(${program} interrupt_sections)
+    set_property(TARGET ${program} APPEND PROPERTY LINK_DEPENDS ${sections})
+    target_link_options(${program} PRIVATE -L ${CMAKE_CURRENT_BINARY_DIR})
+  endforeach()
+endfunction()
+
 # board_image(<target>): a program with the chosen pin map, and what is made of it.
 function(board_image target)
   set(image ${PROJECT_BINARY_DIR}/${target})

@@ -86,10 +86,26 @@ def base_name(name):
     return re.sub(r"(\.(part|constprop|isra|cold|lto_priv|\d+))+$", "", name)
 
 
-def input_sections(image):
-    """Of a linker script: those that the interrupts need, wherever they lie in the image."""
-    functions, constants = outside(image, INTERRUPTS, inside=range(0))
-    for name in sorted({base_name(f) for f in functions if not VENEER.fullmatch(f)}):
+def tables_of_jumps(image, roots, left):
+    """Names of the functions whose switches jump by a table of addresses, a constant of its own."""
+    for node in reached(image, roots).values():
+        jumps = (i.base == "mov" and i.operands.startswith("pc,") for i in node.instructions)
+        if base_name(node.name) not in left and any(jumps):
+            yield node.name
+
+
+def input_sections(image, left=()):
+    """Of a linker script: those that the interrupts need, wherever they lie in the image, but for
+    the functions `left` in flash. Refuses (ValueError) one that the interrupts do not reach."""
+    roots = [name for name in INTERRUPTS if name in image.symbols]
+    functions, constants = outside(image, roots, inside=range(0))
+    names = {base_name(f) for f in functions if not VENEER.fullmatch(f)}
+    for name in left:
+        if name not in names:
+            raise ValueError(f"{name}: the interrupt does not reach it, in flash or elsewhere")
+    for name in sorted(names.difference(left)):
         yield f"*(.text.{name} .text.{name}.*)"
-    for name in sorted({base_name(c) for c in constants}):
+    for name in sorted({base_name(c) for c in constants if not VENEER.fullmatch(c)}):
         yield f"*(.rodata.{name} .rodata.{name}.*)"
+    for name in sorted(set(tables_of_jumps(image, roots, left))):
+        yield f"*(.rodata.{name})"
