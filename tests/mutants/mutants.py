@@ -87,7 +87,7 @@ MUTANTS = [
            "num_mul_coef_nearest(away, gain->bias_return)", "NUM(0.0)"),
     Mutant(ESTIMATOR + "invariant_ekf_step.h", "invariant_ekf",
            "a_load_step_in_hold_is_followed_before_the_rotor_has_turned_far",
-           "params->following_periods + REST_PERIODS", "REST_PERIODS"),
+           "params->following_periods + params->rest_periods", "params->rest_periods"),
     Mutant(ESTIMATOR + "invariant_ekf_step.h", "invariant_ekf",
            "a_hold_of_150_ms_calibrates_the_resistance_from_half_to_one_and_a_half",
            "x->winding.resistance + change", "x->winding.resistance - change"),
