@@ -73,7 +73,7 @@ struct hal_facts {
     bool has_phase_voltages;
     uint32_t encoder_counts_per_turn; /* 0: no encoder */
     bool zero_delay; /* only in a simulation: the duties of S(k) act S(k)...S(k+1), without the
-                          period of delay of the diagram */
+                        period of delay of the diagram */
     double bridge_resistance_ohm; /* both conducting switches in series with a phase */
     uint32_t cycle_counter_Hz;
     uint32_t parameter_page_bytes; /* unit of erase of the parameter store */

@@ -38,7 +38,8 @@ static inline num_t error_feedback(const struct error_feedback_params *params,
                                    const struct position_law_input *input)
 {
     num_t position_error = num_headroom(input->position_error, params->position_error_limit);
-    num_t speed_error = num_limit(input->reference_speed - input->speed, params->speed_error_limit);
+    num_t speed_error =
+        num_headroom(input->reference_speed - input->speed, params->speed_error_limit);
 
     return num_mul_coef(position_error, params->position) +
            num_mul_coef(speed_error, params->speed) +

@@ -20,6 +20,9 @@ struct standstill_hold_params standstill_hold_design(const struct per_unit *base
     params.enters_at_rest = task->enters_at_rest;
     params.delay_periods =
         task->enters_at_rest ? (uint32_t)(task->delay_s / task->period_s + 0.5) : UINT32_MAX;
+    if (params.delay_periods == 0u) { /* what is not slow never waits for a hold */
+        params.delay_periods = 1u;
+    }
     params.error_limit = num_from_double(error_limit_turns);
     params.speed_limit = num_from_double(ramp_travel_turns / ramp_periods / base->turns_per_period);
     return params;
@@ -76,10 +79,9 @@ void standstill_hold_leave(struct standstill_hold *hold, uint32_t slow_periods, 
 
 void standstill_hold_consider(struct standstill_hold *hold,
                               const struct standstill_hold_params *params, angle_t reference,
-                              uint32_t slow_periods, num_t position_error, num_t speed)
+                              num_t position_error, num_t speed)
 {
-    if (RARE(slow_periods > params->delay_periods) &&
-        num_abs(position_error) < params->error_limit && num_abs(speed) < params->speed_limit) {
+    if (num_abs(position_error) < params->error_limit && num_abs(speed) < params->speed_limit) {
         standstill_hold_enter(hold, reference);
     }
 }

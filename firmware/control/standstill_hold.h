@@ -82,12 +82,10 @@ static inline bool standstill_hold_leads_in(uint32_t period)
     return (period & 3u) == 1u;
 }
 
-/* One period: ramps the d current in or out and returns it. */
+/* One period: ramps the d current to `target`, the hold's or motion's, and returns it. */
 static inline num_t standstill_hold_step(struct standstill_hold *hold,
-                                         const struct standstill_hold_params *params)
+                                         const struct standstill_hold_params *params, num_t target)
 {
-    const num_t target = hold->active ? hold->current : params->motion_current;
-
     if (RARE(hold->i_d != target)) {
         hold->i_d += num_limit(target - hold->i_d, params->current_ramp);
     }
@@ -101,13 +99,21 @@ static inline num_t standstill_hold_step(struct standstill_hold *hold,
  */
 void standstill_hold_leave(struct standstill_hold *hold, uint32_t slow_periods, bool moving);
 
+/* The reference has been slow for long enough. */
+static inline bool standstill_hold_waits(const struct standstill_hold_params *params,
+                                         uint32_t slow_periods)
+{
+    return RARE(slow_periods >= params->delay_periods);
+}
+
 /*
- * Enters the hold if the reference has been slow for long enough and the rotor has come near it:
- * the frame at once, its currents from the next period on. `position_error` in electrical turns.
+ * Enters a hold that waits for it if the rotor has come near the reference, from the next period
+ * on. `position_error` in electrical turns.
  */
-void standstill_hold_consider(struct standstill_hold *hold,
-                              const struct standstill_hold_params *params, angle_t reference,
-                              uint32_t slow_periods, num_t position_error, num_t speed);
+__attribute__((noinline)) void standstill_hold_consider(struct standstill_hold *hold,
+                                                        const struct standstill_hold_params *params,
+                                                        angle_t reference, num_t position_error,
+                                                        num_t speed);
 
 /* The q current of the hold; `speed`: by how much the rotor is faster than the reference. */
 num_t standstill_hold_torque_current(const struct standstill_hold_params *params, num_t speed,

@@ -18,6 +18,11 @@
 /* Default speed limit / the speed whose back-EMF is the supply. */
 #define SPEED_LIMIT_SHARE 1.3
 
+/* Of the following error with an encoder, electrical turns: the default limit, four full steps; and
+   the largest, as position_difference shows no more than 15. */
+#define FOLLOWING_ERROR_TURNS     1.0
+#define FOLLOWING_ERROR_TURNS_MAX 14.0
+
 /* Of the range in which the board measures currents: the rated current, above which the trip needs
    room, unless a current limit is given; a limit that is given, and the default trip. */
 #define RATED_CURRENT_SHARE 0.8

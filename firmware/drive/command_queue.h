@@ -169,20 +169,21 @@ static inline bool command_queue_holds_any(const struct command_queue *queue)
     return queue->written != queue->read;
 }
 
-/* Interrupt, when something has acted: passes the queue by if nothing else waits. */
-static inline void command_queue_rest_if_empty(struct command_queue *queue, uint32_t period)
-{
-    if (queue->written == queue->read && !queue->disable.posted && !queue->stop.posted &&
-        !queue->take_over.posted) {
-        queue->due = period + COMMAND_QUEUE_NEVER;
-    }
-}
-
 /* Interrupt, when nothing has acted: passes the queue by until something is posted, `wait` periods
    have passed, or the reference has come to rest. The background cannot run in between. */
 static inline void command_queue_rest(struct command_queue *queue, uint32_t period, uint32_t wait)
 {
     queue->due = period + wait;
+}
+
+/* Interrupt, when something has acted: passes the queue by if nothing else waits but what is
+   urgent, for `wait` periods. */
+static inline void command_queue_rest_if_empty(struct command_queue *queue, uint32_t period,
+                                               uint32_t wait)
+{
+    if (queue->written == queue->read && !queue->take_over.posted) {
+        command_queue_rest(queue, period, wait);
+    }
 }
 
 #endif

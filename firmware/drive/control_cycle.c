@@ -54,11 +54,9 @@ static void present(struct prediction *next, const struct drive *drive,
     next->reference = &drive->reference.now;
 }
 
-IN_PLACE struct position_law_input law_input(const struct drive *drive,
-                                             const struct prediction *next)
+IN_PLACE struct position_law_input law_input(const struct prediction *next, bool feed_forward)
 {
     const struct reference_sample *reference = next->reference;
-    const bool feed_forward = !RARE(!drive->params.path.feed_forward);
 
     return (struct position_law_input){
         .position_error = position_difference(reference->position, next->rotor.position),
@@ -69,54 +67,57 @@ IN_PLACE struct position_law_input law_input(const struct drive *drive,
     };
 }
 
-IN_PLACE void consider_hold(struct drive *drive, const struct prediction *next,
-                            num_t position_error)
+/* What is regulated: the current in a frame, of the reference or of the rotor as it turns. */
+struct current_demand {
+    struct dq current;
+    struct frame frame;
+};
+
+IN_PLACE void hold_rotor(struct current_demand *demand, struct drive *drive,
+                         const struct prediction *next)
 {
-    standstill_hold_consider(&drive->hold, &drive->params.hold, next->reference->position.fraction,
-                             drive->reference.slow_periods, position_error, next->rotor.speed);
+    const struct standstill_hold_params *params = &drive->params.hold;
+
+    demand->current.d = standstill_hold_step(&drive->hold, params, drive->hold.current);
+    demand->current.q = standstill_hold_torque_current(
+        params, next->rotor.speed - drive->hold.speed,
+        drive->supervision.aligns ? NUM(0.0) : next->rotor.load_torque);
+    demand->frame = (struct frame){drive->hold.frame, drive->hold.frame, drive->hold.speed};
 }
 
-IN_PLACE struct dq wanted_current(struct drive *drive, const struct prediction *next)
+IN_PLACE void move_rotor(struct current_demand *demand, struct drive *drive,
+                         const struct prediction *next, bool feed_forward)
 {
     const struct drive_params *params = &drive->params;
-    struct dq current;
+    const struct position_law_input input = law_input(next, feed_forward);
 
-    current.d = standstill_hold_step(&drive->hold, &params->hold);
-    if (RARE(drive->hold.active)) {
-        current.q = standstill_hold_torque_current(
-            &params->hold, next->rotor.speed - drive->hold.speed,
-            drive->supervision.aligns ? NUM(0.0) : next->rotor.load_torque);
-    } else {
-        const struct position_law_input input = law_input(drive, next);
-
-        current.q = position_law_current(params->position_law, &drive->law, &params->law, &input);
-        consider_hold(drive, next, input.position_error);
-    }
-    return current;
-}
-
-/* Of the hold: of the reference. In motion: of the rotor, as it turns. */
-IN_PLACE struct frame current_frame(const struct drive *drive, const struct prediction *next)
-{
-    if (RARE(drive->hold.active)) {
-        return (struct frame){drive->hold.frame, drive->hold.frame, drive->hold.speed};
-    }
-    return (struct frame){next->frame, sincos_add(next->frame, next->half_turn), next->rotor.speed};
+    demand->current.d =
+        standstill_hold_step(&drive->hold, &params->hold, params->hold.motion_current);
+    demand->current.q =
+        position_law_current(params->position_law, &drive->law, &params->law, &input);
+    demand->frame.begin = next->frame;
+    demand->frame.middle = sincos_add(next->frame, next->half_turn);
+    demand->frame.speed = next->rotor.speed;
 }
 
 /* Hold or current law, then current control. */
-IN_PLACE struct phases regulate_current(struct drive *drive, const struct prediction *next)
+IN_PLACE struct phases regulate_current(struct drive *drive, const struct prediction *next,
+                                        bool held, bool feed_forward)
 {
-    drive->current_reference = wanted_current(drive, next);
+    struct current_demand demand;
 
-    const struct frame frame = current_frame(drive, next);
-
-    drive->current = park(next->current, frame.begin);
+    if (RARE(held)) {
+        hold_rotor(&demand, drive, next);
+    } else {
+        move_rotor(&demand, drive, next, feed_forward);
+    }
+    drive->current_reference = demand.current;
+    drive->current = park(next->current, demand.frame.begin);
     drive->voltage_command = current_control_step(
-        &drive->current_control, &drive->params.current_control, drive->current_reference,
-        drive->current, (struct rotation){frame.speed, next->rotor.speed},
+        &drive->current_control, &drive->params.current_control, demand.current, drive->current,
+        (struct rotation){demand.frame.speed, next->rotor.speed},
         modulator_voltage_limit(&drive->modulator, &drive->params.modulator));
-    return inverse_park(drive->voltage_command, frame.middle);
+    return inverse_park(drive->voltage_command, demand.frame.middle);
 }
 
 /* A voltage law. */
@@ -125,11 +126,12 @@ static struct phases regulate_voltage(struct drive *drive, const struct estimate
 {
     const struct drive_params *params = &drive->params;
     const struct voltage_law_input input = {
-        .motion = law_input(drive, next),
+        .motion = law_input(next, params->path.feed_forward),
         .current = park(next->current, next->frame),
         .undisturbed_current = park(next->undisturbed_current, next->frame),
         .innovation = expectation_innovation(&drive->expectation, estimate->current),
-        .current_d_reference = standstill_hold_step(&drive->hold, &params->hold),
+        .current_d_reference =
+            standstill_hold_step(&drive->hold, &params->hold, params->hold.motion_current),
         .reference_jerk = params->path.feed_forward
                               ? reference_jerk(&drive->reference, &params->reference)
                               : NUM(0.0),
@@ -142,7 +144,6 @@ static struct phases regulate_voltage(struct drive *drive, const struct estimate
     const struct voltage_demand demand =
         position_law_voltage(params->position_law, &drive->law, &params->law, &input);
 
-    consider_hold(drive, next, input.motion.position_error);
     drive->current = input.current;
     drive->current_reference = (struct dq){input.current_d_reference, demand.torque_current};
     drive->voltage_command = demand.voltage;
@@ -236,17 +237,34 @@ static void leave_or_lead_hold(struct drive *drive)
     }
 }
 
-IN_PLACE void leave_or_lead(struct drive *drive)
+/* Enters the hold, if the rotor has come near its reference. Apart: rare. */
+__attribute__((noinline)) static void enter_hold(struct drive *drive)
 {
-    if (RARE(drive->hold.active)) {
+    const struct outlook *rotor = &drive->estimator.estimate.next;
+    const struct position reference = drive->reference.next.position;
+
+    standstill_hold_consider(&drive->hold, &drive->params.hold, reference.fraction,
+                             position_difference(reference, rotor->position), rotor->speed);
+    if (drive->hold.active) {
+        estimator_begin_hold(&drive->estimator, &drive->params.estimator);
         leave_or_lead_hold(drive);
+    }
+}
+
+/* The hold begins or ends with the period that follows. */
+IN_PLACE void enter_or_leave_hold(struct drive *drive, bool held)
+{
+    if (RARE(held)) {
+        leave_or_lead_hold(drive);
+    } else if (standstill_hold_waits(&drive->params.hold, drive->reference.slow_periods)) {
+        enter_hold(drive);
     }
 }
 
 /* Between hold and voltage law nothing of the past of the one that takes over is left. */
 IN_PLACE void hand_over(struct drive *drive, const struct estimate *estimate, bool held)
 {
-    leave_or_lead(drive);
+    enter_or_leave_hold(drive, held);
     if (drive->hold.active && !held) {
         const num_t resistance = estimate->winding.resistance;
         const struct dq drop = {num_mul(resistance, drive->current.d),
@@ -292,7 +310,8 @@ static struct passage observe(struct drive *drive, const struct sample_set *now)
 }
 
 /* The sensorless default: nothing is prepared, and it is the invariant EKF. */
-IN_PLACE struct passage observe_sensorless(struct drive *drive, const struct sample_set *now)
+IN_PLACE struct passage observe_sensorless(struct drive *drive, const struct sample_set *now,
+                                           bool held)
 {
     modulator_track_bus(&drive->modulator, now->bus);
 
@@ -301,24 +320,24 @@ IN_PLACE struct passage observe_sensorless(struct drive *drive, const struct sam
 
     return invariant_ekf_step(&drive->estimator.invariant_ekf,
                               &drive->params.estimator.invariant_ekf, now->winding.current,
-                              surprise, in_force,
-                              (struct rotor_hold){drive->hold.active, &drive->hold.leads});
+                              surprise, in_force, (struct rotor_hold){held, &drive->hold.leads});
 }
 
-/* Begins a phase or a stop; nothing else that can wait is done in this period, and what has waited
-   for the reference to rest is looked at in the next. Apart: rare. */
+/* Where a phase or a stop begins, nothing else that can wait is done in this period, and what has
+   waited for the reference to rest is looked at in the next. Apart: rare. */
 __attribute__((noinline)) static void turn_reference(struct drive *drive)
 {
-    reference_turn(&drive->reference, &drive->params.reference);
-    synchronism_wait(drive);
-    if (!reference_busy(&drive->reference)) {
-        command_queue_look_next(&drive->commands);
+    if (reference_turn(&drive->reference, &drive->params.reference, drive->hold.active)) {
+        synchronism_wait(drive, 2u);
+        if (!reference_busy(&drive->reference)) {
+            command_queue_rest(&drive->commands, drive->supervision.period, 1u);
+        }
     }
 }
 
 IN_PLACE void move_reference(struct drive *drive)
 {
-    if (RARE(reference_step(&drive->reference, &drive->params.reference, drive->hold.active))) {
+    if (RARE(!reference_step(&drive->reference, &drive->params.reference))) {
         turn_reference(drive);
     }
 }
@@ -364,7 +383,7 @@ static void control_with_all(struct drive *drive, const struct estimate *estimat
     }
     voltage = !drive->hold.active && position_law_gives_voltage(params->position_law)
                   ? regulate_voltage(drive, estimate, &next)
-                  : regulate_current(drive, &next);
+                  : regulate_current(drive, &next, held, params->path.feed_forward);
     if (params->path.standstill_pulses) {
         standstill_angle_step(drive, estimate, &before, &voltage);
     }
@@ -406,7 +425,8 @@ IN_PLACE void control_current(struct drive *drive, const struct hal_samples *sam
 {
     const struct sample_set now =
         measurement_step(&drive->measurement, &drive->params.measurement, samples);
-    const struct passage passage = observe_sensorless(drive, &now);
+    const bool held = drive->hold.active;
+    const struct passage passage = observe_sensorless(drive, &now, held);
     const struct estimate *estimate = &drive->estimator.estimate;
     struct prediction next;
 
@@ -416,10 +436,10 @@ IN_PLACE void control_current(struct drive *drive, const struct hal_samples *sam
     }
     predict(&next, drive, estimate, passage);
 
-    const struct phases voltage = regulate_current(drive, &next);
+    const struct phases voltage = regulate_current(drive, &next, held, true);
 
     modulate(drive, actuation_compensate(&drive->actuation, voltage), outputs);
-    leave_or_lead(drive);
+    enter_or_leave_hold(drive, held);
 }
 
 /* Nothing controls: the bus is shown in every state. Apart: rare. */
@@ -434,14 +454,41 @@ __attribute__((noinline)) static void rest(struct drive *drive, const struct hal
     *outputs = state_machine_resting_bridge(drive);
 }
 
+/* Outside operation: whether the control runs all the same, in the first hold. Apart: rare. */
+__attribute__((noinline)) static bool step_outside(struct drive *drive,
+                                                   const struct hal_samples *samples)
+{
+    if (state_machine_powered(drive) && !reference_keeps_still(&drive->reference)) {
+        turn_reference(drive);
+    }
+    return state_machine_step(drive, samples);
+}
+
+/* Reference, states and commands; true: the control runs. */
+IN_PLACE bool prepare(struct drive *drive, const struct hal_samples *samples)
+{
+    const uint32_t period = state_machine_begin_period(drive);
+
+    if (RARE(drive->supervision.state != DRIVE_OPERATION_ENABLED)) {
+        return step_outside(drive, samples);
+    }
+    move_reference(drive);
+    return !RARE(command_queue_is_due(&drive->commands, period)) ||
+           state_machine_obey(drive, samples);
+}
+
 void drive_control_cycle(struct drive *drive, const struct hal_samples *samples,
                          struct hal_outputs *outputs)
 {
-    if (RARE(!state_machine_step(drive, samples))) {
+    if (RARE(!prepare(drive, samples))) {
         rest(drive, samples, outputs);
         return;
     }
-    move_reference(drive);
+    if (RARE(!protection_passes(&drive->params.protection, samples))) {
+        state_machine_check_samples(drive, samples);
+        rest(drive, samples, outputs);
+        return;
+    }
     if (RARE(drive->params.path.general)) {
         control_general(drive, samples, outputs);
     } else {

@@ -4,6 +4,7 @@
 #include "firmware/design/feedback_linearisation_design.h"
 #include "firmware/design/loop_bandwidth.h"
 #include "firmware/design/mechanical_control_design.h"
+#include "firmware/drive/board_limits.h"
 
 /* Of the rated current. */
 #define HOLD_CURRENT_SHARE 0.5
@@ -16,6 +17,14 @@
    sees no back-EMF has drifted. */
 #define HOLD_DELAY_MAX_S 0.015
 #define HOLD_DELAY_SWING 4.2 /* 1/w_h */
+
+/* Microstepping leads its rotor and follows nothing. */
+static double following_error(const struct drive_settings *settings)
+{
+    return settings->law == POSITION_LAW_MICROSTEPPING
+               ? 0.0
+               : FOLLOWING_ERROR_TURNS * 6.283185307179586 / settings->motor.rotor_teeth;
+}
 
 __attribute__((noinline)) static void put(double *setting, double value)
 {
@@ -153,6 +162,7 @@ bool default_settings_step(struct default_settings_search *search, struct drive_
         search->refused++;
         return false;
     }
+    put(&settings->following_error_rad, following_error(settings));
     put(&settings->hold_current_A, search->hold_current_A);
     put(&settings->hold_delay_s,
         smaller(HOLD_DELAY_MAX_S,

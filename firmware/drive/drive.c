@@ -217,6 +217,19 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
     return accepted;
 }
 
+static struct following_error_params design_following_error(const struct drive *drive,
+                                                            double period_s)
+{
+    const bool encoder = drive->settings.feedback == DRIVE_FEEDBACK_ENCODER;
+    const struct following_error_task task = {
+        .base = &drive->base,
+        .period_s = period_s,
+        .limit_rad = encoder ? drive->settings.following_error_rad : 0.0,
+    };
+
+    return following_error_design(&task);
+}
+
 /* What was given, and what follows. */
 static bool settle_settings(struct drive *drive, const struct drive_settings *given,
                             char error[DRIVE_ERROR_TEXT])
@@ -240,6 +253,8 @@ static bool settle_settings(struct drive *drive, const struct drive_settings *gi
     }
     drive->base = per_unit_base(&settings->motor, facts->control_period_s);
     settings->speed_limit_rad_s = speed_limit(settings, &drive->base);
+    settings->following_error_rad = smaller(settings->following_error_rad,
+                                            FOLLOWING_ERROR_TURNS_MAX * drive->base.rad_per_turn);
     return true;
 }
 
@@ -266,6 +281,7 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
     params->modulator = modulator_design(facts->pwm_half_period_counts,
                                          modulation_max(facts->low_state_s, period_s));
     params->protection = protection_design(&drive->base, facts, &drive->settings);
+    params->following = design_following_error(drive, period_s);
     params->enabling.calibrates_offsets = settings->calibrate_offsets;
     drive->enabling.calibration_params =
         offset_calibration_design(facts, &settings->motor, &drive->base);
@@ -280,6 +296,7 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
     params->path.general = position_law_gives_voltage(settings->law) || settings->detent_learning ||
                            settings->standstill_pulses || params->path.infers_voltage ||
                            params->path.zero_delay || !settings->bridge_loss_compensation ||
+                           !settings->feed_forward ||
                            settings->feedback == DRIVE_FEEDBACK_ENCODER ||
                            settings->estimator != DRIVE_ESTIMATOR_INVARIANT_EKF;
     params->enabling.encoder_zero_known =

@@ -13,6 +13,7 @@
 #include "firmware/drive/command_queue.h"
 #include "firmware/drive/expectation.h"
 #include "firmware/interface/drive_interface.h"
+#include "firmware/drive/following_error.h"
 #include "firmware/drive/measurement.h"
 #include "firmware/drive/offset_calibration.h"
 #include "firmware/drive/parameter_store.h"
@@ -78,6 +79,7 @@ struct drive_params {
     union position_law_params law; /* large, so behind what every law uses */
     struct detent_compensation_params detent;
     struct bridge_loss_params bridge_loss;
+    struct following_error_params following;
 };
 
 /* States, faults and the count of periods: state_machine.h. */
@@ -126,8 +128,10 @@ struct enabling {
         struct phase_balance balance;
         struct encoder_alignment alignment;
     };
-    struct phase_balance_params balance_params;
-    struct encoder_alignment_params alignment_params;
+    union {
+        struct phase_balance_params balance_params;
+        struct encoder_alignment_params alignment_params;
+    };
     num_t phase_imbalance; /* as last found */
 };
 
@@ -136,12 +140,10 @@ struct enabling {
  * each are written by its own functions alone.
  */
 struct drive {
-    struct drive_params params;
-
     /* blocks, in the order of the block diagram */
     struct measurement measurement;
-    struct estimator estimator;
     struct reference reference;
+    struct estimator estimator;
     struct standstill_hold hold;
     struct current_control current_control;
     struct modulator modulator;
@@ -152,6 +154,8 @@ struct drive {
     struct dq current_reference;
     struct dq voltage_command;
 
+    struct drive_params params;
+
     /* the blocks that the default does without */
     union position_law_state law;
     struct detent_compensation detent;
@@ -160,6 +164,7 @@ struct drive {
     int32_t encoder_count; /* of this S(k) */
     struct expectation expectation;
     struct synchronism_supervision synchronism;
+    struct following_error following; /* with an encoder, in the monitor's place */
     struct prepared_input input;
     struct command_queue commands;
 

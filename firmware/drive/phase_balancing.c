@@ -20,8 +20,11 @@ uint32_t phase_balancing_design(struct drive *drive, const struct drive_settings
         .hold_current_A = settings->hold_current_A,
     };
 
+    if (!applies(drive, settings)) { /* its memory may be the alignment's */
+        return 0u;
+    }
     drive->enabling.balance_params = phase_balance_design(&task);
-    return applies(drive, settings) ? phase_balance_periods(&drive->enabling.balance_params) : 0u;
+    return phase_balance_periods(&drive->enabling.balance_params);
 }
 
 void phase_balancing_start(struct drive *drive)

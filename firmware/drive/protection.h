@@ -49,8 +49,8 @@ enum drive_fault protection_check_samples(const struct protection_params *params
 static inline bool protection_trusts(const struct protection_params *params,
                                      const struct estimate *estimate)
 {
-    return num_abs(estimate->rotor.speed) < params->speed_limit &&
-           num_abs(estimate->rotor.load_torque) < params->load_torque_limit;
+    return !RARE(!(num_abs(estimate->rotor.speed) < params->speed_limit)) &&
+           !RARE(!(num_abs(estimate->rotor.load_torque) < params->load_torque_limit));
 }
 
 #endif

@@ -127,8 +127,9 @@ static void disable(struct drive *drive)
 static bool obey(struct drive *drive, struct queued_command *command)
 {
     const bool ahead = command->at_period == drive->supervision.period + 1u;
+    const bool moves = queued_command_is_move(command);
 
-    if (ahead && !queued_command_is_move(command)) {
+    if (ahead && !moves) {
         return false;
     }
     if (drive->supervision.state == DRIVE_SWITCH_ON_DISABLED &&
@@ -145,7 +146,7 @@ static bool obey(struct drive *drive, struct queued_command *command)
     if (reference_busy(&drive->reference)) {
         return false; /* and so the profile in use stays in the queue's memory */
     }
-    if (queued_command_is_move(command)) {
+    if (moves) {
         if (!reference_load(&drive->reference, &command->profile)) {
             command_queue_count_dropped(&drive->commands, command);
         }
@@ -168,35 +169,39 @@ static void take_over(struct drive *drive, const struct motion_plan *plan)
     }
 }
 
-/* One command a period: short worst case. */
-static inline __attribute__((always_inline)) void take_commands(struct drive *drive)
+/*
+ * One command a period, and in the next the rest is looked at: short worst case. The reference has
+ * been moved to S(k+1): what is asked of it for the period that follows is put to it now.
+ */
+__attribute__((noinline)) static void take_commands(struct drive *drive)
 {
     struct command_queue *queue = &drive->commands;
     const uint32_t period = drive->supervision.period;
     uint32_t wait = COMMAND_QUEUE_NEVER;
+    uint32_t urgent_wait;
     const struct motion_plan *plan;
     struct queued_command *command;
 
     command_queue_look(queue, period);
-    synchronism_wait(drive);
+    synchronism_wait(drive, 1u);
     if (command_queue_take_urgent(queue, &queue->disable, period, &wait)) {
         disable(drive);
         return;
     }
-    if (command_queue_take_urgent(queue, &queue->stop, period, &wait)) {
+    if (command_queue_take_urgent(queue, &queue->stop, period + 1u, &wait)) {
         reference_stop(&drive->reference);
-        command_queue_stop_acted(queue, period);
-        command_queue_rest_if_empty(queue, period);
+        command_queue_stop_acted(queue, period + 1u);
+        command_queue_rest_if_empty(queue, period, wait);
         return;
     }
-    /* A move is loaded a period ahead: it begins with the period it is addressed to. */
+    urgent_wait = wait;
     command = command_queue_due(queue, period + 1u, &wait);
     if (command != NULL && obey(drive, command)) {
         command_queue_drop(queue);
-        command_queue_rest_if_empty(queue, period);
+        command_queue_rest_if_empty(queue, period, urgent_wait);
         return;
     }
-    plan = command_queue_take_over(queue, period, &wait);
+    plan = command_queue_take_over(queue, period + 1u, &wait);
     if (plan != NULL) {
         take_over(drive, plan);
     } else {
@@ -268,19 +273,21 @@ __attribute__((noinline)) static bool step_outside_operation(struct drive *drive
     return state_machine_powered(drive);
 }
 
-/* Enters the fault that the samples show, if any; true: they show none. Apart: rare. */
-__attribute__((noinline)) static bool samples_are_good(struct drive *drive,
-                                                       const struct hal_samples *samples)
+void state_machine_check_samples(struct drive *drive, const struct hal_samples *samples)
 {
     const enum drive_fault fault = protection_check_samples(&drive->params.protection, samples);
 
     state_machine_fault(drive, fault);
-    return fault == DRIVE_FAULT_NONE;
 }
 
-/* A command may be due, or the state is another than operation. */
-static inline __attribute__((always_inline)) bool
-step_with_commands(struct drive *drive, const struct hal_samples *samples)
+bool state_machine_obey(struct drive *drive, const struct hal_samples *samples)
+{
+    drive->encoder_count = samples->encoder_count;
+    take_commands(drive);
+    return drive->supervision.state == DRIVE_OPERATION_ENABLED;
+}
+
+bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
 {
     const bool was_powered = state_machine_powered(drive);
 
@@ -288,27 +295,11 @@ step_with_commands(struct drive *drive, const struct hal_samples *samples)
     if (command_queue_is_due(&drive->commands, drive->supervision.period)) {
         take_commands(drive);
     }
-    if (drive->supervision.state != DRIVE_OPERATION_ENABLED &&
-        !step_outside_operation(drive, samples)) {
+    if (!step_outside_operation(drive, samples)) {
         return false;
     }
     if (!was_powered) { /* it has only been reset; and a fault is entered at once */
-        (void)samples_are_good(drive, samples);
+        state_machine_check_samples(drive, samples);
     }
     return was_powered;
-}
-
-bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
-{
-    const uint32_t period = drive->supervision.period + 1u;
-
-    drive->supervision.period = period;
-    if (RARE(drive->supervision.state != DRIVE_OPERATION_ENABLED ||
-             command_queue_is_due(&drive->commands, period))) {
-        if (!step_with_commands(drive, samples)) {
-            return false;
-        }
-    }
-    return protection_passes(&drive->params.protection, samples) ||
-           samples_are_good(drive, samples);
 }

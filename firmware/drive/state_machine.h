@@ -14,19 +14,36 @@
 
 #include "firmware/drive/drive.h"
 
+/* First of all in a control interrupt; returns the index of the period. */
+static inline uint32_t state_machine_begin_period(struct drive *drive)
+{
+    const uint32_t period = drive->supervision.period + 1u;
+
+    drive->supervision.period = period;
+    return period;
+}
+
 /* The bridge is on and the control runs; finding-position has the bridge for itself. */
 static inline bool state_machine_powered(const struct drive *drive)
 {
-    return drive->supervision.state == DRIVE_ALIGNING ||
-           drive->supervision.state == DRIVE_OPERATION_ENABLED;
+    return drive->supervision.state == DRIVE_OPERATION_ENABLED ||
+           drive->supervision.state == DRIVE_ALIGNING;
 }
 
 /*
- * One period, first of all in a control interrupt: counts it, takes due commands, the steps of
- * enabling and the faults seen in the samples. true: the bridge was on before and stays on. The
- * period that powers up only resets the blocks, so that no interrupt pays for both.
+ * One period outside operation, behind the reference's step: takes due commands and the steps of
+ * enabling. true: the bridge was on before and stays on. The period that powers up only resets the
+ * blocks, so that no interrupt pays for both.
  */
-bool state_machine_step(struct drive *drive, const struct hal_samples *samples);
+__attribute__((noinline)) bool state_machine_step(struct drive *drive,
+                                                  const struct hal_samples *samples);
+
+/* In operation, when a command is due; true: it goes on. */
+bool state_machine_obey(struct drive *drive, const struct hal_samples *samples);
+
+/* Enters the fault that the samples show, if any. Apart: rare. */
+__attribute__((noinline)) void state_machine_check_samples(struct drive *drive,
+                                                           const struct hal_samples *samples);
 
 /* The steps of enabling behind finding-position: the rotor stands at this electrical angle. */
 void state_machine_position_found(struct drive *drive, angle_t angle);

@@ -43,6 +43,7 @@ enum step {
     JUDGE_FOLLOWING,
     JUDGE_GRIP,
     DOUBT,
+    FOLLOW,     /* with an encoder: all there is */
     UNMONITORED /* no block, ever */
 };
 
@@ -52,10 +53,15 @@ void synchronism_reset(struct drive *drive)
     drive->synchronism.shown = DRIVE_SYNCHRONISM_SURE;
     drive->synchronism.step = UNMONITORED;
     drive->synchronism.due = drive->supervision.period + NOT_YET;
+    following_error_reset(&drive->following);
 }
 
 void synchronism_start(struct drive *drive)
 {
+    if (drive->params.following.limit > NUM(0.0)) {
+        drive->synchronism.step = FOLLOW;
+        drive->synchronism.due = drive->supervision.period + drive->params.following.periods;
+    }
     if (drive->synchronism.monitored) {
         drive->synchronism.step = TAKE;
         drive->synchronism.due =
@@ -161,8 +167,21 @@ static enum drive_fault act(struct drive *drive, enum synchronism verdict)
     return verdict == SYNCHRONISM_LOST ? DRIVE_FAULT_LOST_SYNCHRONISM : DRIVE_FAULT_STALLED;
 }
 
+static enum drive_fault follow(struct drive *drive, const struct rotor *rotor)
+{
+    const bool exceeds =
+        following_error_exceeds(&drive->following, &drive->params.following, error_of(drive, rotor),
+                                drive->reference.now.speed - rotor->speed);
+
+    drive->synchronism.due = drive->supervision.period + drive->params.following.periods;
+    return exceeds ? DRIVE_FAULT_FOLLOWING_ERROR : DRIVE_FAULT_NONE;
+}
+
 enum drive_fault synchronism_watch(struct drive *drive)
 {
+    if (drive->synchronism.step == FOLLOW) {
+        return follow(drive, &drive->estimator.estimate.rotor);
+    }
     const enum synchronism verdict = step(drive, &drive->estimator.estimate.rotor);
 
     return verdict == SYNCHRONISM_SURE ? DRIVE_FAULT_NONE : act(drive, verdict);

@@ -1,4 +1,7 @@
-/* What comes of the synchronism monitor's verdicts in a drive: estimator/synchronism_monitor.h. */
+/*
+ * What comes of the synchronism monitor's verdicts in a drive: estimator/synchronism_monitor.h.
+ * With an encoder the following error is watched in its place: following_error.h.
+ */
 #ifndef STEADYSTEP_SYNCHRONISM_H
 #define STEADYSTEP_SYNCHRONISM_H
 
@@ -29,11 +32,14 @@ static inline bool synchronism_is_due(const struct drive *drive)
             !standstill_hold_leads_in(drive->supervision.period));
 }
 
-/* In a period in which commands are looked at, or a phase of the reference begins. */
-static inline void synchronism_wait(struct drive *drive)
+/* In a period in which commands are looked at (1), or a phase of the reference begins, which takes
+   its time in the next one, too (2). */
+static inline void synchronism_wait(struct drive *drive, uint32_t periods)
 {
-    if ((int32_t)(drive->supervision.period - drive->synchronism.due) >= 0) {
-        drive->synchronism.due = drive->supervision.period + 1u;
+    const uint32_t until = drive->supervision.period + periods;
+
+    if ((int32_t)(until - drive->synchronism.due) > 0) {
+        drive->synchronism.due = until;
     }
 }
 

@@ -82,6 +82,15 @@ static inline void estimator_preset_current(struct estimator *estimator,
 #undef ESTIMATOR_PRESET_CURRENT
 }
 
+/* The rotor is held from now on. Only this one distinguishes a hold from motion. */
+static inline void estimator_begin_hold(struct estimator *estimator,
+                                        const struct estimator_params *params)
+{
+    if (estimator_is(params, ESTIMATOR_INVARIANT_EKF)) {
+        invariant_ekf_settle(&estimator->invariant_ekf);
+    }
+}
+
 /* Only this one distinguishes them from others. */
 static inline void estimator_expect_load(struct estimator *estimator,
                                          const struct estimator_params *params)

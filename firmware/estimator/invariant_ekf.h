@@ -118,6 +118,13 @@ static inline void invariant_ekf_preset_current(struct invariant_ekf *ekf, struc
     ekf->estimate.current = current;
 }
 
+/* A hold begins, and with it the load it returns to: the one that was estimated in motion. */
+static inline void invariant_ekf_settle(struct invariant_ekf *ekf)
+{
+    ekf->settled_load = ekf->estimate.rotor.load_torque;
+    ekf->following_periods = 0u;
+}
+
 /* The first hold is over: what is left of its unloaded periods is. */
 static inline void invariant_ekf_expect_load(struct invariant_ekf *ekf)
 {

@@ -7,13 +7,6 @@
 
 #include "firmware/estimator/invariant_ekf.h"
 
-/* The load a hold begins with is the one that was estimated in motion. */
-static inline void invariant_ekf_settle(struct invariant_ekf *ekf)
-{
-    ekf->settled_load = ekf->estimate.rotor.load_torque;
-    ekf->following_periods = 0;
-}
-
 /* Corrections that differ between motion and hold. */
 struct invariant_ekf_correction {
     num_t turns;  /* of the angle */
@@ -167,9 +160,7 @@ invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_params 
         invariant_ekf_correct(ekf, params, gain, current, surprise, holding);
 
     ekf->innovation_sum = num_add_around(ekf->innovation_sum, innovation.d);
-    if (!RARE(holding)) {
-        invariant_ekf_settle(ekf);
-    } else if (!*hold.leads) { /* a led rotor's lag behind its frame shows in nu_d, too */
+    if (RARE(holding) && !*hold.leads) { /* a led rotor's lag behind its frame shows in nu_d, too */
         invariant_ekf_adapt_resistance(ekf, params, gain, innovation.d);
     }
     return invariant_ekf_look_ahead(ekf, params, in_force);

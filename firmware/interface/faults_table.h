@@ -49,6 +49,10 @@
     FAULT(PHASE_IMBALANCE, 0xff02, "phase-imbalance",                                              \
           "the phases differ by more than 15 %, or one of them carries no current", NO_LIMIT,      \
           "check both leads of each phase, that its resistance is the other's, and the current "   \
-          "sensors")
+          "sensors")                                                                               \
+    FAULT(FOLLOWING_ERROR, 0x8600, "following-error", "the rotor was off its reference by",        \
+          LIMIT(following_error_rad),                                                              \
+          "free the axis, reduce the load or move more gently; check that the encoder counts, "    \
+          "each turn all its counts, and in the rotor's direction")
 
 #endif

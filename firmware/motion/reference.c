@@ -28,6 +28,7 @@ static void place(struct reference *r, struct position position)
 {
     r->at.turns = position.turns;
     r->at.fraction = (uint64_t)position.fraction << 32;
+    r->next.position = position;
 }
 
 void reference_reset(struct reference *r, struct position position)
@@ -43,6 +44,7 @@ void reference_reset(struct reference *r, struct position position)
     r->jerks = false;
     r->jerk = 0;
     r->jerk_sixth = 0;
+    r->course = REFERENCE_TURNS;
     r->epoch++;
     place(r, position);
 }
@@ -54,21 +56,23 @@ bool reference_load(struct reference *r, struct profile *profile)
         return false;
     }
     r->profile = profile;
-    r->phase = REFERENCE_QUEUED;
+    r->phase = REFERENCE_LOADED;
     r->at.speed = profile->rounding_speed;
     r->creeps = profile->creeps;
     r->stopped = false;
+    r->course = REFERENCE_TURNS;
     return true;
 }
 
 void reference_stop(struct reference *r)
 {
-    if (r->phase == REFERENCE_QUEUED || r->phase == REFERENCE_LOADED) {
+    if (r->phase == REFERENCE_LOADED) {
         r->phase = REFERENCE_REST;
         r->at.speed = 0;
         r->next.speed = NUM(0.0);
     }
     r->stop_requested = r->phase != REFERENCE_REST;
+    r->course = REFERENCE_TURNS;
 }
 
 /*
@@ -179,32 +183,52 @@ __attribute__((noinline)) static void begin_next_segment(struct reference *r)
     r->jerk = 2 * segment->jerk_sixth + 4 * segment->jerk_sixth; /* no library call on a M0+ */
 }
 
-/* Begins the first phase of the profile behind the one that has ended which has a length. */
-static inline __attribute__((always_inline)) void begin_next_phase_of_profile(struct reference *r)
+/* From the begin to the cruise; false: none of these phases has a length. */
+static inline __attribute__((always_inline)) bool begin_ramp_up(struct reference *r)
 {
     const struct profile *profile = r->profile;
     const enum reference_phase ended = r->phase;
-    const bool ramped = profile->acceleration_periods > 0u;
     const bool smooth = profile->jerk_periods > 0u;
 
     if (ended < REFERENCE_JERK_TO_ACCELERATE && smooth) {
         r->at.acceleration = 0;
         begin_jerk(r, REFERENCE_JERK_TO_ACCELERATE, profile->jerk, profile->jerk_sixth);
-    } else if (ended < REFERENCE_ACCELERATE && ramped) {
+    } else if (ended < REFERENCE_ACCELERATE && profile->acceleration_periods > 0u) {
         begin(r, REFERENCE_ACCELERATE, profile->acceleration_periods, profile->acceleration);
     } else if (ended < REFERENCE_JERK_TO_CRUISE && smooth) {
         begin_jerk(r, REFERENCE_JERK_TO_CRUISE, -profile->jerk, -profile->jerk_sixth);
-    } else if (ended < REFERENCE_CRUISE && profile->cruise_periods > 0u) {
+    } else if (profile->cruise_periods > 0u) {
         begin(r, REFERENCE_CRUISE, profile->cruise_periods, 0);
-    } else if (ended < REFERENCE_JERK_TO_DECELERATE && smooth) {
+    } else {
+        return false;
+    }
+    return true;
+}
+
+/* From the cruise to rest. */
+static inline __attribute__((always_inline)) void begin_ramp_down(struct reference *r)
+{
+    const struct profile *profile = r->profile;
+    const enum reference_phase ended = r->phase;
+    const bool smooth = profile->jerk_periods > 0u;
+
+    if (ended < REFERENCE_JERK_TO_DECELERATE && smooth) {
         begin_jerk(r, REFERENCE_JERK_TO_DECELERATE, -profile->jerk, -profile->jerk_sixth);
-    } else if (ended < REFERENCE_DECELERATE && ramped) {
+    } else if (ended < REFERENCE_DECELERATE && profile->acceleration_periods > 0u) {
         begin(r, REFERENCE_DECELERATE, profile->acceleration_periods, -profile->acceleration);
     } else if (ended < REFERENCE_JERK_TO_REST && smooth) {
         begin_jerk(r, REFERENCE_JERK_TO_REST, profile->jerk, profile->jerk_sixth);
     } else {
         come_to_rest(r);
         r->slow_periods = ended == REFERENCE_LOADED ? 0u : r->slow_periods; /* a step */
+    }
+}
+
+/* Begins the first phase of the profile behind the one that has ended which has a length. */
+static inline __attribute__((always_inline)) void begin_next_phase_of_profile(struct reference *r)
+{
+    if (r->phase >= REFERENCE_CRUISE || !begin_ramp_up(r)) {
+        begin_ramp_down(r);
     }
 }
 
@@ -233,6 +257,7 @@ bool reference_take_over(struct reference *r, const struct motion_plan *plan)
     r->continuation = NULL;
     r->phase = REFERENCE_PLANNED;
     r->periods_left = r->periods_left > 0u ? 1u : 0u;
+    r->course = REFERENCE_TURNS;
     return true;
 }
 
@@ -254,18 +279,75 @@ void reference_skip(struct reference *r, uint32_t periods)
         } else {
             periods--;
         }
-        if (r->phase == REFERENCE_QUEUED) {
-            r->phase = REFERENCE_LOADED;
-        } else if (r->periods_left == 0u) {
+        if (r->periods_left == 0u) {
             begin_next_phase(r);
         }
     }
 }
 
-void reference_turn(struct reference *r, const struct reference_params *params)
+/* Creeps: with a rotor that is held, its ramps too, in motion the cruise alone. */
+static bool is_slow(const struct reference *r, const struct reference_params *params, bool held)
 {
-    if (r->periods_left > 0u) {
+    const struct reference_sample *sample = &r->next;
+
+    return !sample->moving ||
+           (r->creeps && num_abs(sample->speed) < params->creep_speed &&
+            num_abs(sample->acceleration) <= (held ? params->creep_acceleration : NUM(0.0)));
+}
+
+/* Of the steps that follow. */
+static enum reference_course course_of(const struct reference *r)
+{
+    if (r->phase == REFERENCE_REST) {
+        return REFERENCE_STILL;
+    }
+    if (r->creeps) {
+        return REFERENCE_TURNS;
+    }
+    return r->jerks ? REFERENCE_JERKS : REFERENCE_STEADY;
+}
+
+static inline void advance(struct reference *r)
+{
+    if (r->jerks) {
         reference_advance_with_jerk(r);
+    } else {
+        reference_advance(r);
+    }
+}
+
+/* Rests, creeps, or is in the first period of a phase. */
+static bool go_on(struct reference *r, const struct reference_params *params)
+{
+    if (r->phase != REFERENCE_REST) {
+        advance(r);
+        reference_show(r, params);
+        reference_show_acceleration(r, params);
+    }
+    r->course = course_of(r);
+    return false;
+}
+
+static bool begins(const struct reference *r)
+{
+    return (r->periods_left <= 1u || r->stop_requested) && r->phase != REFERENCE_REST;
+}
+
+bool reference_turn(struct reference *r, const struct reference_params *params, bool held)
+{
+    if (is_slow(r, params, held)) {
+        reference_count_slow(r);
+    } else {
+        r->slow_periods = 0u;
+    }
+    reference_pass(r);
+    reference_pass_acceleration(r);
+    r->now.moving = r->next.moving;
+    if (!begins(r)) {
+        return go_on(r, params);
+    }
+    if (r->periods_left > 0u) {
+        advance(r);
     }
     if (r->periods_left == 0u) {
         begin_next_phase(r);
@@ -273,6 +355,8 @@ void reference_turn(struct reference *r, const struct reference_params *params)
         cut_short(r);
         r->stop_requested = false;
     }
+    r->course = REFERENCE_TURNS;
     reference_show(r, params);
     reference_show_acceleration(r, params);
+    return true;
 }

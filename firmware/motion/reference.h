@@ -8,10 +8,10 @@
  * cut short by itself, and plans (motion_plan.h), which the background makes, continues and stops.
  *
  * The drive computes at S(k) what acts from S(k+1) on, so each step gives the reference of S(k+1).
- * A profile loaded at S(k) begins at S(k+2): loading it and beginning its first phase are spread
- * over two interrupts. A stop asked for at S(k) takes effect from S(k+2) on for the same reason,
- * and a period later where a phase of the profile begins at S(k+1). Where the acceleration jumps, a
- * sample shows its value behind the jump.
+ * What is asked of it is asked behind a step, for the next one: a profile loaded at S(k) begins at
+ * S(k+2), and a stop asked for at S(k) takes effect from S(k+3) on, a period later where a phase of
+ * the profile begins at S(k+2). Where the acceleration jumps, a sample shows its value behind the
+ * jump.
  */
 #ifndef STEADYSTEP_REFERENCE_H
 #define STEADYSTEP_REFERENCE_H
@@ -19,6 +19,7 @@
 #include "firmware/motion/motion_plan.h"
 #include "firmware/motion/profile.h"
 #include "firmware/motor/per_unit.h"
+#include "firmware/simulation.h"
 
 /* Acceleration is shown through 32 bits of 2^-38 turn; profile_plan keeps it below 2^31 of them. */
 #define REFERENCE_ACCELERATION_SHIFT 26
@@ -43,8 +44,7 @@ struct reference_sample {
 
 /* Phases of a profile, in order; those of no length are passed over. */
 enum reference_phase {
-    REFERENCE_QUEUED, /* loaded in this interrupt; begins in the next */
-    REFERENCE_LOADED,
+    REFERENCE_LOADED, /* begins with the next step */
     REFERENCE_JERK_TO_ACCELERATE,
     REFERENCE_ACCELERATE,
     REFERENCE_JERK_TO_CRUISE,
@@ -56,7 +56,16 @@ enum reference_phase {
     REFERENCE_REST
 };
 
+/* What a step has to do. Chosen anew by each that does not just go on. */
+enum reference_course {
+    REFERENCE_TURNS, /* a phase begins or ends, it creeps, or something has been asked for */
+    REFERENCE_STILL,
+    REFERENCE_STEADY, /* a phase of constant acceleration */
+    REFERENCE_JERKS
+};
+
 struct reference {
+    enum reference_course course;
     struct reference_sample now;  /* at S(k) */
     struct reference_sample next; /* at S(k+1) */
     uint32_t slow_periods;        /* since it came to rest or to creep, at S(k); saturates */
@@ -113,13 +122,6 @@ static inline bool reference_busy(const struct reference *reference)
     return reference->phase != REFERENCE_REST;
 }
 
-/* The coming step begins no phase and no stop: it is a short one. */
-static inline bool reference_goes_on(const struct reference *reference)
-{
-    return (reference->periods_left > 1u && !reference->stop_requested) ||
-           reference->phase == REFERENCE_REST;
-}
-
 /*
  * Takes a planned profile over, without copying it: it must live until the reference rests, and a
  * stop changes it. Refused (false) while another one runs or if it does not start where the
@@ -159,25 +161,30 @@ static inline void reference_count_as_slow(struct reference *reference)
     reference->slow_periods = UINT32_MAX;
 }
 
-/* The rest of a step that begins a phase or a stop. */
-void reference_turn(struct reference *reference, const struct reference_params *params);
+/* The rest of a step that does not just go on. `held`: the rotor is, and stays so while the
+   reference creeps. true: a phase or a stop has begun. */
+bool reference_turn(struct reference *reference, const struct reference_params *params, bool held);
 
 static inline void reference_travel(struct reference *r, int64_t travel)
 {
-    const uint64_t fraction = r->at.fraction + (uint64_t)travel;
+    const uint64_t begun_at = r->at.fraction;
+    const uint64_t fraction = begun_at + (uint64_t)travel;
+    const int32_t turns = r->at.turns + (int32_t)(travel >> 63) + (fraction < begun_at ? 1 : 0);
 
-    r->at.turns += (int32_t)(travel >> 63) + (fraction < r->at.fraction ? 1 : 0);
-    r->at.fraction = fraction;
     r->periods_left--;
+    r->at.turns = turns;
+    r->at.fraction = fraction;
+    r->next.position = (struct position){turns, (angle_t)(fraction >> 32)};
 }
 
 /* Through a phase without jerk. */
 static inline void reference_advance(struct reference *r)
 {
-    const int64_t travel = r->at.speed + (r->at.acceleration >> 1);
+    const int64_t speed = r->at.speed;
+    const int64_t acceleration = r->at.acceleration;
 
-    r->at.speed += r->at.acceleration;
-    reference_travel(r, travel);
+    r->at.speed = speed + acceleration;
+    reference_travel(r, speed + (acceleration >> 1));
 }
 
 static inline void reference_advance_with_jerk(struct reference *r)
@@ -194,8 +201,6 @@ static inline void reference_show(struct reference *r, const struct reference_pa
 {
     const num_t speed = turns_from_angle((int32_t)(r->at.speed >> 32));
 
-    r->next.position.turns = r->at.turns;
-    r->next.position.fraction = (angle_t)(r->at.fraction >> 32);
     r->next.speed = num_mul_coef_fine(speed, params->speed, params->speed_remainder);
 }
 
@@ -209,59 +214,61 @@ static inline void reference_show_acceleration(struct reference *r,
     r->next.acceleration = num_mul_coef(acceleration, params->acceleration);
 }
 
-/* Rests or creeps: with a rotor that is held, its ramps too, in motion the cruise alone. */
-static inline bool reference_is_slow(const struct reference *r,
-                                     const struct reference_params *params, bool held)
+static inline void reference_count_slow(struct reference *r)
 {
-    const struct reference_sample *sample = &r->next;
-
-    return !sample->moving ||
-           (RARE(r->creeps) && num_abs(sample->speed) < params->creep_speed &&
-            num_abs(sample->acceleration) <= (held ? params->creep_acceleration : NUM(0.0)));
-}
-
-static inline void reference_count_slow(struct reference *r, const struct reference_params *params,
-                                        bool held)
-{
-    if (!reference_is_slow(r, params, held)) {
-        r->slow_periods = 0u;
-    } else if (r->slow_periods < UINT32_MAX) {
+    if (r->slow_periods < UINT32_MAX) {
         r->slow_periods++;
     }
 }
 
-/* Not in the middle of a phase. A profile that has been loaded rests for a period more. */
-static inline bool reference_begins(struct reference *r)
+/* What was to come is now. */
+static inline void reference_pass(struct reference *r)
 {
-    if (r->phase == REFERENCE_QUEUED) {
-        r->phase = REFERENCE_LOADED;
-        return false;
-    }
-    return r->phase != REFERENCE_REST;
+    r->now.position.turns = r->next.position.turns;
+    r->now.position.fraction = r->next.position.fraction;
+    r->now.speed = r->next.speed;
 }
 
-/* One control period on; `held`: the rotor is, and stays so while the reference creeps. true: a
-   phase or a stop begins, reference_turn is to follow. */
-static inline bool reference_step(struct reference *r, const struct reference_params *params,
-                                  bool held)
+/* Of the sample what changes in a phase with jerk alone. Only a simulation asks for the present
+   acceleration. */
+static inline void reference_pass_acceleration(struct reference *r)
 {
-    reference_count_slow(r, params, held);
-    r->now.position.turns = r->at.turns;
-    r->now.position.fraction = (angle_t)(r->at.fraction >> 32);
-    r->now.speed = r->next.speed;
-    r->now.acceleration = r->next.acceleration;
-    r->now.moving = r->next.moving;
-    if (RARE(r->periods_left <= 1u || r->stop_requested)) {
-        return reference_begins(r);
+    if (SERVES_SIMULATION) {
+        r->now.acceleration = r->next.acceleration;
     }
-    if (RARE(r->jerks)) {
+}
+
+/* One control period at rest; false: it does not rest, or has only just begun to. */
+static inline bool reference_keeps_still(struct reference *r)
+{
+    if (r->course != REFERENCE_STILL) {
+        return false;
+    }
+    reference_count_slow(r);
+    return true;
+}
+
+/* One control period on; false: it does not just go on, reference_turn is to follow. */
+static inline bool reference_step(struct reference *r, const struct reference_params *params)
+{
+    const enum reference_course course = r->course;
+
+    if (reference_keeps_still(r)) {
+        return true;
+    }
+    if (RARE(course == REFERENCE_TURNS || r->periods_left <= 1u)) {
+        return false;
+    }
+    reference_pass(r);
+    if (RARE(course == REFERENCE_JERKS)) {
+        reference_pass_acceleration(r);
         reference_advance_with_jerk(r);
         reference_show_acceleration(r, params);
     } else {
         reference_advance(r);
     }
     reference_show(r, params);
-    return false;
+    return true;
 }
 
 #endif

@@ -275,4 +275,9 @@ void Plant::add_noise(Channel channel, double rms)
     parts_->sensors.add_noise(channel, rms);
 }
 
+void Plant::set_encoder(EncoderCondition condition)
+{
+    parts_->sensors.set_encoder(condition, state_.theta_rad);
+}
+
 } // namespace plant

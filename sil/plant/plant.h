@@ -118,6 +118,14 @@ struct State {
     double torque_Nm = 0, load_torque_Nm = 0, bus_V = 0;
 };
 
+/* What an incremental encoder makes of its rotor's motion. */
+enum class EncoderCondition {
+    sound,
+    frozen,   /* no edge comes: a broken cable, a loose disc */
+    reversed, /* its channels are exchanged */
+    half      /* counts half of what passes: one channel of two */
+};
+
 /* Energy bookkeeping since the start, J: supplied = the sum of the others, to 1e-6 of it. All 0
    without Config::track_energy. */
 struct Energy {
@@ -168,11 +176,12 @@ class Plant
     /* Friction beside the motor's own; 0 frees the rotor, held_Nm stops it within this S(k). */
     static constexpr double held_Nm = 1e9;
     void jam(double torque_Nm);
-    void open_phase(int phase, bool open);       /* 0 a, 1 b: a lead of the winding is broken */
-    void stick(Channel channel);                 /* at the code of the present samples */
-    void stick(Channel channel, int code);       /* at this one */
-    void release(Channel channel);               /* sticks no more */
-    void add_noise(Channel channel, double rms); /* Gaussian, in codes, beside the channel's own */
+    void open_phase(int phase, bool open);        /* 0 a, 1 b: a lead of the winding is broken */
+    void stick(Channel channel);                  /* at the code of the present samples */
+    void stick(Channel channel, int code);        /* at this one */
+    void release(Channel channel);                /* sticks no more */
+    void add_noise(Channel channel, double rms);  /* Gaussian, in codes, beside the channel's own */
+    void set_encoder(EncoderCondition condition); /* its count goes on from where it is */
 
   private:
     struct Parts; /* motor, bridge, sensors */

@@ -140,7 +140,7 @@ void Sensors::set(const SensorConfig &config)
         config.encoder_eccentricity_rad * unit_vector(config.encoder_phase_rad)[1];
 }
 
-std::int32_t Sensors::encoder_count(double theta_rad) const
+std::int32_t Sensors::encoder_edges(double theta_rad) const
 {
     double seen_rad = theta_rad;
     if (config_.encoder_eccentricity_rad != 0.0) {
@@ -155,6 +155,38 @@ std::int32_t Sensors::encoder_count(double theta_rad) const
     const std::int64_t towards_zero = static_cast<std::int64_t>(clamped);
     const std::int64_t whole = towards_zero - (static_cast<double>(towards_zero) > clamped ? 1 : 0);
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(whole));
+}
+
+/* Wraps as its edges do. */
+std::int32_t Sensors::encoder_count(double theta_rad) const
+{
+    const auto from = static_cast<std::uint32_t>(encoder_.edges);
+    const auto passed =
+        static_cast<std::int32_t>(static_cast<std::uint32_t>(encoder_edges(theta_rad)) - from);
+    std::uint32_t counted = 0;
+    switch (encoder_.condition) {
+    case EncoderCondition::sound:
+        counted = static_cast<std::uint32_t>(passed);
+        break;
+    case EncoderCondition::frozen:
+        break;
+    case EncoderCondition::reversed:
+        counted = 0u - static_cast<std::uint32_t>(passed);
+        break;
+    case EncoderCondition::half:
+        counted = static_cast<std::uint32_t>(passed / 2);
+        break;
+    }
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(encoder_.count) + counted);
+}
+
+void Sensors::set_encoder(EncoderCondition condition, double theta_rad)
+{
+    require(config_.encoder_counts_per_turn > 0, "encoder_counts_per_turn",
+            config_.encoder_counts_per_turn, "1 at least: without an encoder none can fail");
+    encoder_.count = encoder_count(theta_rad);
+    encoder_.edges = encoder_edges(theta_rad);
+    encoder_.condition = condition;
 }
 
 Samples Sensors::sample(std::uint64_t period, const True &now) const

@@ -1,6 +1,7 @@
 /*
  * From true values to the codes of the converters: offset, Gaussian noise, 12 bits, saturation. A
- * faulty converter sticks at a code, or has more noise than its kind.
+ * faulty converter sticks at a code, or has more noise than its kind; a faulty encoder's count goes
+ * another way than its rotor.
  * Rounding is to the nearest code, ties upwards; codes clamp at the ends of their range. An encoder
  * counts whole steps: the floor of the angle.
  */
@@ -43,6 +44,7 @@ class Sensors
     void stick(Channel channel, int code);
     void release(Channel channel);
     void add_noise(Channel channel, double rms_codes);
+    void set_encoder(EncoderCondition condition, double theta_rad); /* from this angle on */
 
     /* At S(period); phase_voltage_V: mean over the period that ends there, in which the bridge
        was on or off. */
@@ -51,6 +53,7 @@ class Sensors
   private:
     void apply_faults(Samples &samples, std::uint64_t period) const;
     void write(Samples &samples, Channel channel, int code) const;
+    std::int32_t encoder_edges(double theta_rad) const;
     std::int32_t encoder_count(double theta_rad) const;
 
     SensorConfig config_;
@@ -67,6 +70,11 @@ class Sensors
         double noise_rms = 0.0;
     };
     Fault faults_[channels];
+    struct Encoder {
+        EncoderCondition condition = EncoderCondition::sound;
+        std::int32_t edges = 0, count = 0; /* where it came into this condition */
+    };
+    Encoder encoder_;
     bool faulty_ = false;
 };
 

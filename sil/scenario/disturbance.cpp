@@ -115,6 +115,15 @@ PlantFault read_noisy_adc(TableReader &event)
     return [channel, rms](plant::Plant &plant) { plant.add_noise(channel, rms); };
 }
 
+PlantFault read_encoder(TableReader &event)
+{
+    std::size_t condition = 0;
+    event.choice("encoder", condition, {"sound", "frozen", "reversed", "half"});
+    return [condition = static_cast<plant::EncoderCondition>(condition)](plant::Plant &plant) {
+        plant.set_encoder(condition);
+    };
+}
+
 struct FaultReader {
     const char *name;
     PlantFault (*read)(TableReader &event);
@@ -125,6 +134,7 @@ constexpr FaultReader fault_readers[] = {
     {"open_phase", read_open_phase},
     {"stuck_adc", read_stuck_adc},
     {"noisy_adc", read_noisy_adc},
+    {"encoder", read_encoder},
 };
 
 } // namespace

@@ -202,6 +202,8 @@ static inline void replay_settings(const struct replay_case *which, struct drive
     settings->hold_on_enable_s = 0.030;
     settings->balance_phases = false;    /* takes 0.18 s */
     settings->encoder_zero_known = true; /* aligning takes longer than this hold */
+    if (which->law != POSITION_LAW_MICROSTEPPING)
+        settings->following_error_rad = 100.0; /* watched; the reversal is too fast for some laws */
     if (which->speed_limit_rad_s > 0.0)
         settings->speed_limit_rad_s = which->speed_limit_rad_s;
     for (int k = 0; k < (int)REPLAY_GAINS; ++k)

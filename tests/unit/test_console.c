@@ -188,8 +188,9 @@ static void test_set_points_are_a_stream(void)
             "ok set-point at=36\n");
     bench_periods(10);
     answers("set-point 0.002", "ok set-point at=46\n");
-    bench_periods(19);
-    TEST_ASSERT_FALSE(reference_busy(&drive->reference)); /* in period 45: the second counts */
+    bench_periods(18);
+    TEST_ASSERT_FALSE(reference_busy(&drive->reference)); /* behind period 45, for the next one: the
+                                                             second counts */
     bench_periods(1);
     TEST_ASSERT_TRUE(reference_busy(&drive->reference));
     answers("store", "error: store refused: writing takes longer");

@@ -42,8 +42,8 @@ void tearDown(void)
 
 static void step(void)
 {
-    if (reference_step(&reference, &params, false)) {
-        reference_turn(&reference, &params);
+    if (!reference_step(&reference, &params)) {
+        (void)reference_turn(&reference, &params, false);
     }
 }
 

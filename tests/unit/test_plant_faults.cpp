@@ -407,10 +407,44 @@ void test_nonsense_is_refused_by_name()
     is_refused("0...4095", [&] { plant.stick(plant::Channel::bus_voltage, -1); });
     is_refused("noise_codes", [&] { plant.add_noise(plant::Channel::current_a, -1.0); });
     is_refused("bus_V", [&] { plant.set_bus(0.0); });
+    is_refused("encoder_counts_per_turn",
+               [&] { plant.set_encoder(plant::EncoderCondition::frozen); });
     is_refused("brake_V", [&] { plant.set_bus(30.0); });
     is_refused("coulomb_friction", [&] { plant.set_coulomb_friction(0.1); });
     config.imperfections.phase_voltage_filter_s = 1.0;
     is_refused("phase_voltage_filter_s", [&] { plant::Plant refused(config); });
+}
+
+void test_the_count_of_a_faulty_encoder_goes_on_from_where_it_was()
+{
+    using Condition = plant::EncoderCondition;
+    plant::Config config = coasting(bench::config());
+    config.sensors.encoder_counts_per_turn = 4000;
+    plant::Plant sound(config), faulty(config);
+    const auto turn_for = [&](int periods) {
+        const std::int32_t sound_before = sound.samples().encoder_count;
+        const std::int32_t faulty_before = faulty.samples().encoder_count;
+        for (int k = 0; k < periods; k++) {
+            sound.step({});
+            faulty.step({});
+        }
+        return std::pair{sound.samples().encoder_count - sound_before,
+                         faulty.samples().encoder_count - faulty_before};
+    };
+    const auto [moved, seen] = turn_for(500);
+    TEST_ASSERT_GREATER_THAN_INT(20, moved);
+    TEST_ASSERT_EQUAL_INT32(moved, seen);
+    faulty.set_encoder(Condition::frozen);
+    TEST_ASSERT_EQUAL_INT32(0, turn_for(100).second);
+    faulty.set_encoder(Condition::reversed);
+    const auto [forwards, backwards] = turn_for(100);
+    TEST_ASSERT_EQUAL_INT32(-forwards, backwards);
+    faulty.set_encoder(Condition::half);
+    const auto [all, half] = turn_for(100);
+    TEST_ASSERT_EQUAL_INT32(all / 2, half);
+    faulty.set_encoder(Condition::sound);
+    const auto [again, right] = turn_for(100);
+    TEST_ASSERT_EQUAL_INT32(again, right);
 }
 
 } // namespace
@@ -436,6 +470,7 @@ int main()
     RUN_TEST(test_the_filter_takes_every_edge_of_a_switched_bridge);
     RUN_TEST(test_the_filter_shifts_and_reduces_a_sine);
     RUN_TEST(test_the_filter_loses_no_voltage_over_time);
+    RUN_TEST(test_the_count_of_a_faulty_encoder_goes_on_from_where_it_was);
     RUN_TEST(test_nonsense_is_refused_by_name);
     return UNITY_END();
 }

@@ -336,10 +336,18 @@ static void test_names_are_spelt_as_scenarios_and_the_serial_line_do(void)
     static const char *const states[DRIVE_STATES] = {"switch-on-disabled", "calibrating-offsets",
                                                      "finding-position",   "aligning",
                                                      "operation-enabled",  "fault"};
-    static const char *const faults[DRIVE_FAULTS] = {
-        "none",           "overcurrent",  "hardware-overcurrent", "deadline-missed",  "bus-voltage",
-        "estimate-range", "offset-range", "position-not-found",   "lost-synchronism", "stalled",
-        "phase-imbalance"};
+    static const char *const faults[DRIVE_FAULTS] = {"none",
+                                                     "overcurrent",
+                                                     "hardware-overcurrent",
+                                                     "deadline-missed",
+                                                     "bus-voltage",
+                                                     "estimate-range",
+                                                     "offset-range",
+                                                     "position-not-found",
+                                                     "lost-synchronism",
+                                                     "stalled",
+                                                     "phase-imbalance",
+                                                     "following-error"};
 
     for (int i = 0; i < DRIVE_STATES; i++) {
         TEST_ASSERT_EQUAL_STRING(states[i], drive_state_name((enum drive_state)i));

@@ -38,9 +38,9 @@ void tearDown(void)
 /* One period, as the control interrupt has it. */
 static void step(uint32_t rest_periods, double error_electrical_deg, double speed_rad_s)
 {
-    (void)standstill_hold_step(&hold, &params);
-    if (!hold.active) {
-        standstill_hold_consider(&hold, &params, reference, rest_periods,
+    (void)standstill_hold_step(&hold, &params, hold.active ? hold.current : params.motion_current);
+    if (!hold.active && standstill_hold_waits(&params, rest_periods)) {
+        standstill_hold_consider(&hold, &params, reference,
                                  num_from_double(error_electrical_deg / 360.0),
                                  num_from_double(speed_rad_s / base.speed_rad_s));
     }
@@ -61,13 +61,14 @@ static void hold_with_full_current(void)
 
 static void test_the_hold_begins_when_the_reference_has_rested_for_its_delay(void)
 {
-    for (uint32_t k = 0; k <= DELAY_PERIODS; k++) {
+    for (uint32_t k = 0; k < DELAY_PERIODS; k++) {
         step(k, 0.0, 0.0);
         TEST_ASSERT_FALSE(hold.active);
         TEST_ASSERT_TRUE(hold.i_d == NUM(0.0));
     }
-    step(RESTING, 0.0, 0.0);
-    TEST_ASSERT_TRUE(hold.active);
+    step(DELAY_PERIODS, 0.0, 0.0);
+    TEST_ASSERT_TRUE(hold.active); /* from the next period on */
+    TEST_ASSERT_TRUE(hold.i_d == NUM(0.0));
 }
 
 /* 18 degrees electrical, from either side. */
