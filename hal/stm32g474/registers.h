@@ -137,6 +137,7 @@ struct flash_registers {
 #define FLASH_CR_STRT            BIT(16)
 #define FLASH_CR_LOCK            BIT(31)
 #define FLASH_ECCR_BK_ECC        BIT(21)
+#define FLASH_ECCR_ECCC          BIT(30)
 #define FLASH_ECCR_ECCD          BIT(31)
 #define FLASH_OPTR_BFB2          BIT(20)
 #define FLASH_OPTR_DBANK         BIT(22)

@@ -628,6 +628,12 @@ MUTANTS = [
            "feedback_brings_its_law_and_an_encoder_its_counts",
            "drive_settings_select_feedback(settings, (enum drive_feedback)(int)value);",
            "setting_put(settings, setting, element, value);"),
+    Mutant(DRIVE + "record_log.c", "parameter_store",
+           "a_page_that_is_worn_out_leaves_the_other",
+           " ||\n        begin_page(board, log, slot, newest.page, &worn)", ""),
+    Mutant(DRIVE + "record_log.c", "parameter_store",
+           "a_page_whose_first_word_is_worn_out_is_used_behind_it",
+           "enum { ATTEMPTS = 3 };", "enum { ATTEMPTS = 1 };"),
     # ---- synchronism ----
     Mutant(ESTIMATOR + "synchronism_monitor.c", "synchronism_monitor",
            "the_voltage_allowed_grows_with_a_quarter_of_the_back_emf",
