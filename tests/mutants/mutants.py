@@ -338,7 +338,7 @@ MUTANTS = [
            "(int32_t)(p->set_points_at - command->at_period) > 0", "false"),
     Mutant(DRIVE + "record_log.c", "parameter_store",
            "the_supply_may_fail_at_any_byte_of_any_saving",
-           "page = (page + 1u) % RECORD_LOG_PAGES;", ""),
+           "(newest.page + 1u) % RECORD_LOG_PAGES;", "newest.page;"),
     Mutant(DRIVE + "record_log.c", "parameter_store", "the_last_of_many_savings_counts",
            "newer(sequence, newest.sequence)", "newer(newest.sequence, sequence)"),
     Mutant(DRIVE + "record_log.c", "parameter_store", "a_flipped_bit_makes_a_record_void",
