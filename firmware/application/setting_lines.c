@@ -348,21 +348,31 @@ static bool obey_set(struct application *application, const struct command_line 
 
 static bool store(struct application *application, struct text *answer)
 {
+    const struct text empty = *answer;
     const struct drive_command learned = {.kind = DRIVE_COMMAND_STORE};
     struct drive *drive = &application->drive;
     char refusal[DRIVE_ERROR_TEXT];
 
+    text_put(answer, "error: ");
     if (!drive_settings_check(&application->chosen, refusal) ||
         !drive_command(drive, &learned, refusal)) {
         text_put(answer, refusal);
         return false;
     }
     drive_feed_watchdog(drive); /* one of the two may have erased a page, the other may, too */
-    if (!settings_record_write(&application->board, &application->chosen)) {
+    switch (settings_record_write(&application->board, &application->chosen)) {
+    case RECORD_WRITTEN:
+        *answer = empty;
+        text_put(answer, "ok store");
+        return true;
+    case RECORD_WRITTEN_ELSEWHERE:
+        *answer = empty;
+        text_put(answer, "ok store; where it was to go the store is worn out");
+        return true;
+    default:
         text_put(answer, "the board has no parameter store, or refused to write");
         return false;
     }
-    return true;
 }
 
 bool setting_line_obey(struct application *application, const struct command_line *line,
@@ -376,9 +386,11 @@ bool setting_line_obey(struct application *application, const struct command_lin
     if (line->form->action == LINE_SET) {
         return obey_set(application, line, answer);
     }
+    if (line->form->action == LINE_STORE) {
+        return store(application, answer);
+    }
     text_put(answer, "error: ");
-    if (!(line->form->action == LINE_STORE ? store(application, answer)
-                                           : restore_defaults(application, answer))) {
+    if (!restore_defaults(application, answer)) {
         return false;
     }
     *answer = empty;

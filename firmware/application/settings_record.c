@@ -145,7 +145,8 @@ bool settings_record_read(const struct hal *board, struct drive_settings *settin
            decode(settings, &slot[RECORD_HEADER_BYTES]);
 }
 
-bool settings_record_write(const struct hal *board, const struct drive_settings *settings)
+enum record_writing settings_record_write(const struct hal *board,
+                                          const struct drive_settings *settings)
 {
     uint8_t slot[RECORD_SLOT_BYTES(SETTINGS_RECORD_PAYLOAD)];
 

@@ -41,9 +41,9 @@ bool settings_record_decode(struct drive_settings *settings,
 /* The newest record in the board's store. false: there is none; `settings` is not touched. */
 bool settings_record_read(const struct hal *board, struct drive_settings *settings);
 
-/* Background, up to 35 ms. false: the board has no store, or refused to write; the record before
-   remains. */
-bool settings_record_write(const struct hal *board, const struct drive_settings *settings);
+/* Background, up to 35 ms, where the store is worn out twice that. */
+enum record_writing settings_record_write(const struct hal *board,
+                                          const struct drive_settings *settings);
 
 #ifdef __cplusplus
 }

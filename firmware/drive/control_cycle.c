@@ -196,7 +196,7 @@ static void act_at_once(struct drive *drive)
 
 /* The detent torque at the instant of action, learned from what the observer has left of it. A
    period in which a motion begins or ends has no time to learn. */
-__attribute__((noinline)) static void
+__attribute__((noinline, cold)) static void
 compensate_detent(struct drive *drive, const struct estimate *estimate, struct prediction *next)
 {
     const num_t before = drive->detent.torque;

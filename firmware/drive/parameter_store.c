@@ -44,5 +44,5 @@ bool parameter_store_write(const struct hal *board, const struct learned_paramet
 
         record_put(&slot[RECORD_HEADER_BYTES + 4 * i], (uint32_t)steps, 4);
     }
-    return record_log_write(board, &log_of_learned, slot);
+    return record_log_write(board, &log_of_learned, slot) != RECORD_REFUSED;
 }

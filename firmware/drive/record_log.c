@@ -2,6 +2,9 @@
 
 enum { AT_FORMAT = 0, AT_SIZE = 2, AT_SEQUENCE = 4, WORD_BYTES_MAX = 16, PIECE_BYTES = 32 };
 
+/* Slots of a page that a record is offered to before the page passes for worn out. */
+enum { ATTEMPTS = 3 };
+
 /* Where the newest record is. */
 struct newest {
     bool found;
@@ -199,29 +202,58 @@ bool record_log_read(const struct hal *board, const struct record_log *log, uint
            read(board, in_store(board, log, newest.page, newest.offset), slot, record_bytes(log));
 }
 
-bool record_log_write(const struct hal *board, const struct record_log *log, uint8_t *slot)
+/* Into the first blank slots behind `offset`, of which a few may be worn out; how many were. */
+static bool append(const struct hal *board, const struct record_log *log, const uint8_t *slot,
+                   uint32_t page, uint32_t offset, uint32_t *worn)
 {
     const uint32_t bytes = slot_bytes(board->facts, log);
 
-    if (bytes == 0u) {
+    for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
+        offset = find_blank(board, log, page, offset);
+        if (offset == board->facts->parameter_page_bytes) {
+            return false;
+        }
+        if (board->parameters_program(board->context, in_store(board, log, page, offset), slot,
+                                      bytes)) {
+            return true;
+        }
+        (*worn)++;
+        offset += bytes;
+    }
+    return false;
+}
+
+static bool begin_page(const struct hal *board, const struct record_log *log, const uint8_t *slot,
+                       uint32_t page, uint32_t *worn)
+{
+    if (!board->parameters_erase(board->context, log->first_page + page)) {
+        (*worn)++;
         return false;
     }
+    return append(board, log, slot, page, 0u, worn);
+}
+
+/* Where the other page takes nothing, the newest record gives way to its successor. */
+enum record_writing record_log_write(const struct hal *board, const struct record_log *log,
+                                     uint8_t *slot)
+{
+    const uint32_t bytes = slot_bytes(board->facts, log);
+    uint32_t worn = 0;
+
+    if (bytes == 0u) {
+        return RECORD_REFUSED;
+    }
     const struct newest newest = find_newest(board, log);
-    uint32_t page = newest.page;
-    uint32_t offset = newest.found ? find_blank(board, log, page, newest.offset + bytes)
-                                   : board->facts->parameter_page_bytes;
+    const uint32_t other = (newest.page + 1u) % RECORD_LOG_PAGES;
 
     record_seal(log, slot, newest.sequence + 1u);
     for (uint32_t i = record_bytes(log); i < bytes; i++) {
         slot[i] = 0xffu;
     }
-    if (offset == board->facts->parameter_page_bytes) {
-        page = (page + 1u) % RECORD_LOG_PAGES;
-        offset = 0;
-        if (!board->parameters_erase(board->context, log->first_page + page)) {
-            return false;
-        }
+    if ((newest.found && append(board, log, slot, newest.page, newest.offset + bytes, &worn)) ||
+        begin_page(board, log, slot, other, &worn) ||
+        begin_page(board, log, slot, newest.page, &worn)) {
+        return worn == 0u ? RECORD_WRITTEN : RECORD_WRITTEN_ELSEWHERE;
     }
-    return board->parameters_program(board->context, in_store(board, log, page, offset), slot,
-                                     bytes);
+    return RECORD_REFUSED;
 }

@@ -2,8 +2,8 @@
  * A log of records in two pages of the board's parameter store: what is to survive a power cycle.
  *
  * A record is written behind the last one; when the page is full, the other of the two is erased
- * and begun. So the last valid record is never erased, whenever the supply fails. The newest record
- * with a right checksum counts.
+ * and begun. So the last valid record is never erased, whenever the supply fails; unless the other
+ * page is worn out, and the one page serves alone. The newest record with a right checksum counts.
  *
  *   offset  0  format, 2 bytes     little-endian throughout
  *           2  size of the record, 2 bytes
@@ -55,11 +55,17 @@ bool record_is_valid(const struct record_log *log, const uint8_t *record);
  */
 bool record_log_read(const struct hal *board, const struct record_log *log, uint8_t *slot);
 
-/*
- * Background. Seals the payload at slot + RECORD_HEADER_BYTES and appends it. false: the board has
- * no store that could hold it, or refused to write; the record before remains.
- */
-bool record_log_write(const struct hal *board, const struct record_log *log, uint8_t *slot);
+enum record_writing {
+    /* The board has no store that could hold it, or refuses to write. The record before remains,
+       but where one page alone serves and is now worn out, too. */
+    RECORD_REFUSED,
+    RECORD_WRITTEN,
+    RECORD_WRITTEN_ELSEWHERE /* where it was to go the store is worn out */
+};
+
+/* Background. Seals the payload at slot + RECORD_HEADER_BYTES and appends it. */
+enum record_writing record_log_write(const struct hal *board, const struct record_log *log,
+                                     uint8_t *slot);
 
 #ifdef __cplusplus
 }

@@ -19,6 +19,9 @@ static const double bend = 1e-3;
 /* Offsets are ten codes at most, a hundredth of an impulse. */
 static const double quiet_share = 1e-2;
 
+/* Of the supply; dividers of 1 % and the legs' dead times together are a quarter of it. */
+static const double quiet_voltage_share = 0.02;
+
 /* Five standard errors are 11 degrees electrical. */
 static const double confidence_min = 5.0;
 
@@ -127,6 +130,8 @@ bool initial_position_design(struct initial_position_params *params,
     params->quiet_periods = (uint32_t)(quiet_s / task->period_s + 0.5);
     params->per_quiet_period = UNIT(1.0 / params->quiet_periods);
     params->quiet_max = num_from_double(quiet_share * peak_A / base->current_A);
+    params->quiet_voltage_max = num_from_double(quiet_voltage_share);
+    params->listened_max = num_from_double(0.9 * NUM_MAX / params->quiet_periods);
     params->floor_squared = num_from_double(floor * floor);
     params->response_min = num_from_double(0.5 * response);
     params->response_max = num_from_double(1.6 * response);
@@ -179,10 +184,10 @@ void initial_position_start(struct initial_position *detection,
     enter(detection, INITIAL_POSITION_QUIET);
 }
 
-static void add(struct phases *sum, struct phases x)
+static void add(struct phases *sum, struct phases x, num_t limit)
 {
-    sum->a += x.a;
-    sum->b += x.b;
+    sum->a += num_headroom(x.a, limit);
+    sum->b += num_headroom(x.b, limit);
 }
 
 static struct phases difference(struct phases x, struct phases y)
@@ -233,19 +238,25 @@ static void wait_for_rest(struct initial_position *detection,
     enter(detection, INITIAL_POSITION_QUIET);
 }
 
+static bool lies_within(struct phases x, num_t limit)
+{
+    return num_abs(x.a) < limit && num_abs(x.b) < limit;
+}
+
 /* Currents and voltages that are measured while there are none. */
 static void listen(struct initial_position *detection, const struct initial_position_params *params,
                    struct phases current, struct phases voltage)
 {
     if (detection->periods >= params->quiet_begin) {
-        add(&detection->current_offset, current);
-        add(&detection->voltage_offset, voltage);
+        add(&detection->current_offset, current, params->listened_max);
+        add(&detection->voltage_offset, voltage, params->listened_max);
     }
     if (++detection->periods == params->quiet_begin + params->quiet_periods) {
         detection->current_offset = divide(detection->current_offset, params->per_quiet_period);
         detection->voltage_offset = divide(detection->voltage_offset, params->per_quiet_period);
-        if (num_abs(detection->current_offset.a) < params->quiet_max &&
-            num_abs(detection->current_offset.b) < params->quiet_max) {
+        if (!lies_within(detection->voltage_offset, params->quiet_voltage_max)) {
+            enter(detection, INITIAL_POSITION_NOT_FOUND);
+        } else if (lies_within(detection->current_offset, params->quiet_max)) {
             enter(detection, INITIAL_POSITION_IMPULSES);
         } else {
             wait_for_rest(detection, params);
@@ -419,6 +430,12 @@ static void end_stage(struct initial_position *detection,
     }
 }
 
+/* Adds, within limits that nothing reaches but from samples that are out of order. */
+static void grow(num_t *sum, num_t by, num_t limit)
+{
+    *sum = num_limit(*sum + num_limit(by, limit), limit);
+}
+
 /* Resistance at rest at the offset, flux on the way to the final angle. */
 static void measure(struct initial_position *detection,
                     const struct initial_position_params *params, struct phases current,
@@ -428,14 +445,16 @@ static void measure(struct initial_position *detection,
         const struct phases magnet = {voltage.a - num_mul(current.a, detection->resistance),
                                       voltage.b - num_mul(current.b, detection->resistance)};
 
-        detection->flux.a += num_mul_coef(magnet.a, params->flux);
-        detection->flux.b += num_mul_coef(magnet.b, params->flux);
+        grow(&detection->flux.a, num_mul_coef(magnet.a, params->flux), NUM(8.0));
+        grow(&detection->flux.b, num_mul_coef(magnet.b, params->flux), NUM(8.0));
     } else if (detection->stage == INITIAL_POSITION_OFFSET &&
                detection->periods > params->quarter_periods + params->rest_periods / 2u) {
         const num_t across_winding = park(voltage, sincos_of(detection->direction)).d;
 
-        detection->resistance += num_mul_coef(
-            across_winding - num_mul(along, detection->resistance), params->resistance_gain);
+        grow(&detection->resistance,
+             num_mul_coef(across_winding - num_mul(along, detection->resistance),
+                          params->resistance_gain),
+             NUM(8.0));
     }
 }
 
@@ -452,7 +471,8 @@ static struct initial_position_output align(struct initial_position *detection,
     measure(detection, params, current, voltage, along);
     detection->current_reference = num_clamp(detection->current_reference + params->current_ramp,
                                              NUM(0.0), params->alignment_current);
-    detection->voltage += num_mul_coef(detection->current_reference - along, params->current_gain);
+    grow(&detection->voltage,
+         num_mul_coef(detection->current_reference - along, params->current_gain), NUM(2.0));
     if (detection->stage == INITIAL_POSITION_OFFSET) {
         turn_vector(detection, params, detection->final_angle, true);
     } else if (detection->stage == INITIAL_POSITION_FINAL) {

@@ -48,9 +48,11 @@ struct initial_position_params {
     coef_t per_response;                 /* 1 / what a phase's should be */
     uint32_t quiet_begin, quiet_periods; /* until offsets are added up, and in which they are */
     unit_t per_quiet_period;
-    num_t quiet_max;     /* a larger offset is the current of a rotor that turns */
-    num_t floor_squared; /* of what may pass for an asymmetry without being one, in the sum */
-    coef_t certainty;    /* square of the least confidence */
+    num_t quiet_max;         /* a larger offset is the current of a rotor that turns */
+    num_t quiet_voltage_max; /* a larger one shows sensing that is out of order */
+    num_t listened_max;      /* of a sample, so that their sum stays in range */
+    num_t floor_squared;     /* of what may pass for an asymmetry without being one, in the sum */
+    coef_t certainty;        /* square of the least confidence */
 
     num_t alignment_current;
     num_t current_ramp;  /* per period */

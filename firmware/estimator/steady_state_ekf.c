@@ -1,5 +1,8 @@
 #include "firmware/estimator/steady_state_ekf.h"
 
+/* Per-unit; beyond all that a supply drives through a winding. */
+static const num_t current_max = NUM(8.0);
+
 struct steady_state_ekf_params steady_state_ekf_scale(const struct motor_model_params *model,
                                                       const struct per_unit *base,
                                                       const struct steady_state_ekf_gains *gains)
@@ -56,8 +59,10 @@ static void correct(struct steady_state_ekf *ekf, const struct steady_state_ekf_
     struct dq innovation = {measured.d - ekf->current.d, measured.q - ekf->current.q};
     num_t turns = num_mul_coef(innovation.q, params->gain_angle);
 
-    ekf->current.d += num_mul_coef(innovation.d, params->gain_current_d);
-    ekf->current.q += num_mul_coef(innovation.q, params->gain_current_q);
+    ekf->current.d = num_headroom(
+        ekf->current.d + num_mul_coef(innovation.d, params->gain_current_d), current_max);
+    ekf->current.q = num_headroom(
+        ekf->current.q + num_mul_coef(innovation.q, params->gain_current_q), current_max);
     rotor->speed += num_mul_coef(innovation.q, params->gain_speed);
     rotor->position = position_add(rotor->position, angle_from_any_turns(turns));
     rotor->load_torque += num_mul_coef(innovation.q, params->gain_load);

@@ -23,9 +23,8 @@ double motion_to_turns(int64_t x)
 
 double motion_distance(const struct motion_state *from, struct position to)
 {
-    const int64_t turns = (int64_t)to.turns - from->turns;
-    const int64_t high =
-        turns * ((int64_t)1 << 32) + (int64_t)to.fraction - (int64_t)(from->fraction >> 32);
+    const struct position here = {from->turns, (angle_t)(from->fraction >> 32)};
+    const int64_t high = position_distance(here, to);
 
     return ((double)high - (double)(uint32_t)from->fraction / two_to_32) / two_to_32;
 }
@@ -48,7 +47,10 @@ void motion_run(struct motion_state *state, int64_t jerk_sixth, uint32_t periods
         time * (motion_to_turns(state->speed) + time * (0.5 * motion_to_turns(state->acceleration) +
                                                         time * motion_to_turns(jerk_sixth)));
 
-    state->turns += nearest(travel + ((double)state->fraction - (double)fraction) / two_to_64);
+    const int32_t turns =
+        nearest(travel + ((double)state->fraction - (double)fraction) / two_to_64);
+
+    state->turns = (int32_t)((uint32_t)state->turns + (uint32_t)turns);
     state->fraction = fraction;
     state->speed = (int64_t)(speed + n * (2u * half_acceleration + 3u * n * sixth));
     state->acceleration = (int64_t)(2u * half_acceleration + 6u * n * sixth);

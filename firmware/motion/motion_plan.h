@@ -79,8 +79,9 @@ static inline struct position motion_position(const struct motion_state *state)
 {
     const uint64_t rounded = state->fraction + ((uint64_t)1 << 31);
 
-    return (struct position){.turns = state->turns + (rounded < state->fraction ? 1 : 0),
-                             .fraction = (angle_t)(rounded >> 32)};
+    return (struct position){
+        .turns = (int32_t)((uint32_t)state->turns + (rounded < state->fraction ? 1u : 0u)),
+        .fraction = (angle_t)(rounded >> 32)};
 }
 
 /* `periods` on, with the acceleration of the state and a jerk of 6 jerk_sixth. */

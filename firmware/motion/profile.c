@@ -42,15 +42,6 @@ static bool whole_periods(uint32_t *periods, const char *quantity, double time_s
                                  reason);
 }
 
-/* Distance in 2^-32 turn, exact. */
-static int64_t distance_of(const struct profile *profile)
-{
-    int64_t turns = (int64_t)profile->target.turns - profile->start.turns;
-
-    return turns * ((int64_t)1 << 32) + (int64_t)profile->target.fraction -
-           (int64_t)profile->start.fraction;
-}
-
 /*
  * The distance `speed` (2^-64 turn per period) leaves over after `periods`, in turns. The product
  * has up to 95 bits, so the two halves of the speed are multiplied apart.
@@ -72,7 +63,7 @@ static bool scale(struct profile *profile, const struct profile_drive *drive,
     const uint32_t to_speed = profile->jerk_periods + profile->acceleration_periods;
     const uint32_t at_speed = to_speed + profile->jerk_periods + profile->cruise_periods;
     const uint32_t all = at_speed + to_speed + profile->jerk_periods;
-    const int64_t distance = distance_of(profile);
+    const int64_t distance = position_distance(profile->start, profile->target);
     const double speed = (double)distance / two_to_32 / at_speed;
     const double acceleration = speed / to_speed;
 

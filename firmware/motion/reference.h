@@ -169,7 +169,8 @@ static inline void reference_travel(struct reference *r, int64_t travel)
 {
     const uint64_t begun_at = r->at.fraction;
     const uint64_t fraction = begun_at + (uint64_t)travel;
-    const int32_t turns = r->at.turns + (int32_t)(travel >> 63) + (fraction < begun_at ? 1 : 0);
+    const uint32_t carry = (uint32_t)(travel >> 63) + (fraction < begun_at ? 1u : 0u);
+    const int32_t turns = (int32_t)((uint32_t)r->at.turns + carry); /* 2^31 goes round */
 
     r->periods_left--;
     r->at.turns = turns;

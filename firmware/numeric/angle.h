@@ -37,11 +37,17 @@ static inline struct position position_add(struct position p, int32_t angle)
     return moved;
 }
 
+/* Of a way in 2^-32 turn, exact; the shorter one around 2^32 turns, where positions go round. */
+static inline int64_t position_distance(struct position from, struct position to)
+{
+    return (int64_t)(angle_of_position(to) - angle_of_position(from));
+}
+
 /* a - b in electrical turns, saturated at +-POSITION_DIFFERENCE_MAX. */
 static inline num_t position_difference(struct position a, struct position b)
 {
     const int32_t limit = (int32_t)POSITION_DIFFERENCE_MAX;
-    int64_t difference = (int64_t)(angle_of_position(a) - angle_of_position(b));
+    int64_t difference = position_distance(b, a);
     const int32_t whole = (int32_t)(difference >> 32);
 
     /* One comparison: what is below -limit wraps to a large number. */

@@ -14,7 +14,9 @@
  * num_t needs two 16 x 16 multiplications on a Cortex-M0+, which has no long multiply. Products
  * round towards minus infinity and are the same, bit for bit, on every core and compiler. Right
  * shifts of negative numbers are arithmetic (implementation-defined in C11; so in gcc and clang).
- * The headroom is proved at start-up: a design whose gains times ranges leave -32...32 is refused.
+ * A number that left -32...32 would be undefined. Factors are limited before their product
+ * (num_headroom), with limits that follow from the gains at start-up; a gain that leaves none is
+ * refused there. Shown by tests/unit/test_headroom.c under the sanitizer.
  */
 #ifndef STEADYSTEP_NUM_H
 #define STEADYSTEP_NUM_H

@@ -26,6 +26,12 @@ void bridge_start(void)
     TIM1->af1 = TIM_AF1_BKINE;
     TIM1->cr2 = TIM_CR2_MMS(TIM_MASTER_ENABLE);
     TIM1->cr1 = TIM_CR1_CMS(TIM_CENTRE_ALIGNED_1) | TIM_CR1_ARPE | TIM_CR1_URS;
+
+    /* A halt by the debugger stops the counter and with it holds the outputs low (RM0444, TIM1 in
+       debug mode). TIM2 runs on: when the core does again, the deadline is over and opens the
+       bridge. TIM3 keeps step. */
+    DBG->apbfz2 |= DBG_APBFZ2_TIM1;
+    DBG->apbfz1 |= DBG_APBFZ1_TIM3;
 }
 
 /*

@@ -29,7 +29,8 @@ void clock_of_blocks(void)
 {
     RCC->gpioenr = RCC_GPIOENR_GPIOAEN | RCC_GPIOENR_GPIOBEN | RCC_GPIOENR_GPIOCEN;
     RCC->ahbenr |= RCC_AHBENR_DMA1EN;
-    RCC->apbenr1 |= RCC_APBENR1_TIM2EN | RCC_APBENR1_TIM3EN | RCC_APBENR1_LPUART1EN;
+    RCC->apbenr1 |=
+        RCC_APBENR1_TIM2EN | RCC_APBENR1_TIM3EN | RCC_APBENR1_LPUART1EN | RCC_APBENR1_DBGEN;
     RCC->apbenr2 |= RCC_APBENR2_TIM1EN | RCC_APBENR2_ADCEN;
     (void)RCC->apbenr2; /* a block answers two cycles after its clock is enabled */
 }

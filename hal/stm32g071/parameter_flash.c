@@ -2,17 +2,26 @@
  * The last four pages of the flash. The chip has one bank: while a page is erased (up to 40 ms) or
  * a word programmed (0.1 ms) the core stalls at its next fetch from flash. Both are refused while
  * the bridge is on.
+ *
+ * A loss of power meanwhile leaves double words that fail the ECC. Reading one raises NMI; its
+ * handler lets a read of the store answer "not readable", and the log of records skips that slot
+ * until its page is erased. Any other NMI is a crash.
  */
 #include "hal/cortex_m/parameter_flash.h"
 
 #include <string.h>
 
+#include "hal/cortex_m/crash.h"
+#include "hal/cortex_m/interrupts.h"
+#include "hal/cortex_m/wait.h"
 #include "hal/stm32g071/bridge.h"
+#include "hal/stm32g071/handlers.h"
 #include "hal/stm32g071/watchdog.h"
 
 enum {
     STORE_BYTES = PARAMETER_PAGES * FLASH_PAGE_BYTES,
-    FIRST_PAGE = FLASH_BANK_BYTES / FLASH_PAGE_BYTES - PARAMETER_PAGES
+    FIRST_PAGE = FLASH_BANK_BYTES / FLASH_PAGE_BYTES - PARAMETER_PAGES,
+    BUSY_WAIT = 700000 /* passes, > 43 ms, < 160 ms; an erase takes 40 ms at most */
 };
 
 #define STORE (FLASH_BANK_1 + FLASH_BANK_BYTES - (uint32_t)STORE_BYTES)
@@ -22,31 +31,28 @@ enum {
     (FLASH_SR_OPERR | FLASH_SR_PROGERR | FLASH_SR_WRPERR | FLASH_SR_PGAERR | FLASH_SR_SIZERR |     \
      FLASH_SR_PGSERR)
 
+/* Of what is read, from here on and by the handler of the NMI. */
+static volatile bool reads_store, damaged;
+
 static bool in_store(uint32_t offset, size_t count)
 {
     return offset <= STORE_BYTES && count <= STORE_BYTES - offset;
 }
 
-static bool finished(void)
+/* Nobody else can feed the watchdog while the core stalls, or while this waits. */
+static bool idle(void)
 {
-    while ((FLASH->sr & (FLASH_SR_BSY1 | FLASH_SR_CFGBSY)) != 0) {
-    }
-    const bool good = (FLASH->sr & ERRORS) == 0;
-    FLASH->sr = ERRORS | FLASH_SR_EOP;
-    return good;
+    watchdog_feed();
+    return wait_until(&FLASH->sr, FLASH_SR_BSY1 | FLASH_SR_CFGBSY, 0, BUSY_WAIT);
 }
 
-static bool unlock(void)
+/* End of an operation: whether it ended, and without an error. */
+static bool finished(void)
 {
-    if (!bridge_hold_open()) {
-        return false;
-    }
-    if ((FLASH->cr & FLASH_CR_LOCK) != 0) {
-        FLASH->keyr = FLASH_KEY1;
-        FLASH->keyr = KEY2;
-    }
-    (void)finished(); /* forgets old errors */
-    return true;
+    const bool good = idle() && (FLASH->sr & ERRORS) == 0;
+
+    FLASH->sr = ERRORS | FLASH_SR_EOP;
+    return good;
 }
 
 static void lock(void)
@@ -55,17 +61,86 @@ static void lock(void)
     bridge_release();
 }
 
+/* Behind a true one a lock() follows. */
+static bool unlock(void)
+{
+    if (!bridge_hold_open()) {
+        return false;
+    }
+    if (!idle()) {
+        bridge_release();
+        return false;
+    }
+    if ((FLASH->cr & FLASH_CR_LOCK) != 0) {
+        FLASH->keyr = FLASH_KEY1;
+        FLASH->keyr = KEY2;
+    }
+    FLASH->sr = ERRORS | FLASH_SR_EOP; /* old ones */
+    return true;
+}
+
 bool parameter_flash_erase(uint32_t page)
 {
     if (page >= PARAMETER_PAGES || !unlock()) {
         return false;
     }
-    watchdog_feed(); /* nobody else can while the core stalls */
     FLASH->cr = FLASH_CR_PER | FLASH_CR_PNB(FIRST_PAGE + page);
     FLASH->cr |= FLASH_CR_STRT;
     const bool good = finished();
     lock();
     return good;
+}
+
+/* In the NMI. A second double error would raise none while the flag of the first is up. */
+__attribute__((used)) bool parameter_flash_take_error(void);
+bool parameter_flash_take_error(void)
+{
+    if (!reads_store || (FLASH->eccr & FLASH_ECCR_ECCD) == 0) {
+        return false;
+    }
+    FLASH->eccr |= FLASH_ECCR_ECCD; /* and ECCC, if it is up */
+    damaged = true;
+    __DSB(); /* the request is down before the handler ends */
+    return true;
+}
+
+static bool read_store(void *to, uint32_t offset, size_t count)
+{
+    damaged = false;
+    reads_store = true;
+    __DSB();
+    memcpy(to, (const void *)(uintptr_t)(STORE + offset), count);
+    __DSB();
+    const bool late = (FLASH->eccr & FLASH_ECCR_ECCD) != 0; /* by this the NMI has come */
+
+    __ISB();
+    reads_store = false;
+    return !late && !damaged;
+}
+
+static bool holds(uint32_t offset, const uint32_t expected[2])
+{
+    uint32_t word[2];
+
+    return read_store(word, offset, sizeof word) && word[0] == expected[0] &&
+           word[1] == expected[1];
+}
+
+/* One double word: two writes, in order, then the flash programs them together. */
+static bool program_word(uint32_t offset, const uint8_t *data)
+{
+    static const uint32_t erased[2] = {UINT32_MAX, UINT32_MAX};
+    volatile uint32_t *place = (volatile uint32_t *)(uintptr_t)(STORE + offset);
+    uint32_t word[2];
+
+    if (!holds(offset, erased)) {
+        return false;
+    }
+    memcpy(word, data, sizeof word);
+    FLASH->cr = FLASH_CR_PG;
+    place[0] = word[0];
+    place[1] = word[1];
+    return finished() && holds(offset, word);
 }
 
 bool parameter_flash_program(uint32_t offset, const void *data, size_t count)
@@ -78,18 +153,7 @@ bool parameter_flash_program(uint32_t offset, const void *data, size_t count)
         return false;
     }
     for (size_t done = 0; good && done < count; done += PARAMETER_WORD_BYTES) {
-        volatile uint32_t *place = (volatile uint32_t *)(uintptr_t)(STORE + offset + done);
-        uint32_t word[2];
-
-        memcpy(word, bytes + done, sizeof word);
-        if (place[0] != UINT32_MAX || place[1] != UINT32_MAX) {
-            good = false;
-            break;
-        }
-        FLASH->cr = FLASH_CR_PG;
-        place[0] = word[0];
-        place[1] = word[1];
-        good = finished() && place[0] == word[0] && place[1] == word[1];
+        good = program_word(offset + done, bytes + done);
     }
     lock();
     return good;
@@ -97,9 +161,22 @@ bool parameter_flash_program(uint32_t offset, const void *data, size_t count)
 
 bool parameter_flash_read(uint32_t offset, void *data, size_t count)
 {
-    if (!in_store(offset, count)) {
-        return false;
-    }
-    memcpy(data, (const void *)(uintptr_t)(STORE + offset), count);
-    return true;
+    return in_store(offset, count) && read_store(data, offset, count);
+}
+
+/* A double error in the parameter store is what a loss of power leaves; any other NMI is a crash.
+ */
+__attribute__((naked)) void nmi_exception(void)
+{
+    __asm__ volatile(".syntax unified\n"
+                     "push {r4, lr}\n"
+                     "bl parameter_flash_take_error\n"
+                     "cmp r0, #0\n"
+                     "beq 1f\n"
+                     "pop {r4, pc}\n"
+                     "1: pop {r3}\n"
+                     "pop {r3}\n"
+                     "mov lr, r3\n"
+                     "ldr r3, =crash_exception\n"
+                     "bx r3\n");
 }

@@ -67,13 +67,12 @@ __attribute__((used, noinline)) void port_open_bridge(void)
 
 uint32_t port_nmi_cause(void)
 {
-    return 0;
+    return (FLASH->eccr & FLASH_ECCR_ECCD) != 0;
 }
 
 const char *port_nmi_text(uint32_t nmi_cause)
 {
-    (void)nmi_cause;
-    return "non-maskable interrupt";
+    return nmi_cause != 0 ? "double error in flash (NMI)" : "non-maskable interrupt";
 }
 
 enum reset_cause port_take_reset_cause(void)

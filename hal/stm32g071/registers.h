@@ -49,6 +49,7 @@ struct rcc_registers {
 #define RCC_APBENR1_TIM2EN        BIT(0)
 #define RCC_APBENR1_TIM3EN        BIT(1)
 #define RCC_APBENR1_LPUART1EN     BIT(20)
+#define RCC_APBENR1_DBGEN         BIT(27)
 #define RCC_APBENR1_PWREN         BIT(28)
 #define RCC_APBENR2_TIM1EN        BIT(11)
 #define RCC_APBENR2_ADCEN         BIT(20)
@@ -66,7 +67,7 @@ enum { RCC_PLLM_DIV1 = 0, RCC_PLLR_DIV2 = 1 };
 
 /* ---- Embedded flash ---- */
 struct flash_registers {
-    volatile uint32_t acr, reserved0, keyr, optkeyr, sr, cr;
+    volatile uint32_t acr, reserved0, keyr, optkeyr, sr, cr, eccr;
 };
 #define FLASH ((struct flash_registers *)0x40022000u)
 
@@ -88,6 +89,8 @@ struct flash_registers {
 #define FLASH_CR_PNB(value)      FIELD(value, 3, 7)
 #define FLASH_CR_STRT            BIT(16)
 #define FLASH_CR_LOCK            BIT(31)
+#define FLASH_ECCR_ECCC          BIT(30)
+#define FLASH_ECCR_ECCD          BIT(31)
 
 enum { FLASH_KEY1 = 0x45670123, FLASH_WAIT_STATES_64_MHZ = 2 };
 
@@ -249,5 +252,15 @@ struct iwdg_registers {
 
 enum { IWDG_START = 0xcccc, IWDG_UNLOCK = 0x5555, IWDG_FEED = 0xaaaa };
 enum { IWDG_DIV32 = 3 };
+
+/* ---- Debug support ---- */
+struct dbg_registers {
+    volatile uint32_t idcode, cr, apbfz1, apbfz2;
+};
+#define DBG ((struct dbg_registers *)0x40015800u)
+
+#define DBG_APBFZ1_TIM3 BIT(1)
+#define DBG_APBFZ1_IWDG BIT(12)
+#define DBG_APBFZ2_TIM1 BIT(11)
 
 #endif

@@ -13,13 +13,14 @@ enum { EXCEPTIONS = 16 + INTERRUPTS };
 
 #define VECTORS                                                                                    \
     {                                                                                              \
-        (vector) & stack_top, reset_handler,                                                       \
-            [2 ... EXCEPTIONS - 1] = crash_exception, [14] = pend_sv_handler,                      \
-                                LINE(DMA1_CHANNEL1) = control_interrupt,                           \
-                                LINE(DMA1_CHANNEL2_3) = dma1_channel2_3_handler,                   \
-                                LINE(TIM1_BRK_UP_TRG_COM) = tim1_brk_up_trg_com_handler,           \
-                                LINE(TIM2) = tim2_handler,                                         \
-                                LINE(USART3_4_LPUART1) = usart3_4_lpuart1_handler                  \
+        (vector) & stack_top,                                                                      \
+            reset_handler, [2] = nmi_exception,                                                    \
+                           [3 ... EXCEPTIONS - 1] = crash_exception, [14] = pend_sv_handler,       \
+                           LINE(DMA1_CHANNEL1) = control_interrupt,                                \
+                           LINE(DMA1_CHANNEL2_3) = dma1_channel2_3_handler,                        \
+                           LINE(TIM1_BRK_UP_TRG_COM) = tim1_brk_up_trg_com_handler,                \
+                           LINE(TIM2) = tim2_handler,                                              \
+                           LINE(USART3_4_LPUART1) = usart3_4_lpuart1_handler                       \
     }
 
 #pragma GCC diagnostic push

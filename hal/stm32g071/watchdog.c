@@ -8,6 +8,7 @@ enum { UPDATE_WAIT = 100000 }; /* passes, > 6 ms; five LSI cycles, 160 us, each 
 
 void watchdog_start(void)
 {
+    DBG->apbfz1 |= DBG_APBFZ1_IWDG;
     /* LSI 32 kHz, divided by 32: 1 kHz. */
     IWDG->kr = IWDG_START;
     IWDG->kr = IWDG_UNLOCK;

@@ -12,6 +12,9 @@
  *                         BRIDGE_INTEGRATED: it gives one signal a leg, whose low level turns the
  *                         low side on; an output BRIDGE_RESET_PORT, BRIDGE_RESET_PIN that is low
  *                         opens the bridge; its fault output, low, comes in at TIM1 BKIN
+ *   HIGH_GATES_ACTIVE_LOW, LOW_GATES_ACTIVE_LOW
+ *                         1: the drivers' inputs of those gates turn a MOSFET on while they are
+ *                         low; their pins are to be pulled up, here and outside. Not given: 0
  *   DEAD_TIME_CYCLES      of TIM1, 1/170 us; 64...127, even 128...254, of 256...504 multiples of
  *                         8; 0 with BRIDGE_INTEGRATED, whose own is BRIDGE_DEAD_TIME_s
  *   BRIDGE_RESISTANCE_OHM of both switches that conduct, and what of the shunts is in series; 0:
@@ -77,6 +80,13 @@ enum {
 /* What calibration leaves of a current's offset, assumed: a code, 0.8 mV, is the amplifier's drift
    of 10 uV/K over 10 K at a gain of 8. */
 #define CURRENT_OFFSET_CODES 1.0
+
+#ifndef HIGH_GATES_ACTIVE_LOW
+#define HIGH_GATES_ACTIVE_LOW 0
+#endif
+#ifndef LOW_GATES_ACTIVE_LOW
+#define LOW_GATES_ACTIVE_LOW 0
+#endif
 
 #ifndef BRIDGE_DEAD_TIME_s
 #define BRIDGE_DEAD_TIME_s (DEAD_TIME_CYCLES / (double)CORE_Hz)

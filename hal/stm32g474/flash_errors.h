@@ -11,6 +11,10 @@
 /* Faults if the option bytes do not give two banks with this program in the first. */
 void parameter_flash_check_options(void);
 
+/* Of a cell whose error the flash has corrected: the next double error would raise no NMI. Asked
+   for with each read of the store, and all the time in the background. */
+void parameter_flash_forget_corrected(void);
+
 /* In the NMI: whether it came from cells of the store that fail the check, which
    parameter_flash_read then refuses; so it is done with. */
 bool parameter_flash_take_error(void);

@@ -21,9 +21,17 @@ enum {
     (FLASH_SR_OPERR | FLASH_SR_PROGERR | FLASH_SR_WRPERR | FLASH_SR_PGAERR | FLASH_SR_SIZERR |     \
      FLASH_SR_PGSERR | FLASH_SR_MISERR | FLASH_SR_FASTERR)
 
+void parameter_flash_forget_corrected(void)
+{
+    if (FLASH->eccr & FLASH_ECCR_ECCC) {
+        FLASH->eccr = FLASH_ECCR_ECCC;
+    }
+}
+
 void parameter_flash_check_options(void)
 {
     RCC->ahb1enr |= RCC_AHB1ENR_FLASHEN;
+    parameter_flash_forget_corrected();
     if ((FLASH->optr & (FLASH_OPTR_DBANK | FLASH_OPTR_BFB2)) != FLASH_OPTR_DBANK) {
         board_fault(BOARD_FAULT_FLASH_OPTIONS);
     }
@@ -89,7 +97,7 @@ bool parameter_flash_take_error(void)
     if ((eccr & FLASH_ECCR_ECCD) == 0 || (eccr & FLASH_ECCR_BK_ECC) == 0) {
         return false;
     }
-    FLASH->eccr = FLASH_ECCR_ECCD;
+    FLASH->eccr = FLASH_ECCR_ECCD | (eccr & FLASH_ECCR_ECCC);
     damaged = true;
     __DSB(); /* the request is down before the handler ends */
     return true;
@@ -102,6 +110,7 @@ static bool read_store(uint8_t *to, uint32_t offset, size_t count)
     const uint32_t acr = FLASH->acr;
 
     FLASH->acr = acr & ~FLASH_ACR_DCEN;
+    parameter_flash_forget_corrected();
     damaged = false;
     __COMPILER_BARRIER();
     memcpy(to, (const void *)(uintptr_t)(STORE + offset), count);

@@ -10,6 +10,11 @@ REQUIRE(CRYSTAL_Hz == 0 ||
 /* ---- Bridge ---- */
 REQUIRE(BRIDGE == BRIDGE_OF_GATES || BRIDGE == BRIDGE_INTEGRATED,
         "BRIDGE must be BRIDGE_OF_GATES or BRIDGE_INTEGRATED");
+REQUIRE((HIGH_GATES_ACTIVE_LOW == 0 || HIGH_GATES_ACTIVE_LOW == 1) &&
+            (LOW_GATES_ACTIVE_LOW == 0 || LOW_GATES_ACTIVE_LOW == 1),
+        "HIGH_GATES_ACTIVE_LOW and LOW_GATES_ACTIVE_LOW must be 0 or 1");
+REQUIRE(BRIDGE == BRIDGE_OF_GATES || (HIGH_GATES_ACTIVE_LOW == 0 && LOW_GATES_ACTIVE_LOW == 0),
+        "an integrated bridge has no gates: HIGH_GATES_ACTIVE_LOW is for a bridge of gates");
 #if BRIDGE == BRIDGE_OF_GATES
 REQUIRE(DEAD_TIME_CYCLES >= 64,
         "a bridge of gates needs a dead time: DEAD_TIME_CYCLES of 64 (0.38 us) at least");

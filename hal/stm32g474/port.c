@@ -6,6 +6,7 @@
 #include "hal/stm32g474/board.h"
 #include "hal/stm32g474/control_interrupt.h"
 #include "hal/stm32g474/cycle_counter.h"
+#include "hal/stm32g474/flash_errors.h"
 #include "hal/stm32g474/pwm.h"
 #include "hal/stm32g474/registers.h"
 #include "hal/stm32g474/watchdog.h"
@@ -64,6 +65,7 @@ uint64_t port_time_us(void)
 
 void port_watchdog_feed(void)
 {
+    parameter_flash_forget_corrected();
     watchdog_feed();
 }
 

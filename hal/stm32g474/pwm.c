@@ -9,6 +9,18 @@ enum { UPDATE_WAIT = 2 * PWM_PERIOD }; /* passes: more than eight periods */
 #define HIGH_SIDES (TIM_CCER_CC1E | TIM_CCER_CC2E | TIM_CCER_CC3E | TIM_CCER_CC4E)
 #define LOW_SIDES  (TIM_CCER_CC1NE | TIM_CCER_CC2NE | TIM_CCER_CC3NE | TIM_CCER_CC4NE)
 
+#define HIGH_SIDES_INVERTED (TIM_CCER_CC1P | TIM_CCER_CC2P | TIM_CCER_CC3P | TIM_CCER_CC4P)
+#define LOW_SIDES_INVERTED  (TIM_CCER_CC1NP | TIM_CCER_CC2NP | TIM_CCER_CC3NP | TIM_CCER_CC4NP)
+#define POLARITY                                                                                   \
+    ((HIGH_GATES_ACTIVE_LOW ? HIGH_SIDES_INVERTED : 0) |                                           \
+     (LOW_GATES_ACTIVE_LOW ? LOW_SIDES_INVERTED : 0))
+
+/* Levels of the pins while the bridge is open: every gate off. */
+#define HIGH_SIDES_IDLE (TIM_CR2_OIS1 | TIM_CR2_OIS2 | TIM_CR2_OIS3 | TIM_CR2_OIS4)
+#define LOW_SIDES_IDLE  (TIM_CR2_OIS1N | TIM_CR2_OIS2N | TIM_CR2_OIS3N | TIM_CR2_OIS4N)
+#define IDLE                                                                                       \
+    ((HIGH_GATES_ACTIVE_LOW ? HIGH_SIDES_IDLE : 0) | (LOW_GATES_ACTIVE_LOW ? LOW_SIDES_IDLE : 0))
+
 #define BREAK_BY_COMPARATOR(number, input) | TIM_AF1_BKCMP##number##E
 
 void pwm_configure(void)
@@ -30,8 +42,8 @@ void pwm_configure(void)
     /* Channel 5 rises ahead of the peak: it starts the injected conversions. */
     TIM1->ccmr3 = TIM_CCMR3_OC5M(TIM_PWM_MODE_2);
     TIM1->ccr5 = PWM_HALF_PERIOD - CURRENT_SAMPLING_LEAD;
-    TIM1->cr2 = TIM_CR2_MMS(TIM_TRGO_UPDATE) | TIM_CR2_MMS2(TIM_TRGO2_OC5REF); /* idle: all low */
-    TIM1->ccer = HIGH_SIDES | (BRIDGE == BRIDGE_OF_GATES ? LOW_SIDES : 0);
+    TIM1->cr2 = TIM_CR2_MMS(TIM_TRGO_UPDATE) | TIM_CR2_MMS2(TIM_TRGO2_OC5REF) | IDLE;
+    TIM1->ccer = HIGH_SIDES | (BRIDGE == BRIDGE_OF_GATES ? LOW_SIDES : 0) | POLARITY;
 
     /* Active high, without filter, so without clock and at once; the fault output is low. */
     TIM1->af1 = (0 OVERCURRENT_COMPARATORS(BREAK_BY_COMPARATOR)) |

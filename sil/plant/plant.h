@@ -64,6 +64,9 @@ struct SensorConfig {
     bool exact = false;           /* true: no noise, no offset, and codes of 16 bits, not 12 */
     double current_range_A = 6.0; /* +- full scale */
     double current_noise_rms_A = 3e-3;
+    /* What converters that do not run from one clock do to the currents of each other, rms codes;
+       on real ones most around the middle of their range, here everywhere. */
+    double converter_crosstalk_codes = 0.0;
     double current_offset_a_A = 0.0;
     double current_offset_b_A = 0.0;
     double current_offset_on_a_A = 0.0; /* only while the bridge is on: calibration misses it */

@@ -10,8 +10,13 @@ namespace plant
 namespace
 {
 
-/* Streams of the noise; each of the first two serves both phases, behind them those of faults. */
-enum Stream : std::uint64_t { current_stream = 1, phase_voltage_stream = 2, fault_stream = 3 };
+/* Streams of the noise; each but those of faults serves both phases. */
+enum Stream : std::uint64_t {
+    current_stream = 1,
+    phase_voltage_stream = 2,
+    fault_stream = 3, /* and behind it, one a channel */
+    crosstalk_stream = fault_stream + channels
+};
 
 /* A code 0...highest; the clamp first, so that no conversion is out of range. */
 int converted(double codes, double highest)
@@ -104,6 +109,7 @@ void Sensors::set(const SensorConfig &config)
     require_range(config.bus_range_V, "bus_range_V");
     require_noise(config.current_noise_rms_A, "current_noise_rms_A");
     require_noise(config.phase_voltage_noise_rms_V, "phase_voltage_noise_rms_V");
+    require_noise(config.converter_crosstalk_codes, "converter_crosstalk_codes");
     require_offset(config.current_offset_a_A, "current_offset_a_A");
     require_offset(config.current_offset_b_A, "current_offset_b_A");
     require_offset(config.phase_voltage_offset_a_V, "phase_voltage_offset_a_V");
@@ -201,7 +207,11 @@ Samples Sensors::sample(std::uint64_t period, const True &now) const
             phase_voltage_offset_V_[on] +
             config_.phase_voltage_noise_rms_V * gaussian_pair(phase_voltage_noise_, period);
     }
-    const Phases current = current_A * codes_per_A_ + middle_code_;
+    Phases current = current_A * codes_per_A_ + middle_code_;
+    if (config_.converter_crosstalk_codes > 0.0 && !config_.exact) {
+        current += config_.converter_crosstalk_codes *
+                   gaussian_pair(gaussian_key(seed_, crosstalk_stream), period);
+    }
     const Phases voltage = phase_voltage_V * codes_per_phase_V_ + middle_code_;
     const int zero_V_code = static_cast<int>(middle_code_);
     Samples samples;

@@ -269,6 +269,7 @@ void read_plant(const Value &table, Scenario &scenario)
     reader.integer("half_period_counts", half_period_counts, 1, 65535);
     reader.integer("delay_periods", delay_periods, 0, 1);
     reader.number("current_noise_rms_A", sensors.current_noise_rms_A, 0, 10);
+    reader.number("converter_crosstalk_codes", sensors.converter_crosstalk_codes, 0, 100);
     reader.number("current_offset_a_A", sensors.current_offset_a_A, -10, 10);
     reader.number("current_offset_b_A", sensors.current_offset_b_A, -10, 10);
     reader.number("current_offset_on_a_A", sensors.current_offset_on_a_A, -10, 10);

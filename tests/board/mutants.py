@@ -228,6 +228,14 @@ MUTANTS = [
         "supply-fails-in-store",
         "and the drive starts",
     ),
+    Mutant(
+        "a cell that has been corrected hides a torn one",
+        "parameter_flash.c",
+        "if (FLASH->eccr & FLASH_ECCR_ECCC) {",
+        "if (false) {",
+        "supply-fails-beside-weak-cell",
+        "and the drive starts",
+    ),
 ]
 
 

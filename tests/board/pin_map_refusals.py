@@ -24,6 +24,8 @@ REFUSED = [
     (GATES, "BRIDGE", "3", "BRIDGE_OF_GATES or BRIDGE_INTEGRATED"),
     (GATES, "BRIDGE", "BRIDGE_INTEGRATED", "needs BRIDGE_RESET_PORT"),
     (INTEGRATED, "BRIDGE", "BRIDGE_OF_GATES", "needs a dead time"),
+    (GATES, "CHANNEL_A_PLUS", "1\n#define LOW_GATES_ACTIVE_LOW 2", "must be 0 or 1"),
+    (INTEGRATED, "CHANNEL_A_PLUS", "1\n#define HIGH_GATES_ACTIVE_LOW 1", "has no gates"),
     (INTEGRATED, "DEAD_TIME_CYCLES", "170", "has its own dead time"),
     (INTEGRATED, "BRIDGE_RESET_PIN", "16", "must be 0...15"),
     (GATES, "DEAD_TIME_CYCLES", "0", "needs a dead time"),

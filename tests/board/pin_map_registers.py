@@ -176,7 +176,15 @@ def expected_trip(chosen):
 
 def expected_rest(chosen):
     low_sides = 0 if chosen.integrated() else 1
+    inverted = [
+        chosen.number(name) if name in chosen.defined else 0
+        for name in ("HIGH_GATES_ACTIVE_LOW", "LOW_GATES_ACTIVE_LOW")
+    ]
     for n in range(4):
+        yield f"TIM1 CC{n + 1}P", TIMER[1] + 0x20, 4 * n + 1, 1, inverted[0]
+        yield f"TIM1 CC{n + 1}NP", TIMER[1] + 0x20, 4 * n + 3, 1, inverted[1]
+        yield f"TIM1 OIS{n + 1}", TIMER[1] + 0x04, 8 + 2 * n, 1, inverted[0]
+        yield f"TIM1 OIS{n + 1}N", TIMER[1] + 0x04, 9 + 2 * n, 1, inverted[1]
         yield f"TIM1 CC{n + 1}E", TIMER[1] + 0x20, 4 * n, 1, 1
         yield f"TIM1 CC{n + 1}NE", TIMER[1] + 0x20, 4 * n + 2, 1, low_sides
     yield "TIM1 MOE", TIMER[1] + 0x44, 15, 1, 0
@@ -212,6 +220,7 @@ def changes(chosen):
         *("AMPLIFIER_GAIN", "CURRENT_A_CHANNEL", "CURRENT_B_CHANNEL", "BUS_CHANNEL"),
         *("LEGS_A_CONVERTER", "LEG_A_PLUS_CHANNEL", "LEG_B_MINUS_CHANNEL", "BAUD"),
         *("TEMPERATURE_CHANNEL", "OVERCURRENT_mA", "CHANNEL_A_PLUS", "CHANNEL_B_MINUS"),
+        "LOW_GATES_ACTIVE_LOW",
     ):
         if name in chosen.defined:
             other = copy.deepcopy(chosen)

@@ -178,6 +178,54 @@ void flash_is_written(const ElfImage &image)
     expect(run.machine.resets().empty(), "no reset");
 }
 
+/* The double word being programmed is torn, and fails the ECC from then on. */
+void supply_fails_in_store(const ElfImage &image)
+{
+    Powered run(image);
+    run.run_for(600 * ms);
+    (void)run.type("set hold_current_A 0.8\n", 20 * ms);
+    expect(count(run.type("store\n", 300 * ms), "ok store") == 1, "a record is stored");
+    (void)run.type("set hold_current_A 0.9\n", 20 * ms);
+    run.board.serial().send(run.machine.now(), "store\n");
+    const auto is_written = [&] { return run.board.flash().busy_until(0) > run.machine.now(); };
+    for (int i = 0; i < 10000 && !is_written(); i++) {
+        run.run_for(20 * us);
+    }
+    expect(is_written(), "the next one is being written");
+    run.machine.power_on();
+    (void)run.board.serial().take_output();
+    run.run_for(1000 * ms);
+    const std::string text = run.board.serial().take_output();
+    expect(run.board.flash().double_errors() > 0 && run.machine.resets().empty() &&
+               count(text, "settings: stored") == 1 && count(text, "crash") == 0,
+           "the supply fails: what is spoilt is read, and the drive starts");
+    expect(count(run.type("get hold_current_A\n", 20 * ms), "hold_current_A=0.8 A") == 1,
+           "with the record before");
+    expect(count(run.type("store\n", 300 * ms), "ok store") == 1, "and stores the next");
+}
+
+void flash_never_ends(const ElfImage &image)
+{
+    Powered run(image);
+    run.run_for(600 * ms);
+    run.board.flash().wear_out();
+    const std::string text = run.type("store\n", 900 * ms);
+    expect(count(text, "refused to write") == 1 && run.machine.resets().empty(),
+           "a flash that stays busy ends in a refusal, without a reset");
+    expect(count(run.type("enable\n", 600 * ms), "ready:") == 1, "and the drive goes on");
+}
+
+void debugger_halts(const ElfImage &image)
+{
+    Powered run(image);
+    run.run_for(600 * ms);
+    RegisterBlock &debug = run.board.debug_support();
+    expect(
+        debug.read(0x08, 4, Master::core) == (1u << 1 | 1u << 12) &&
+            debug.read(0x0c, 4, Master::core) == 1u << 11,
+        "TIM1, TIM3 and the watchdog stand still while a debugger halts the core, TIM2 does not");
+}
+
 /* Its design takes longer than the watchdog waits. */
 void settings_act(const ElfImage &image)
 {
@@ -257,6 +305,9 @@ int main(int argc, char **argv)
         lines_overflow(image);
         beginning_lost(image);
         flash_is_written(image);
+        supply_fails_in_store(image);
+        flash_never_ends(image);
+        debugger_halts(image);
         settings_act(image);
         settings_with_encoder(image);
         program_leaves_memory(image);

@@ -192,6 +192,7 @@ void starts_without_crystal(Expectations &expectations, const std::string &image
 /* stm32g474_storage.cpp */
 void supply_fails_in_store(Expectations &expectations, const std::string &image);
 void supply_fails_in_erase(Expectations &expectations, const std::string &image);
+void supply_fails_beside_weak_cell(Expectations &expectations, const std::string &image);
 void simulation_is_asked_for(Expectations &expectations, const std::string &image);
 void encoder_is_asked_for(Expectations &expectations, const std::string &image);
 void encoder_counts(Expectations &expectations, const std::string &image);

@@ -157,6 +157,7 @@ const Case cases[] = {
     {"line-ends", line_ends},
     {"supply-fails-in-store", supply_fails_in_store},
     {"supply-fails-in-erase", supply_fails_in_erase},
+    {"supply-fails-beside-weak-cell", supply_fails_beside_weak_cell},
     {"simulation-is-asked-for", simulation_is_asked_for},
     {"no-encoder", encoder_is_asked_for},
     {"settings-act", settings_act},

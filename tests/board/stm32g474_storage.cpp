@@ -80,7 +80,8 @@ void put_learning(std::vector<std::uint8_t> &flash)
 
 /* With one record in a slot; `fails_at` is asked for the flash's counters. */
 void supply_fails(Expectations &expectations, const std::string &image, std::size_t slot,
-                  const std::function<bool(const Flash::Counters &)> &fails_at)
+                  const std::function<bool(const Flash::Counters &)> &fails_at,
+                  bool beside_weak_cell = false)
 {
     Stm32g474Config config = board_config();
     config.power_stage.plant.sensors.encoder_counts_per_turn = counts_per_turn;
@@ -100,6 +101,9 @@ void supply_fails(Expectations &expectations, const std::string &image, std::siz
     expectations.expect(fails_at(counters), "the store is being written");
     run.run_for(20 * us);
     const unsigned errors = counters.double_errors;
+    if (beside_weak_cell) {
+        run.device.flash_controller().weaken(static_cast<std::uint32_t>(place(slot)));
+    }
     run.machine.power_on();
     (void)run.output();
     const std::string text = run.start();
@@ -123,6 +127,14 @@ void supply_fails_in_store(Expectations &expectations, const std::string &image)
 {
     supply_fails(expectations, image, 0,
                  [](const Flash::Counters &counters) { return counters.programs == 3; });
+}
+
+/* A cell that has been corrected is not to hide the torn one behind it. */
+void supply_fails_beside_weak_cell(Expectations &expectations, const std::string &image)
+{
+    supply_fails(
+        expectations, image, 0,
+        [](const Flash::Counters &counters) { return counters.programs == 3; }, true);
 }
 
 /* The page is full: the other one is erased first. */

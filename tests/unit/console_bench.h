@@ -26,6 +26,7 @@ struct console_bench {
     bool trip_latched;   /* refuses to enable the bridge until it has been disabled */
     bool bridge_enabled;
     uint8_t store[BENCH_PAGE * BENCH_PAGES];
+    bool worn; /* the first page of each of the store's logs refuses to be programmed */
     size_t bytes_until_power_fails; /* of those that are programmed; then nothing is written */
     struct hal_samples samples;
 };
@@ -116,6 +117,9 @@ static inline bool bench_program(void *context, uint32_t offset, const void *dat
     const size_t left = b->bytes_until_power_fails;
     const size_t done = count < left ? count : left;
 
+    if (b->worn && offset / BENCH_PAGE % 2u == 0u) {
+        return false;
+    }
     memcpy(&b->store[offset], data, done);
     b->bytes_until_power_fails -= done;
     return true;

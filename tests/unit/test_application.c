@@ -92,6 +92,10 @@ static void test_stored_settings_that_are_refused_are_announced_and_the_defaults
     application_background(&bench.application);
     TEST_ASSERT_NOT_NULL(strstr(bench_heard(), "\nwarning: the stored settings are not in force: "
                                                "hold_on_enable_s -1 s: must be at least 0.01 s"));
+    bench.written_count = 0;
+    application_background(&bench.application);
+    application_background(&bench.application);
+    TEST_ASSERT_NULL_MESSAGE(strstr(bench_heard(), "stored settings"), "once is enough");
 }
 
 static void test_a_motor_that_is_refused_stops_the_start(void)

@@ -432,6 +432,43 @@ static void test_a_disable_in_motion_opens_the_bridge_at_once(void)
     TEST_ASSERT_FALSE(bridge.in_force.bridge_on);
 }
 
+static void test_the_monitor_waits_for_a_period_in_which_no_command_is_looked_at(void)
+{
+    enable();
+    while (drive.synchronism.due != drive.supervision.period + 1u) {
+        run(1);
+    }
+    const uint8_t step = (uint8_t)drive.synchronism.step;
+
+    post((struct drive_command){.kind = DRIVE_COMMAND_HOLD});
+    run(1);
+    TEST_ASSERT_EQUAL_UINT32(drive.supervision.period, drive.commands.looked);
+    TEST_ASSERT_EQUAL_UINT8(step, drive.synchronism.step);
+    run(2);
+    TEST_ASSERT_TRUE(step != drive.synchronism.step);
+}
+
+/* Without saturation impulses show nothing, and an alignment finds it. */
+static void test_behind_an_alignment_its_current_flows_on_into_the_hold(void)
+{
+    double before_A = 0.0;
+
+    settings.initial_position = DRIVE_INITIAL_POSITION_IMPULSES;
+    power_up();
+    post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE});
+    for (int k = 0; drive.supervision.state != DRIVE_ALIGNING; k++) {
+        before_A = hypot(motor.i_a, motor.i_b);
+        run(1);
+        TEST_ASSERT_TRUE_MESSAGE(k < 20000, "it never ends");
+    }
+    TEST_ASSERT_FALSE(drive.enabling.detection.by_impulses);
+    TEST_ASSERT_DOUBLE_WITHIN(0.1, 1.5, before_A);
+    for (int k = 0; k < 20; k++) {
+        run(1);
+        TEST_ASSERT_DOUBLE_WITHIN(0.15, before_A, hypot(motor.i_a, motor.i_b));
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -454,5 +491,7 @@ int main(void)
     RUN_TEST(test_the_steady_state_ekf_serves_a_slow_move);
     RUN_TEST(test_twenty_electrical_degrees_assumed_wrong_are_found_by_the_first_move);
     RUN_TEST(test_a_disable_in_motion_opens_the_bridge_at_once);
+    RUN_TEST(test_the_monitor_waits_for_a_period_in_which_no_command_is_looked_at);
+    RUN_TEST(test_behind_an_alignment_its_current_flows_on_into_the_hold);
     return UNITY_END();
 }

@@ -44,6 +44,8 @@ static struct initial_position detection;
 static struct saturable motor;
 static char error[DESIGN_ERROR_TEXT];
 static uint32_t periods;
+static double railed_V;                          /* what the sensing of phase a adds */
+static enum initial_position_stage railed_since; /* from this stage on */
 
 static double flux_of(double x, double saturation) /* x + b x^3 = its argument */
 {
@@ -149,6 +151,8 @@ void setUp(void)
                                .inertia_kgm2 = bench_params.inertia_kgm2,
                                .friction_Nm = FRICTION,
                                .resistance_ohm = bench_params.resistance_ohm};
+    railed_V = 0.0;
+    railed_since = INITIAL_POSITION_QUIET;
     TEST_ASSERT_TRUE_MESSAGE(design(&bench_params, TRIP_A, IMPULSE_ORDER_PALINDROMIC), error);
 }
 
@@ -174,12 +178,13 @@ static void find(double final_rad)
     for (periods = 0; !initial_position_done(&detection); periods++) {
         const double offset_A = was_on ? OFFSET_A : 0.0;
         const double offset_V = was_on ? OFFSET_V : 0.0;
+        const double rail_V = detection.stage >= railed_since ? railed_V : 0.0;
 
         next = initial_position_step(
             &detection, &params,
             bench_phases(sampled(current_a() + offset_A), sampled(current_b() - offset_A),
                          base.current_A),
-            bench_phases(motor.u_a + offset_V, motor.u_b + offset_V, base.voltage_V));
+            bench_phases(motor.u_a + offset_V + rail_V, motor.u_b + offset_V, base.voltage_V));
         was_on = now.bridge_on && next.bridge_on;
         run_motor(was_on, num_to_double(now.voltage.a) * base.voltage_V,
                   num_to_double(now.voltage.b) * base.voltage_V);
@@ -306,6 +311,19 @@ static void test_a_rotor_that_turns_is_waited_for(void)
     TEST_ASSERT_DOUBLE_WITHIN(3.5, 0.0, error_degrees());
 }
 
+static void test_each_detection_waits_for_the_rotor_as_often_as_the_first(void)
+{
+    for (int detections = 0; detections < 8; detections++) {
+        setUp();
+        place(0.5);
+        motor.speed = 6.0;
+        motor.friction_Nm = 80e-3;
+        find(0.0);
+        is_found_by_impulses();
+        TEST_ASSERT_TRUE(detection.repetitions > 0u);
+    }
+}
+
 static void test_an_open_winding_is_not_taken_for_a_position(void)
 {
     motor.broken_a = true;
@@ -313,6 +331,15 @@ static void test_an_open_winding_is_not_taken_for_a_position(void)
     find(0.0);
     TEST_ASSERT_EQUAL(INITIAL_POSITION_NOT_FOUND, detection.stage);
     TEST_ASSERT_TRUE(periods < 300u);
+}
+
+static void test_a_voltage_at_its_rail_while_there_is_none_ends_the_detection(void)
+{
+    railed_V = 31.0;
+    place(0.5);
+    find(0.0);
+    TEST_ASSERT_EQUAL(INITIAL_POSITION_NOT_FOUND, detection.stage);
+    TEST_ASSERT_EQUAL_UINT32(params.quiet_begin + params.quiet_periods, periods);
 }
 
 static void test_a_motor_that_no_impulse_can_fill_is_refused(void)
@@ -389,6 +416,18 @@ static void test_a_rotor_that_does_not_follow_is_not_found(void)
     TEST_ASSERT_EQUAL(INITIAL_POSITION_NOT_FOUND, detection.stage);
 }
 
+static void test_a_voltage_at_its_rail_while_the_rotor_turns_is_no_flux(void)
+{
+    motor.saturation = 0.0;
+    railed_V = -31.0;
+    railed_since = INITIAL_POSITION_OFFSET;
+    place(2.0);
+    find(1.0);
+    TEST_ASSERT_EQUAL(INITIAL_POSITION_NOT_FOUND, detection.stage);
+    TEST_ASSERT_TRUE(num_to_double(num_abs(detection.flux.a)) <= 8.0);
+    TEST_ASSERT_TRUE(num_to_double(num_abs(detection.resistance)) <= 8.0);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -399,12 +438,15 @@ int main(void)
     RUN_TEST(test_wrong_motor_parameters_leave_no_error);
     RUN_TEST(test_the_published_order_errs_where_the_rotor_turns);
     RUN_TEST(test_a_rotor_that_turns_is_waited_for);
+    RUN_TEST(test_each_detection_waits_for_the_rotor_as_often_as_the_first);
     RUN_TEST(test_an_open_winding_is_not_taken_for_a_position);
+    RUN_TEST(test_a_voltage_at_its_rail_while_there_is_none_ends_the_detection);
     RUN_TEST(test_a_motor_that_no_impulse_can_fill_is_refused);
     RUN_TEST(test_without_saturation_the_rotor_is_aligned);
     RUN_TEST(test_the_alignment_leaves_the_angle_without_torque);
     RUN_TEST(test_the_alignment_bears_a_wrong_resistance);
     RUN_TEST(test_the_alignment_is_gentle);
     RUN_TEST(test_a_rotor_that_does_not_follow_is_not_found);
+    RUN_TEST(test_a_voltage_at_its_rail_while_the_rotor_turns_is_no_flux);
     return UNITY_END();
 }

@@ -303,6 +303,33 @@ static void test_a_million_turns_are_covered_without_loss(void)
     TEST_ASSERT_EQUAL_INT64(0, angle_of(reference.next.position));
 }
 
+static void test_positions_go_round_at_two_to_the_31_turns(void)
+{
+    const struct position last = {INT32_MAX, 0xc0000000u};
+    struct motion_state end = {.turns = last.turns, .fraction = (uint64_t)last.fraction << 32};
+
+    reference_reset(&reference, last);
+    TEST_ASSERT_EQUAL_INT64(INT32_MAX, position_distance(last, position_add(last, INT32_MAX)));
+
+    end.speed = (int64_t)1 << 62; /* a quarter of a turn per period */
+    motion_run(&end, 0, 3u);
+    TEST_ASSERT_EQUAL_INT32(INT32_MIN, end.turns);
+    TEST_ASSERT_EQUAL_INT32(INT32_MIN, motion_position(&end).turns);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, -0.75, motion_distance(&end, last));
+    end.fraction = UINT64_MAX;
+    TEST_ASSERT_EQUAL_INT32(INT32_MIN + 1, motion_position(&end).turns);
+    end.fraction = (uint64_t)1 << 63;
+
+    reference.at.speed = end.speed;
+    reference.periods_left = 4u;
+    for (int period = 0; period < 3; period++) {
+        reference_advance(&reference);
+    }
+    TEST_ASSERT_EQUAL_INT32(INT32_MIN, reference.next.position.turns);
+    TEST_ASSERT_EQUAL_INT64(angle_of_position(motion_position(&end)),
+                            angle_of_position(reference.next.position));
+}
+
 static void test_a_smooth_move_has_bounded_jerk_and_continuous_acceleration(void)
 {
     /* From the positions alone; 2^-32 turn of resolution is worth 8 x 2^-32 in a third difference.
@@ -838,6 +865,7 @@ int main(void)
     RUN_TEST(test_a_trapezoid_shows_the_acceleration_that_acts_from_the_sample_on);
     RUN_TEST(test_the_speed_shown_is_right_to_1e_5_for_any_base);
     RUN_TEST(test_slow_and_fast_moves_land_without_a_correction);
+    RUN_TEST(test_positions_go_round_at_two_to_the_31_turns);
     RUN_TEST(test_a_million_turns_are_covered_without_loss);
     RUN_TEST(test_a_smooth_move_has_bounded_jerk_and_continuous_acceleration);
     RUN_TEST(test_a_trapezoid_stops_from_any_point_with_its_own_deceleration);

@@ -4,12 +4,14 @@
 #include <unity.h>
 
 #include "firmware/drive/parameter_store.h"
+#include "firmware/drive/record_log.h"
 
 enum { PAGE = 256, PAGES = 2, WORD = 8 };
 
 static uint8_t flash[PAGE * PAGES];
 static int bytes_until_power_fails; /* while programming; < 0: never */
 static int erased_pages;
+static size_t worn_from, worn_to; /* bytes that refuse to be programmed, and hold nothing */
 static struct hal_facts facts;
 static struct hal board;
 
@@ -34,6 +36,10 @@ static bool program(void *context, uint32_t offset, const void *data, size_t cou
             return false;
         }
     }
+    if (offset < worn_to && offset + count > worn_from) {
+        memset(&flash[offset], 0, count);
+        return false;
+    }
     for (size_t i = 0; i < count && bytes_until_power_fails != 0; i++) {
         flash[offset + i] = bytes[i];
         bytes_until_power_fails--;
@@ -56,6 +62,7 @@ void setUp(void)
     memset(flash, 0xff, sizeof flash);
     bytes_until_power_fails = -1;
     erased_pages = 0;
+    worn_from = worn_to = 0;
     facts = (struct hal_facts){.parameter_page_bytes = PAGE, .parameter_word_bytes = WORD};
     board = (struct hal){.facts = &facts,
                          .parameters_erase = erase,
@@ -65,6 +72,13 @@ void setUp(void)
 
 void tearDown(void)
 {
+}
+
+static bool refuse_to_erase(void *context, uint32_t page)
+{
+    (void)context;
+    (void)page;
+    return false;
 }
 
 static bool save(double torque_Nm)
@@ -128,6 +142,52 @@ static void test_the_supply_may_fail_at_any_byte_of_any_saving(void)
     }
 }
 
+static void goes_on_with_worn_cells_from(size_t from, size_t to)
+{
+    setUp();
+    worn_from = from;
+    worn_to = to;
+    for (int i = 1; i <= 40; i++) {
+        TEST_ASSERT_TRUE(save(1e-3 * i));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-7, 1e-3 * i, kept());
+    }
+}
+
+static void test_a_page_whose_first_word_is_worn_out_is_used_behind_it(void)
+{
+    goes_on_with_worn_cells_from(0, WORD);
+    goes_on_with_worn_cells_from(PAGE, PAGE + WORD);
+    TEST_ASSERT_EQUAL_INT(8, erased_pages); /* six records, and five */
+}
+
+static void test_a_page_that_is_worn_out_leaves_the_other(void)
+{
+    goes_on_with_worn_cells_from(0, PAGE);
+    goes_on_with_worn_cells_from(PAGE, 2 * PAGE);
+}
+
+static void test_a_store_that_takes_nothing_refuses(void)
+{
+    TEST_ASSERT_TRUE(save(1e-3));
+    worn_to = sizeof flash;
+    TEST_ASSERT_FALSE(save(2e-3));
+    setUp();
+    board.parameters_erase = refuse_to_erase;
+    TEST_ASSERT_FALSE(save(1e-3));
+}
+
+static void test_a_record_that_went_elsewhere_says_so(void)
+{
+    const struct record_log log = {0, 1, 24};
+    uint8_t slot[RECORD_SLOT_BYTES(24)] = {0};
+
+    TEST_ASSERT_EQUAL_INT(RECORD_WRITTEN, record_log_write(&board, &log, slot));
+    worn_from = 40;
+    worn_to = 48;
+    TEST_ASSERT_EQUAL_INT(RECORD_WRITTEN_ELSEWHERE, record_log_write(&board, &log, slot));
+    TEST_ASSERT_EQUAL_INT(RECORD_WRITTEN, record_log_write(&board, &log, slot));
+}
+
 static void test_a_flipped_bit_makes_a_record_void(void)
 {
     TEST_ASSERT_TRUE(save(0.01));
@@ -152,6 +212,10 @@ int main(void)
     RUN_TEST(test_an_erased_store_keeps_nothing);
     RUN_TEST(test_the_last_of_many_savings_counts);
     RUN_TEST(test_the_supply_may_fail_at_any_byte_of_any_saving);
+    RUN_TEST(test_a_page_whose_first_word_is_worn_out_is_used_behind_it);
+    RUN_TEST(test_a_page_that_is_worn_out_leaves_the_other);
+    RUN_TEST(test_a_store_that_takes_nothing_refuses);
+    RUN_TEST(test_a_record_that_went_elsewhere_says_so);
     RUN_TEST(test_a_flipped_bit_makes_a_record_void);
     RUN_TEST(test_a_board_without_a_store_keeps_nothing);
     return UNITY_END();

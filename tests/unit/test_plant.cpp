@@ -151,6 +151,8 @@ void test_impossible_configurations_are_refused_by_the_name_of_the_field()
     refuses("delay_periods", [](plant::Config &c) { c.bridge.delay_periods = 2; });
     refuses("current_range_A", [](plant::Config &c) { c.sensors.current_range_A = 0.0; });
     refuses("current_noise_rms_A", [](plant::Config &c) { c.sensors.current_noise_rms_A = -1.0; });
+    refuses("converter_crosstalk_codes",
+            [](plant::Config &c) { c.sensors.converter_crosstalk_codes = -1.0; });
     refuses("phase_voltage_offset_a_V",
             [](plant::Config &c) { c.sensors.phase_voltage_offset_a_V = nan; });
     refuses("initial_theta_rad", [](plant::Config &c) { c.initial_theta_rad = nan; });

@@ -163,6 +163,25 @@ void test_noise_in_the_codes_has_the_stated_rms()
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.1, std::sqrt(square / draws));
 }
 
+void test_converters_disturb_each_others_currents_by_the_stated_codes()
+{
+    plant::SensorConfig config = noiseless();
+    const plant::True still = {plant::Phases(), plant::Phases(), 24.0, 0.0, false};
+    TEST_ASSERT_EQUAL_UINT16(2048, plant::Sensors(config, 5).sample(7, still).current_a);
+    config.converter_crosstalk_codes = 10.0;
+    const plant::Sensors sensors(config, 5);
+    double square = 0.0, product = 0.0;
+    for (std::uint64_t k = 0; k < draws; k++) {
+        const plant::Samples samples = sensors.sample(k, still);
+        const double a = samples.current_a - 2048, b = samples.current_b - 2048;
+        square += a * a + b * b;
+        product += a * b;
+        TEST_ASSERT_EQUAL_INT16(0, samples.phase_voltage_a);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(0.1, 10.0, std::sqrt(square / (2.0 * draws)));
+    TEST_ASSERT_DOUBLE_WITHIN(2.0, 0.0, product / draws);
+}
+
 void test_noise_is_standard_normal()
 {
     double moment[5] = {0.0, 0.0, 0.0, 0.0, 0.0};
@@ -249,6 +268,7 @@ int main()
     RUN_TEST(test_an_eccentric_encoder_errs_once_per_turn);
     RUN_TEST(test_offsets_shift_the_codes_of_their_own_channel);
     RUN_TEST(test_noise_in_the_codes_has_the_stated_rms);
+    RUN_TEST(test_converters_disturb_each_others_currents_by_the_stated_codes);
     RUN_TEST(test_noise_is_standard_normal);
     RUN_TEST(test_channels_periods_and_seeds_are_independent);
     RUN_TEST(test_the_same_seed_repeats_a_run_and_another_does_not);

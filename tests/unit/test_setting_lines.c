@@ -420,6 +420,16 @@ static void test_a_motor_is_set_like_anything_else(void)
     TEST_ASSERT_TRUE(drive->settings.current_limit_A == 2.0);
 }
 
+static void test_a_store_that_is_worn_out_in_places_says_so(void)
+{
+    (void)bench_ask("set hold_current_A 0.7");
+    bench.worn = true;
+    answers("store", "ok store; where it was to go the store is worn out\n");
+    bench.worn = false;
+    start();
+    TEST_ASSERT_TRUE(drive->settings.hold_current_A == 0.7);
+}
+
 static void test_feedback_brings_its_law_and_an_encoder_its_counts(void)
 {
     (void)bench_ask("set feedback encoder");
@@ -504,6 +514,7 @@ int main(void)
     RUN_TEST(test_what_changes_in_motion_acts_at_once);
     RUN_TEST(test_what_is_not_stored_is_gone_with_the_power);
     RUN_TEST(test_a_motor_is_set_like_anything_else);
+    RUN_TEST(test_a_store_that_is_worn_out_in_places_says_so);
     RUN_TEST(test_feedback_brings_its_law_and_an_encoder_its_counts);
     RUN_TEST(test_another_law_drops_the_gains_of_the_one_before);
     RUN_TEST(test_a_refused_set_changes_nothing);

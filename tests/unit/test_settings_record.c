@@ -161,6 +161,16 @@ static void test_an_unknown_choice_is_no_record(void)
     uint8_t record[SETTINGS_RECORD_BYTES];
     const size_t behind_motor = RECORD_HEADER_BYTES + 7 * 10 + 6;
 
+    for (size_t i = 0; setting_number(i) != NULL; i++) {
+        const struct setting *row = setting_number(i);
+        struct drive_settings other = in;
+
+        if (row->type == SETTING_CHOICE) { /* the one behind the last */
+            setting_put(&other, row, 0, row->most + 1.0);
+            settings_record_encode(&other, 1, record);
+            TEST_ASSERT_FALSE_MESSAGE(settings_record_decode(&out, record), row->name);
+        }
+    }
     for (size_t choice = 0; choice < 7; choice++) {
         settings_record_encode(&in, 1, record);
         record[behind_motor + 3 * choice + 2] = 200;

@@ -104,7 +104,7 @@ def input_sections(image, left=()):
         if name not in names:
             raise ValueError(f"{name}: the interrupt does not reach it, in flash or elsewhere")
     for name in sorted(names.difference(left)):
-        yield f"*(.text.{name} .text.{name}.*)"
+        yield f"*(.text.{name} .text.{name}.* .text.unlikely.{name} .text.unlikely.{name}.*)"
     for name in sorted({base_name(c) for c in constants if not VENEER.fullmatch(c)}):
         yield f"*(.rodata.{name} .rodata.{name}.*)"
     for name in sorted(set(tables_of_jumps(image, roots, left))):

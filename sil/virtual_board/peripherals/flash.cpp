@@ -10,7 +10,8 @@ namespace
 
 enum : std::uint32_t { ACR = 0x00, KEYR = 0x08, SR = 0x10, CR = 0x14, ECCR = 0x18, OPTR = 0x20 };
 enum : std::uint32_t { PG = 1u << 0, PER = 1u << 1, STRT = 1u << 16, LOCK = 1u << 31 };
-enum : std::uint32_t { DCEN = 1u << 10, DBG_SWEN = 1u << 18, ECCD = 1u << 31, BK_ECC = 1u << 21 };
+enum : std::uint32_t { DCEN = 1u << 10, DBG_SWEN = 1u << 18 };
+enum : std::uint32_t { ECCC = 1u << 30, ECCD = 1u << 31, BK_ECC = 1u << 21 };
 enum : std::uint32_t { EOP = 1u << 0, ERRORS = 0xc3fau, BSY = 1u << 16, EOPIE = 1u << 24 };
 
 constexpr Ticks erase_time = ticks_per_s / 1000 * 22;
@@ -85,8 +86,8 @@ void Flash::put(std::uint32_t offset, std::uint32_t value, Master)
         control(value);
         return;
     case ECCR:
-        require((value & ~(at(ECCR) | ECCD)) == 0, offset, value, "only ECCD is modelled");
-        at(ECCR) &= ~(value & ECCD);
+        require((value & ~(at(ECCR) | ECCD)) == 0, offset, value, "ECCC and ECCD are modelled");
+        at(ECCR) &= ~(value & (ECCC | ECCD));
         return;
     default:
         refuse(offset, value, "not modelled");
@@ -208,10 +209,13 @@ void Flash::interrupt()
 void Flash::core_reads(std::uint32_t address, unsigned)
 {
     const std::uint32_t word = (address - base) / 8;
-    if (damaged_[word]) {
-        const std::uint32_t bank = word * 8 / bank_bytes;
+    const std::uint32_t place = (word * 8 >= bank_bytes ? BK_ECC : 0u) | word * 8 % bank_bytes;
+    if (word == weak_ && (at(ECCR) & (ECCC | ECCD)) == 0) {
+        at(ECCR) = ECCC | place;
+    }
+    if (damaged_[word] && (at(ECCR) & ECCC) == 0) {
         counters_.double_errors++;
-        at(ECCR) = ECCD | (bank != 0 ? BK_ECC : 0u) | word * 8 % bank_bytes;
+        at(ECCR) = ECCD | place;
         chip_.non_maskable_interrupt();
     }
 }

@@ -38,6 +38,13 @@ class Flash : public RegisterBlock, public FlashMemory
     /* Of a damaged double word: sets ECCR.ECCD and raises the non-maskable interrupt. */
     void core_reads(std::uint32_t address, unsigned size) override;
 
+    /* From now on one bit of the double word there is wrong, which the ECC corrects: ECCR.ECCC is
+       set, and while it is no double error is seen. */
+    void weaken(std::uint32_t offset)
+    {
+        weak_ = offset / 8;
+    }
+
     struct Counters {
         unsigned erases = 0, programs = 0, double_errors = 0; /* double words read damaged */
     };
@@ -61,7 +68,8 @@ class Flash : public RegisterBlock, public FlashMemory
 
     Rcc &rcc_;
     std::vector<std::uint8_t> memory_;
-    std::vector<bool> damaged_; /* double words that two and more bits of the check show wrong */
+    std::vector<bool> damaged_;  /* double words that two and more bits of the check show wrong */
+    std::uint32_t weak_ = bytes; /* double word with a single error; bytes: none */
     unsigned key_step_ = 0;
     unsigned bank_ = 0; /* of the present operation */
     bool busy_ = false;

@@ -108,6 +108,17 @@ class G071Flash : public RegisterBlock, public FlashMemory
     {
         return busy_until_;
     }
+    /* Of a damaged double word: sets ECCR.ECCD and raises the non-maskable interrupt. */
+    void core_reads(std::uint32_t address, unsigned size) override;
+    /* From now on an operation does not end. */
+    void wear_out()
+    {
+        worn_out_ = true;
+    }
+    unsigned double_errors() const
+    {
+        return double_errors_;
+    }
 
   protected:
     std::uint32_t fetch(std::uint32_t offset, Master master) override;
@@ -122,6 +133,10 @@ class G071Flash : public RegisterBlock, public FlashMemory
     unsigned key_step_ = 0;
     bool first_word_ = false;
     std::uint32_t first_address_ = 0, first_value_ = 0;
+    std::uint32_t target_ = 0, length_ = 0; /* of the present operation */
+    std::vector<bool> damaged_;             /* double words that fail the ECC */
+    bool worn_out_ = false;
+    unsigned double_errors_ = 0;
 };
 
 /* DMAMUX: the requests have other numbers. */

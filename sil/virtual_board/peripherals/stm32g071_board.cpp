@@ -56,6 +56,11 @@ G071Board::G071Board(Chip &chip, const plant::Config &config, double host_baud)
       dma_(numbers_, 1), no_dma_(numbers_, 2), dmamux_(numbers_, dma_, no_dma_),
       dmamux_numbers_(dmamux_), adc_(chip, triggers_, dmamux_),
       lpuart_(numbers_, rcc_.tree(), dmamux_, host_baud), watchdog_(chip),
+      dbg_(chip, "DBG",
+           {{0x00, "IDCODE", 0, 0x20006460},
+            {0x04, "CR", 0x6},
+            {0x08, "APBFZ1", 0x00201c33},
+            {0x0c, "APBFZ2", 0x00078800}}),
       plant_(without_delay(config))
 {
     const auto clock_at = [this](std::uint32_t offset, unsigned position) {
@@ -66,6 +71,7 @@ G071Board::G071Board(Chip &chip, const plant::Config &config, double host_baud)
     timer3_.clocked_by(clock_at(0x3c, 1));
     adc_.clocked_by(clock_at(0x40, 20));
     lpuart_.clocked_by(clock_at(0x3c, 20));
+    dbg_.clocked_by(clock_at(0x3c, 27));
     dma_.clocked_by(clock_at(0x38, 0));
     dmamux_.clocked_by(clock_at(0x38, 0));
     no_dma_.clocked_by([] { return false; });
@@ -103,6 +109,7 @@ std::vector<Mapping> G071Board::mappings()
         {"DMAMUX1", 0x40020800, 0x400, &dmamux_numbers_},
         {"LPUART1", 0x40008000, 0x400, &lpuart_},
         {"IWDG", 0x40003000, 0x400, &watchdog_},
+        {"DBG", 0x40015800, 0x400, &dbg_},
     };
 }
 

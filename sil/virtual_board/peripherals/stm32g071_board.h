@@ -31,7 +31,7 @@ class G071Board final : public Device
     G071Board(Chip &chip, const plant::Config &config, double host_baud);
 
     std::vector<Mapping> mappings() override;
-    FlashMemory &flash() override
+    G071Flash &flash() override
     {
         return flash_;
     }
@@ -57,6 +57,11 @@ class G071Board final : public Device
     G071Adc &converter()
     {
         return adc_;
+    }
+    /* DBG: what stands still while a debugger halts the core. */
+    RegisterBlock &debug_support()
+    {
+        return dbg_;
     }
     const Watchdog &watchdog() const
     {
@@ -96,6 +101,7 @@ class G071Board final : public Device
     G071Adc adc_;
     Lpuart lpuart_;
     Watchdog watchdog_;
+    RegisterBlock dbg_;
 
     plant::Plant plant_;
     bool started_ = false, tripped_ = false;

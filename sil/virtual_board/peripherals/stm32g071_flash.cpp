@@ -10,7 +10,8 @@ namespace
 {
 
 enum : std::uint32_t { DBG_SWEN = 1u << 18 };
-enum : std::uint32_t { ACR = 0x00, KEYR = 0x08, SR = 0x10, CR = 0x14 };
+enum : std::uint32_t { ACR = 0x00, KEYR = 0x08, SR = 0x10, CR = 0x14, ECCR = 0x18 };
+enum : std::uint32_t { ECCD = 1u << 31 };
 enum : std::uint32_t { PG = 1u << 0, PER = 1u << 1, STRT = 1u << 16, LOCK = 1u << 31 };
 enum : std::uint32_t { EOP = 1u << 0, ERRORS = 0xc3fau, BSY = 1u << 16 };
 
@@ -24,13 +25,18 @@ G071Flash::G071Flash(Chip &chip, Rcc &tree)
                     {{ACR, "ACR", 0x50b07, 0x40600},
                      {KEYR, "KEYR", 0xffffffff},
                      {SR, "SR", 0, 0, EOP | ERRORS | BSY | (1u << 18)},
-                     {CR, "CR", 0x800103fb, 0xc0000000, STRT | 0x40000000u}}),
-      tree_(tree), memory_(bytes, 0xff)
+                     {CR, "CR", 0x800103fb, 0xc0000000, STRT | 0x40000000u},
+                     {ECCR, "ECCR", 0, 0, 0xc0103fffu}}),
+      tree_(tree), memory_(bytes, 0xff), damaged_(bytes / 8)
 {
 }
 
 void G071Flash::reset()
 {
+    if (chip_.now() < busy_until_) { /* cut short: undefined cells, which here all fail the ECC */
+        std::fill_n(memory_.begin() + target_, length_, std::uint8_t{0});
+        std::fill_n(damaged_.begin() + target_ / 8, length_ / 8, true);
+    }
     RegisterBlock::reset();
     key_step_ = 0;
     first_word_ = false;
@@ -41,7 +47,7 @@ void G071Flash::reset()
 std::uint32_t G071Flash::fetch(std::uint32_t offset, Master)
 {
     if (offset == SR) {
-        return at(SR) | (chip_.now() < busy_until_ ? BSY : 0u);
+        return at(SR) | (chip_.now() < busy_until_ || (worn_out_ && busy_until_ != 0) ? BSY : 0u);
     }
     require(offset != KEYR, offset, 0, "write only");
     return at(offset);
@@ -64,6 +70,8 @@ void G071Flash::put(std::uint32_t offset, std::uint32_t value, Master)
         }
     } else if (offset == SR) {
         at(SR) &= ~(value & (EOP | ERRORS));
+    } else if (offset == ECCR) {
+        at(ECCR) &= ~(value & ECCD);
     } else {
         control(value);
     }
@@ -81,7 +89,10 @@ void G071Flash::control(std::uint32_t value)
                 "STRT: only a page erase (PER without PG) is modelled");
         const unsigned page = field(value, 3, 7);
         require(page < bytes / page_bytes, CR, value, "PNB: expected 0...63");
-        std::fill_n(memory_.begin() + page * page_bytes, page_bytes, std::uint8_t{0xff});
+        target_ = page * page_bytes;
+        length_ = page_bytes;
+        std::fill_n(memory_.begin() + target_, length_, std::uint8_t{0xff});
+        std::fill_n(damaged_.begin() + target_ / 8, length_ / 8, false);
         busy_until_ = chip_.now() + erase_time;
     }
 }
@@ -115,7 +126,19 @@ void G071Flash::store(std::uint32_t address, unsigned size, std::uint32_t value)
         }
         cell = static_cast<std::uint8_t>((i < 4 ? first_value_ : value) >> (8 * (i % 4)));
     }
+    target_ = first_address_ - base;
+    length_ = 8;
     busy_until_ = chip_.now() + program_time;
+}
+
+void G071Flash::core_reads(std::uint32_t address, unsigned)
+{
+    const std::uint32_t word = (address - base) / 8;
+    if (damaged_[word]) {
+        double_errors_++;
+        at(ECCR) = ECCD | word;
+        chip_.non_maskable_interrupt();
+    }
 }
 
 } // namespace virtual_board

@@ -11,10 +11,10 @@
     PIN(C, 1, ALTERNATE, 2, DOWN, TIM1, CH2)                                                       \
     PIN(A, 10, ALTERNATE, 6, DOWN, TIM1, CH3)                                                      \
     PIN(C, 3, ALTERNATE, 2, DOWN, TIM1, CH4)                                                       \
-    PIN(C, 13, ALTERNATE, 4, DOWN, TIM1, CH1N)                                                     \
-    PIN(A, 12, ALTERNATE, 6, DOWN, TIM1, CH2N)                                                     \
-    PIN(B, 9, ALTERNATE, 12, DOWN, TIM1, CH3N)                                                     \
-    PIN(C, 5, ALTERNATE, 6, DOWN, TIM1, CH4N)                                                      \
+    PIN(C, 13, ALTERNATE, 4, UP, TIM1, CH1N)                                                       \
+    PIN(A, 12, ALTERNATE, 6, UP, TIM1, CH2N)                                                       \
+    PIN(B, 9, ALTERNATE, 12, UP, TIM1, CH3N)                                                       \
+    PIN(C, 5, ALTERNATE, 6, UP, TIM1, CH4N)                                                        \
     PIN(A, 1, ANALOG, 0, NONE, OPAMP1, VINP0)                                                      \
     PIN(B, 13, ANALOG, 0, NONE, OPAMP3, VINP1)                                                     \
     PIN(B, 1, ANALOG, 0, NONE, COMP1, INP1)                                                        \
@@ -33,6 +33,7 @@
     PIN(C, 10, OUTPUT, 0, NONE, GPIOC, LED)
 
 #define BRIDGE                BRIDGE_OF_GATES
+#define LOW_GATES_ACTIVE_LOW  1
 #define DEAD_TIME_CYCLES      400
 #define BRIDGE_RESISTANCE_OHM 0.1
 
