@@ -38,7 +38,8 @@ struct tuning {
  * The control steps the current of a hold with each change of the load's estimate. An inductance
  * that is not the model's makes of each step an innovation, and of that the next change: the
  * current walks with the load. Left out, two of three random motors are unstable where the
- * inductance is a tenth less than their file says.
+ * inductance is a tenth less than their file says. It stands for what the voltage's noise stands
+ * for, too: whichever is more counts.
  */
 #define SUPPLY_V        24.0
 #define RATED_A         3.0
@@ -116,7 +117,8 @@ static const struct tuning hold_tuning = {
 /* A settled hold takes the back-EMF of a rotor that creeps under a slow load for an offset, within
    some 1/w_h. When the rotor stops, that offset is wrong, and shows as a step of the load: only
    what has lasted as long as this is kept then. 0.1 to 1 s serve. */
-#define BIAS_SETTLE_TIME_S 0.3
+#define BIAS_SETTLE_TIME_S  0.3
+#define BIAS_SETTLE_EVERY_S 1.6e-3 /* a block of the synchronism monitor */
 
 static uint32_t periods(double time_s, double period_s)
 {
@@ -162,8 +164,8 @@ static bool solve(const struct motor_params *motor, double period_s, const struc
     double rated_torque = motor->torque_constant_Nm_A * motor->rated_current_A;
     double current_per_voltage = period_s / motor->inductance_H * motor->supply_V;
     double current_walk = tuning->current_walk * tuning->load_walk * motor->rated_current_A;
-    double current =
-        square(tuning->voltage_noise * current_per_voltage) + square(current_walk) * period_s;
+    double current = larger(square(tuning->voltage_noise * current_per_voltage),
+                            square(current_walk) * period_s);
     struct riccati_problem problem = {
         .states = STATES,
         .doublings = tuning->doublings,
@@ -411,7 +413,7 @@ bool invariant_ekf_load_step_hold_design(const struct motor_params *motor, doubl
     gains->rest_periods = periods(REST_S, period_s);
     gains->swing_periods = periods(SWING_S, period_s);
     gains->load_step_Nm = load_step_Nm(motor, period_s, hold_current_A);
-    gains->bias_settle = 1.0 - exponential(-period_s / BIAS_SETTLE_TIME_S);
+    gains->bias_settle = 1.0 - exponential(-BIAS_SETTLE_EVERY_S / BIAS_SETTLE_TIME_S);
     gains->led_load_memory = LED_MEMORY * gains->quiet.load_return;
     return true;
 }

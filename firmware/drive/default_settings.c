@@ -76,7 +76,7 @@ static bool bears(const struct drive_settings *settings, double period_s, double
            hold_control_check(&task, limit);
 }
 
-static double hold_current_wanted(const struct drive_settings *settings)
+__attribute__((noinline)) static double hold_current_wanted(const struct drive_settings *settings)
 {
     const bool half =
         settings->standstill_pulses || settings->estimator == DRIVE_ESTIMATOR_STEADY_STATE_EKF;

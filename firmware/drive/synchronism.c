@@ -116,6 +116,10 @@ static enum synchronism step(struct drive *drive, const struct rotor *rotor)
     switch (drive->synchronism.step++) {
     case TAKE:
         drive->synchronism.block_began = drive->supervision.period;
+        if (drive->hold.active) {
+            invariant_ekf_settle_bias(&drive->estimator.invariant_ekf,
+                                      &drive->params.estimator.invariant_ekf);
+        }
         synchronism_monitor_take(monitor, params,
                                  invariant_ekf_take_innovation_sum(&drive->estimator.invariant_ekf),
                                  drive->hold.active);

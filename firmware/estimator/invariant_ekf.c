@@ -62,6 +62,22 @@ void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_p
     invariant_ekf_settle(ekf);
 }
 
+void invariant_ekf_follow_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params)
+{
+    ekf->following_periods = params->following_periods + params->rest_periods;
+    ekf->bias = ekf->settled_bias;
+}
+
+void invariant_ekf_settle_bias(struct invariant_ekf *ekf, const struct invariant_ekf_params *params)
+{
+    if (ekf->following_periods == 0u) {
+        struct phases *settled = &ekf->settled_bias;
+
+        settled->a += num_mul_coef_nearest(ekf->bias.a - settled->a, params->bias_settle);
+        settled->b += num_mul_coef_nearest(ekf->bias.b - settled->b, params->bias_settle);
+    }
+}
+
 struct passage invariant_ekf_observe(struct invariant_ekf *ekf,
                                      const struct invariant_ekf_params *params,
                                      const struct estimator_input *input)

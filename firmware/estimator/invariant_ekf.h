@@ -63,7 +63,7 @@ struct invariant_ekf_params {
     uint32_t rest_periods;                   /* behind that, in which none is */
     uint32_t swing_periods;                  /* in which a rotor swings into place */
     num_t load_step;                         /* what a quiet hold takes for a step of the load */
-    coef_t bias_settle;                      /* share per period of settled_bias' way to the bias */
+    coef_t bias_settle;                      /* share per call of settled_bias' way to the bias */
     coef_t led_memory; /* share per period of led_change's way to the change */
 };
 
@@ -101,6 +101,16 @@ static inline num_t invariant_ekf_take_innovation_sum(struct invariant_ekf *ekf)
     ekf->innovation_sum = NUM(0.0);
     return sum;
 }
+
+/* A load step in a settled hold. Of the offset stays what has lasted: the rest may have been
+ * motion. */
+__attribute__((noinline)) void invariant_ekf_follow_step(struct invariant_ekf *ekf,
+                                                         const struct invariant_ekf_params *params);
+
+/* To be called every 1.6 ms, as bias_settle is designed: in a settled hold the lasting offset goes
+   some of its way to the offset. */
+__attribute__((noinline)) void invariant_ekf_settle_bias(struct invariant_ekf *ekf,
+                                                         const struct invariant_ekf_params *params);
 
 /* At S(k): corrects what was predicted for it, and predicts S(k+1). The default path does not come
    here: invariant_ekf_step.h. */

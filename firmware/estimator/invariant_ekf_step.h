@@ -98,15 +98,6 @@ static inline num_t invariant_ekf_beyond_detent(struct invariant_ekf *ekf,
     return beyond;
 }
 
-static inline void invariant_ekf_settle_bias(struct invariant_ekf *ekf,
-                                             const struct invariant_ekf_params *params)
-{
-    ekf->settled_bias.a +=
-        num_mul_coef_nearest(ekf->bias.a - ekf->settled_bias.a, params->bias_settle);
-    ekf->settled_bias.b +=
-        num_mul_coef_nearest(ekf->bias.b - ekf->settled_bias.b, params->bias_settle);
-}
-
 /* Which of the sets of gains serves this period of the hold. */
 static inline const struct invariant_ekf_gain_set *
 invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
@@ -125,13 +116,11 @@ invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_p
     const num_t change =
         leads ? invariant_ekf_beyond_detent(ekf, params, num_abs(away)) : num_abs(away);
 
-    if (change > params->load_step &&
+    if (RARE(change > params->load_step) &&
         (ekf->following_periods == 0u || num_half(change) > params->load_step)) {
-        ekf->following_periods = params->following_periods + params->rest_periods;
-        ekf->bias = ekf->settled_bias;
+        invariant_ekf_follow_step(ekf, params);
     }
     if (ekf->following_periods == 0u) {
-        invariant_ekf_settle_bias(ekf, params);
         return &params->holding;
     }
     ekf->following_periods--;

@@ -113,9 +113,7 @@
     REAL(0x2144, hold_on_enable_s, "s", FIXED(0.01), FIXED(10.0), FIXED(0.150), AT_ENABLE,         \
          "half of it behind the search for an encoder's zero")                                     \
     REAL(0x2145, hold_current_A, "A", RATED(0.01), RATED(1.0), FOLLOWS, AT_ENABLE,                 \
-         "d-axis current at rest: the rated current, half of it with standstill_pulses or the "    \
-         "steady-state-ekf, or what of it the hold's own check passes; bears Km x "                \
-         "hold_current_A, heats R x its square")                                                   \
+         "d-axis current at rest: rated (pulses: half), or what of it the hold's check passes")    \
     REAL(0x2146, motion_current_A, "A", FIXED(0.0), RATED(1.0), FIXED(0.0), IN_MOTION,             \
          "d-axis current in motion")                                                               \
     REAL(0x2147, hold_ramp_s, "s", FIXED(1e-3), FIXED(1.0), FIXED(0.010), AT_ENABLE,               \

@@ -190,7 +190,7 @@ void hold_gains_are_the_steady_kalman_gain_at_1_rad_s()
     } cases[] = {{holds.quiet, 1e-6}, {holds.following, 6.25e-6}};
     for (const auto &[gains, load_walk] : cases) {
         const double current_walk = std::pow(0.4 / motor.torque_constant_Nm_A, 2) * load_walk;
-        const double current = current_noise + current_walk;
+        const double current = std::max(current_noise, current_walk);
         VectorXd q(5);
         q << current, current, 1e-6, 1e-12, load_walk;
         const MatrixXd k = kalman_gain(transition(motor, {1.0, 1.5}, 5), q, 9.7e-6, 32768);

@@ -131,17 +131,17 @@ def what_the_drive_bears_is_said(folder):
     """Of every motor; one that the drive would refuse has the refusal instead."""
     for motor in json.loads(run("check-motor", "--json", *LIBRARY).stdout):
         if motor["id"] == "seshagiri-khalil":
-            CHECKS.that(motor["refused_sensorless"].startswith("winding_drop_angle_error 166"),
+            CHECKS.that(motor["refused_sensorless"].startswith("winding_drop_angle_error 117"),
                         f"R x I is 40 V of a 0.135 V s/rad motor: {motor['refused_sensorless']}")
             continue
         CHECKS.that(motor["refused_sensorless"] == "", f"{motor['id']}: accepted")
-        torque, rated = motor["hold_torque_Nm"], motor["torque_constant_Nm_A"] * motor["rated_current_A"]
+        torque = motor["hold_torque_Nm"]
         CHECKS.that(abs(torque - motor["torque_constant_Nm_A"] * motor["hold_current_A"]) < 1e-9,
                     f"{motor['id']}: Km x hold current is {torque}")
         CHECKS.that(abs(motor["hold_load_step_Nm"] / torque - 0.7246) < 1e-4,
                     f"{motor['id']}: an undamped rotor bears 0.72 of it at once")
-        CHECKS.that(0.033 < motor["hold_noticed_step_Nm"] / rated < 0.092,
-                    f"{motor['id']}: notices {motor['hold_noticed_step_Nm'] / rated:.3f} of its torque")
+        CHECKS.that(0.033 < motor["hold_noticed_step_Nm"] / torque < 0.165,
+                    f"{motor['id']}: notices {motor['hold_noticed_step_Nm'] / torque:.3f} of its torque")
         CHECKS.that(0 < motor["load_step_angle_error_deg"] <= 20, f"{motor['id']}: in motion")
         w_h = math.sqrt(motor["rotor_teeth"] * torque / motor["inertia_kgm2"])
         feigned = 0.025 * motor["resistance_ohm"] * motor["rated_current_A"] / motor["torque_constant_Nm_A"]

@@ -388,12 +388,12 @@ static void settled_hold_gains_of_the_reference_motor(void)
     const struct invariant_ekf_gains *gains = &hold.quiet;
 
     TEST_ASSERT_TRUE(invariant_ekf_hold_design(&motor, period_s, 1.5, &hold, error));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.71322, gains->k_current_d);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.72888, gains->k_current_q);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, -2.56837, gains->k_speed_q_rad_As);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-7, -0.0044131, gains->k_angle_q_rad_A);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.16164, gains->k_load_q_Nm_A);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -0.013316, gains->k_resistance_ohm_A2);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.63534, gains->k_current_d);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.65847, gains->k_current_q);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, -2.67109, gains->k_speed_q_rad_As);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, -0.0040019, gains->k_angle_q_rad_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.18360, gains->k_load_q_Nm_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -0.011943, gains->k_resistance_ohm_A2);
     TEST_ASSERT_TRUE(gains->k_angle_d_rad_A == 0.0 && gains->k_bias_d_V_A == 0.0);
     TEST_ASSERT_TRUE(gains->k_bias_q_V_A == 0.0 && gains->load_settle == 0.0);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.009110304, gains->load_return); /* 1 - exp(-0.1/10.9) */
@@ -410,13 +410,13 @@ static void a_hold_that_follows_leaves_the_offset_alone_and_lets_no_load_return(
     const struct invariant_ekf_gains *gains = &hold.following;
 
     TEST_ASSERT_TRUE(invariant_ekf_hold_design(&motor, period_s, 1.5, &hold, error));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, -3.87781, gains->k_speed_q_rad_As);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.284571, gains->k_load_q_Nm_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, -4.04197, gains->k_speed_q_rad_As);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.311492, gains->k_load_q_Nm_A);
     TEST_ASSERT_TRUE(gains->k_bias_q_V_A == 0.0 && gains->bias_return_V_Nm == 0.0);
     TEST_ASSERT_TRUE(gains->load_return == 0.0 && gains->angle_return_rad_Nm == 0.0);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.181269247, gains->load_settle); /* 1 - exp(-0.1/0.5) */
     TEST_ASSERT_EQUAL_UINT32(291, hold.following_periods);            /* 8 / (275 rad/s) */
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.000333278, hold.bias_settle);   /* 1 - exp(-0.1/300) */
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.005319136, hold.bias_settle);   /* 1 - exp(-1.6/300) */
 }
 
 static void an_unloaded_hold_learns_the_offset_alone(void)
@@ -425,7 +425,7 @@ static void an_unloaded_hold_learns_the_offset_alone(void)
     const struct invariant_ekf_gains *gains = &hold.unloaded;
 
     TEST_ASSERT_TRUE(invariant_ekf_hold_design(&motor, period_s, 1.5, &hold, error));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -0.043277, gains->k_bias_q_V_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -0.038814, gains->k_bias_q_V_A);
     TEST_ASSERT_TRUE(gains->k_angle_q_rad_A == 0.0 && gains->k_load_q_Nm_A == 0.0);
     TEST_ASSERT_TRUE(gains->bias_return_V_Nm == 0.0 && gains->angle_return_rad_Nm == 0.0);
 }

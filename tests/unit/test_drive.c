@@ -462,7 +462,7 @@ static void test_behind_an_alignment_its_current_flows_on_into_the_hold(void)
         TEST_ASSERT_TRUE_MESSAGE(k < 20000, "it never ends");
     }
     TEST_ASSERT_FALSE(drive.enabling.detection.by_impulses);
-    TEST_ASSERT_DOUBLE_WITHIN(0.1, 1.5, before_A);
+    TEST_ASSERT_DOUBLE_WITHIN(0.1, 3.0, before_A);
     for (int k = 0; k < 20; k++) {
         run(1);
         TEST_ASSERT_DOUBLE_WITHIN(0.15, before_A, hypot(motor.i_a, motor.i_b));
