@@ -13,4 +13,11 @@ bool parameter_flash_erase(uint32_t page);
 bool parameter_flash_program(uint32_t offset, const void *data, size_t count);
 bool parameter_flash_read(uint32_t offset, void *data, size_t count);
 
+/* In the NMI: whether it came from cells of the store that fail the check, which
+   parameter_flash_read then refuses; so it is done with. */
+__attribute__((used)) bool parameter_flash_take_error(void);
+
+/* A crash, but for such cells. */
+void nmi_exception(void);
+
 #endif

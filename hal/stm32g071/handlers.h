@@ -5,7 +5,6 @@
 int main(void);
 
 void reset_handler(void);
-void nmi_exception(void);               /* parameter_flash.c */
 void tim1_brk_up_trg_com_handler(void); /* FAULT */
 void tim2_handler(void);                /* deadline missed */
 void dma1_channel2_3_handler(void);     /* serial line */

@@ -11,11 +11,9 @@
 
 #include <string.h>
 
-#include "hal/cortex_m/crash.h"
 #include "hal/cortex_m/interrupts.h"
 #include "hal/cortex_m/wait.h"
 #include "hal/stm32g071/bridge.h"
-#include "hal/stm32g071/handlers.h"
 #include "hal/stm32g071/watchdog.h"
 
 enum {
@@ -91,8 +89,7 @@ bool parameter_flash_erase(uint32_t page)
     return good;
 }
 
-/* In the NMI. A second double error would raise none while the flag of the first is up. */
-__attribute__((used)) bool parameter_flash_take_error(void);
+/* A second double error would raise none while the flag of the first is up. */
 bool parameter_flash_take_error(void)
 {
     if (!reads_store || (FLASH->eccr & FLASH_ECCR_ECCD) == 0) {
@@ -162,21 +159,4 @@ bool parameter_flash_program(uint32_t offset, const void *data, size_t count)
 bool parameter_flash_read(uint32_t offset, void *data, size_t count)
 {
     return in_store(offset, count) && read_store(data, offset, count);
-}
-
-/* A double error in the parameter store is what a loss of power leaves; any other NMI is a crash.
- */
-__attribute__((naked)) void nmi_exception(void)
-{
-    __asm__ volatile(".syntax unified\n"
-                     "push {r4, lr}\n"
-                     "bl parameter_flash_take_error\n"
-                     "cmp r0, #0\n"
-                     "beq 1f\n"
-                     "pop {r4, pc}\n"
-                     "1: pop {r3}\n"
-                     "pop {r3}\n"
-                     "mov lr, r3\n"
-                     "ldr r3, =crash_exception\n"
-                     "bx r3\n");
 }

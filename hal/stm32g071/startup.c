@@ -1,6 +1,7 @@
 /* Reset and vector table: Armv6-M Architecture Reference Manual, B1.5. */
 #include "hal/cortex_m/crash.h"
 #include "hal/cortex_m/linker.h"
+#include "hal/cortex_m/parameter_flash.h"
 #include "hal/stm32g071/control_interrupt.h"
 #include "hal/stm32g071/device.h"
 #include "hal/stm32g071/handlers.h"

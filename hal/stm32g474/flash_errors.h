@@ -15,8 +15,4 @@ void parameter_flash_check_options(void);
    for with each read of the store, and all the time in the background. */
 void parameter_flash_forget_corrected(void);
 
-/* In the NMI: whether it came from cells of the store that fail the check, which
-   parameter_flash_read then refuses; so it is done with. */
-bool parameter_flash_take_error(void);
-
 #endif

@@ -5,7 +5,6 @@
 int main(void);
 
 void reset_handler(void);
-void nmi_exception(void);         /* a crash, but for a double error in the parameter store */
 void serial_line_interrupt(void); /* a line feed has come, or a byte with an error */
 
 #endif

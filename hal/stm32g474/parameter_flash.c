@@ -179,16 +179,3 @@ bool parameter_flash_read(uint32_t offset, void *data, size_t count)
 {
     return in_store(offset, count) && read_store(data, offset, count);
 }
-
-/* A double error in the parameter store is what a loss of power leaves; any other NMI is a crash.
- */
-__attribute__((naked)) void nmi_exception(void)
-{
-    __asm__ volatile("push {r4, lr}\n"
-                     "bl parameter_flash_take_error\n"
-                     "pop {r4, lr}\n"
-                     "cmp r0, #0\n"
-                     "it ne\n"
-                     "bxne lr\n"
-                     "b crash_exception\n");
-}

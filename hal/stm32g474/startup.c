@@ -4,6 +4,7 @@
  */
 #include "hal/cortex_m/crash.h"
 #include "hal/cortex_m/linker.h"
+#include "hal/cortex_m/parameter_flash.h"
 #include "hal/stm32g474/control_interrupt.h"
 #include "hal/stm32g474/deadline_guard.h"
 #include "hal/stm32g474/device.h"
