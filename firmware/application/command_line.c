@@ -21,7 +21,7 @@ static const struct line_form forms[] = {
     {"signals", LINE_SIGNALS, DRIVE_COMMANDS, 0, 0, false, "all signals with their values"},
     {"move", LINE_MOVE, DRIVE_COMMAND_MOVE_SMOOTH, WITH(position_rad),
      WITH(duration_s) | WITH(ramp_s) | WITH(jerk_s), true,
-     "jerk-limited move to a position, with times that suit the motor if none are given"},
+     "jerk-limited move to a position; the times are the motor's if not given"},
     DRIVE_COMMANDS_TABLE(COMMAND_FORM){
         "get", LINE_GET, DRIVE_COMMANDS, 0, 0, false,
         "a setting: value, unit, range, default; get hold* lists those that begin so"},

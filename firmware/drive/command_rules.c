@@ -66,8 +66,8 @@ bool command_rules_check(const struct drive *drive, const struct drive_command *
     struct text text;
 
     if (command->kind == DRIVE_COMMAND_STORE && drive->planner.motion != PLANNER_IDLE) {
-        return design_refuse(error, "store refused: writing takes longer than sine and set-points "
-                                    "can wait for their continuation; stop first");
+        return design_refuse(error, "store refused: sine and set-points cannot wait for the "
+                                    "writing; stop first");
     }
     if (command_rules_obeyed(command->kind, found)) {
         return true;

@@ -36,11 +36,11 @@ bool set_points_put(struct set_points *points, struct position position,
     }
     if (magnitude(step) > points->limits.speed * n) {
         return design_refuse(error, "set-point refused: the speed from the one before exceeds the "
-                                    "limit of the drive");
+                                    "drive's limit");
     }
     if (magnitude(step - step_before) > points->limits.acceleration * n * n) {
         return design_refuse(error, "set-point refused: the acceleration from the two before "
-                                    "exceeds the limit of the drive");
+                                    "exceeds the drive's limit");
     }
     points->point[points->written % SET_POINTS_LENGTH] = position;
     points->written++;

@@ -193,7 +193,7 @@ static void test_set_points_are_a_stream(void)
                                                              second counts */
     bench_periods(1);
     TEST_ASSERT_TRUE(reference_busy(&drive->reference));
-    answers("store", "error: store refused: writing takes longer");
+    answers("store", "error: store refused: sine and set-points cannot wait");
 }
 
 static void test_what_is_not_understood_is_refused_with_what_was_expected(void)
