@@ -117,8 +117,7 @@ static const struct tuning hold_tuning = {
 /* A settled hold takes the back-EMF of a rotor that creeps under a slow load for an offset, within
    some 1/w_h. When the rotor stops, that offset is wrong, and shows as a step of the load: only
    what has lasted as long as this is kept then. 0.1 to 1 s serve. */
-#define BIAS_SETTLE_TIME_S  0.3
-#define BIAS_SETTLE_EVERY_S 1.6e-3 /* a block of the synchronism monitor */
+#define BIAS_SETTLE_TIME_S 0.3
 
 static uint32_t periods(double time_s, double period_s)
 {
@@ -413,7 +412,7 @@ bool invariant_ekf_load_step_hold_design(const struct motor_params *motor, doubl
     gains->rest_periods = periods(REST_S, period_s);
     gains->swing_periods = periods(SWING_S, period_s);
     gains->load_step_Nm = load_step_Nm(motor, period_s, hold_current_A);
-    gains->bias_settle = 1.0 - exponential(-BIAS_SETTLE_EVERY_S / BIAS_SETTLE_TIME_S);
+    gains->bias_settle_s = BIAS_SETTLE_TIME_S;
     gains->led_load_memory = LED_MEMORY * gains->quiet.load_return;
     return true;
 }

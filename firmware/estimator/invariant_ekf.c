@@ -1,4 +1,6 @@
+#include "firmware/design/elementary.h"
 #include "firmware/estimator/invariant_ekf_step.h"
+#include "firmware/estimator/synchronism_monitor.h"
 
 static struct invariant_ekf_gain_set scale(const struct per_unit *base,
                                            const struct invariant_ekf_gains *k)
@@ -43,7 +45,8 @@ struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params 
         .rest_periods = hold->rest_periods,
         .swing_periods = hold->swing_periods,
         .load_step = num_from_double(hold->load_step_Nm / base->torque_Nm),
-        .bias_settle = coef_from_double(hold->bias_settle),
+        .bias_settle =
+            coef_from_double(1.0 - exponential(-SYNCHRONISM_BLOCK_S / hold->bias_settle_s)),
         .led_memory = coef_from_double(hold->led_load_memory),
     };
     return params;

@@ -23,8 +23,9 @@
  * does, and what is integrated of it walks away with noise and offset. So the hold follows the load
  * at once, but returns within 3 to 10 ms, load and angle together, to the load it had settled at,
  * and takes what lasts for an offset; unless the difference shows a load step: then what is
- * estimated is the load from there on. Of small steps one in 10 ms is believed, so that the
- * estimate cannot run away with the current that compensates it. A rotor that is led along a
+ * estimated is the load from there on, and of the offset stays what has lasted: the rest was the
+ * motion of a rotor that crept under a slow load. Of small steps one in 10 ms is believed, so that
+ * the estimate cannot run away with the current that compensates it. A rotor that is led along a
  * creeping reference passes its detent torque, which is no step: there what exceeds twice the
  * difference of late is one.
  *
@@ -63,7 +64,7 @@ struct invariant_ekf_params {
     uint32_t rest_periods;                   /* behind that, in which none is */
     uint32_t swing_periods;                  /* in which a rotor swings into place */
     num_t load_step;                         /* what a quiet hold takes for a step of the load */
-    coef_t bias_settle;                      /* share per call of settled_bias' way to the bias */
+    coef_t bias_settle;                      /* share per block of settled_bias' way to the bias */
     coef_t led_memory; /* share per period of led_change's way to the change */
 };
 
@@ -107,8 +108,8 @@ static inline num_t invariant_ekf_take_innovation_sum(struct invariant_ekf *ekf)
 __attribute__((noinline)) void invariant_ekf_follow_step(struct invariant_ekf *ekf,
                                                          const struct invariant_ekf_params *params);
 
-/* To be called every 1.6 ms, as bias_settle is designed: in a settled hold the lasting offset goes
-   some of its way to the offset. */
+/* In a settled hold, once a block of the synchronism monitor: the lasting offset goes some of its
+   way to the offset. Without a monitor it stays as the hold began with it. */
 __attribute__((noinline)) void invariant_ekf_settle_bias(struct invariant_ekf *ekf,
                                                          const struct invariant_ekf_params *params);
 

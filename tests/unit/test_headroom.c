@@ -3,13 +3,11 @@
  * jump between the ends of what its protection lets pass. What overflows is found by the sanitizer
  * of undefined behaviour (preset sil-sanitize), in fixed point; the rest is found by any build.
  */
-#include <string.h>
-
-#include "firmware/control/position_law_dispatch.h"
 #include "firmware/drive/drive.h"
 #include "tests/unit/emulated.h"
 #include "tests/unit/fake_board.h"
 #include "tests/unit/num_assert.h"
+#include "tests/unit/servo_frequency.h"
 
 enum { PERIODS = EMULATED ? 300 : 3000 };
 
@@ -111,18 +109,6 @@ static void test_samples_at_their_ends_leave_the_detection_of_the_position_in_ra
     nothing_leaves_its_range();
 }
 
-/* The one gain that has no default. */
-static void give_frequency(void)
-{
-    const struct law_gain_list list = position_law_gains(settings.law);
-
-    for (size_t i = 0; i < list.count; i++) {
-        if (strcmp(list.gain[i].name, "servo_frequency_rad_s") == 0) {
-            settings.law_gains[i] = 50.0;
-        }
-    }
-}
-
 static void test_samples_at_their_ends_leave_every_law_with_an_encoder_in_range(void)
 {
     facts.encoder_counts_per_turn = 4000u;
@@ -132,7 +118,7 @@ static void test_samples_at_their_ends_leave_every_law_with_an_encoder_in_range(
         settings.hold_on_enable = false;
         settings.feedback = DRIVE_FEEDBACK_ENCODER;
         settings.law = (enum position_law)law;
-        give_frequency();
+        give_servo_frequency(&settings, 50.0);
         nothing_leaves_its_range();
     }
 }

@@ -300,7 +300,7 @@ static void test_the_published_order_errs_where_the_rotor_turns(void)
     TEST_ASSERT_DOUBLE_WITHIN(2.5, 0.0, error_degrees());
 }
 
-static void test_a_rotor_that_turns_is_waited_for(void)
+static void a_rotor_that_turns_is_found_once_it_rests(void)
 {
     place(0.5);
     motor.speed = 6.0;
@@ -308,6 +308,11 @@ static void test_a_rotor_that_turns_is_waited_for(void)
     find(0.0);
     is_found_by_impulses();
     TEST_ASSERT_TRUE(detection.repetitions > 0u);
+}
+
+static void test_a_rotor_that_turns_is_waited_for(void)
+{
+    a_rotor_that_turns_is_found_once_it_rests();
     TEST_ASSERT_DOUBLE_WITHIN(3.5, 0.0, error_degrees());
 }
 
@@ -315,12 +320,7 @@ static void test_each_detection_waits_for_the_rotor_as_often_as_the_first(void)
 {
     for (int detections = 0; detections < 8; detections++) {
         setUp();
-        place(0.5);
-        motor.speed = 6.0;
-        motor.friction_Nm = 80e-3;
-        find(0.0);
-        is_found_by_impulses();
-        TEST_ASSERT_TRUE(detection.repetitions > 0u);
+        a_rotor_that_turns_is_found_once_it_rests();
     }
 }
 

@@ -5,6 +5,7 @@
 #include <unity.h>
 
 #include "tests/unit/console_bench.h"
+#include "tests/unit/servo_frequency.h"
 
 static struct drive designed;
 static struct drive changed;
@@ -30,18 +31,6 @@ static void choose_others(struct drive_settings *others)
     others->overcurrent_trip_A = 5.0;
     others->motion_current_A = 0.3;
     others->synchronism_policy = DRIVE_SYNCHRONISM_WARN;
-}
-
-/* The only one that has no default. */
-static void give_servo_frequency(void)
-{
-    const struct law_gain_list list = position_law_gains(settings.law);
-
-    for (size_t i = 0; i < list.count; i++) {
-        if (strcmp(list.gain[i].name, "servo_frequency_rad_s") == 0) {
-            settings.law_gains[i] = 100.0;
-        }
-    }
 }
 
 static bool change(void)
@@ -73,7 +62,7 @@ static void test_every_law_gets_the_constants_that_its_design_would_give(void)
         }
         setUp();
         drive_settings_select_law(&settings, (enum position_law)law);
-        give_servo_frequency();
+        give_servo_frequency(&settings, 100.0);
         TEST_ASSERT_TRUE_MESSAGE(drive_init(&changed, &board, &settings, error), error);
         choose_others(&settings);
         TEST_ASSERT_TRUE_MESSAGE(drive_init(&designed, &board, &settings, error), error);
