@@ -16,7 +16,6 @@ namespace scenario
 namespace
 {
 
-constexpr double longest_ramp_s = 600; /* of a drift */
 constexpr std::int64_t most_incidents = 1000000;
 constexpr double largest_bound = 1e12; /* of an expectation; any finite number in practice */
 constexpr double largest_position_rad = 1e7;
@@ -157,7 +156,8 @@ Event read_event(const Value &table, const std::string &path, double duration_s)
     reader.number("time_s", event.time_s, 0, duration_s);
     const Value *command = reader.any("command");
     const Value *plant = reader.table("plant");
-    const bool has_load = reader.any("load_torque_Nm") != nullptr;
+    const bool has_load = reader.any(load_torque_key) != nullptr;
+    const bool has_vibration = reader.any(load_vibration_key) != nullptr;
     const bool has_short_circuit = reader.any("short_circuit") != nullptr;
     double stall_us = 0;
     if (reader.number("stall_us", stall_us, shortest_stall_us, longest_stall_us)) {
@@ -178,12 +178,12 @@ Event read_event(const Value &table, const std::string &path, double duration_s)
     if (reader.text("expect", expected)) {
         event.expects = expected;
     }
-    if ((command != nullptr) + (plant != nullptr) + has_load + event.type.has_value() +
-            event.expects.has_value() + has_short_circuit + event.stall_us.has_value() +
-            static_cast<bool>(event.fault) !=
+    if ((command != nullptr) + (plant != nullptr) + has_load + has_vibration +
+            event.type.has_value() + event.expects.has_value() + has_short_circuit +
+            event.stall_us.has_value() + static_cast<bool>(event.fault) !=
         1) {
         reader.fail("command", "expected exactly one of command, type, expect, load_torque_Nm, "
-                               "plant.<key>, short_circuit, stall_us, " +
+                               "load_vibration_Nm, plant.<key>, short_circuit, stall_us, " +
                                    listed(plant_fault_names()));
     }
     if (command != nullptr && command->kind == Value::Kind::text && command->text == power_cycle) {
@@ -203,9 +203,7 @@ Event read_event(const Value &table, const std::string &path, double duration_s)
         event.drifts = read_drifts(*plant, path);
         reader.number("ramp_s", event.drift_ramp_s, 0, longest_ramp_s);
     } else {
-        double load_torque_Nm = 0;
-        reader.number("load_torque_Nm", load_torque_Nm, -100, 100);
-        event.load_torque_Nm = load_torque_Nm;
+        event.load = read_load_change(reader);
     }
     reader.finish();
     return event;

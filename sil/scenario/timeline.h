@@ -12,13 +12,14 @@
 #include "sil/board/board.h"
 #include "sil/scenario/disturbance.h"
 #include "sil/scenario/document.h"
+#include "sil/scenario/load.h"
 #include "sil/scenario/window.h"
 #include "sil/scenario/table_reader.h"
 
 namespace scenario
 {
 
-/* Something that happens at a time; exactly one of the nine. */
+/* Something that happens at a time; exactly one of them. */
 struct Event {
     double time_s = 0; /* 0 is the first S(k) with the drive ready */
     std::optional<drive_command> command;
@@ -27,7 +28,7 @@ struct Event {
     bool power_cycle = false;           /* the board restarts, with its parameter store as it was */
     std::optional<std::string> type;    /* a line for the drive's console */
     std::optional<std::string> expects; /* the drive has written a line that begins so */
-    std::optional<double> load_torque_Nm;
+    std::optional<LoadChange> load;
     std::optional<int> shorted_leg; /* A+, A-, B+, B- */
     double short_circuit_A = 0;
     std::optional<double> stall_us; /* holds the control interrupt up until then behind S(k) */

@@ -153,8 +153,12 @@ void LoadSteps::add(std::size_t place, const Moment &moment)
 {
     const double step = moment.row[LOAD_TORQUE] - moment.load_before;
     if (step != 0) {
-        open_.push_back({place, moment.load_before, step});
+        recent_ = ramps_ ? std::nullopt : std::optional<Step>({place, moment.load_before, step});
+    } else if (recent_) {
+        open_.push_back(*recent_);
+        recent_.reset();
     }
+    ramps_ = step != 0;
     for (std::size_t i = 0; i < open_.size();) {
         const Step &one = open_[i];
         if (!((moment.row[LOAD_TORQUE_EST] - one.before) / one.step >= estimated)) {
@@ -169,7 +173,7 @@ void LoadSteps::add(std::size_t place, const Moment &moment)
 
 double LoadSteps::longest() const
 {
-    return open_.empty() ? longest_ : Metrics::none;
+    return open_.empty() && !recent_ ? longest_ : Metrics::none;
 }
 
 WindowFigures::WindowFigures(const MetricSettings &settings, double period_s)

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "sil/scenario/metrics.h"
@@ -102,7 +103,7 @@ class Ripple
     double squares_ = 0;
 };
 
-/* From a load step to 90 % of it being estimated. */
+/* From a load step to 90 % of it being estimated. A load that changes from row to row is none. */
 class LoadSteps
 {
   public:
@@ -116,6 +117,8 @@ class LoadSteps
         double before, step;
     };
     std::vector<Step> open_;
+    std::optional<Step> recent_; /* of the row before: a ramp, if the load goes on changing */
+    bool ramps_ = false;
     double longest_ = Metrics::none;
 };
 

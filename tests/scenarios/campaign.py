@@ -56,7 +56,7 @@ def a_motor_of_ones_own_is_taken_and_can_be_written_out(folder):
     (folder / "motors").mkdir()
     (folder / "motors/mine.toml").write_text(own, encoding="utf-8")
     (folder / "runs").mkdir()
-    for kind in ("long-run", "slip"):
+    for kind in ("long-run", "slip", "load"):
         arguments = ("campaign", kind, "--seed", "5", "--duration", "0.8",
                      "--set", "motor=motors/mine.toml")
         (drawn,) = json.loads(run(*arguments, "--json", cwd=folder).stdout)["runs"]
@@ -76,7 +76,8 @@ def a_motor_of_ones_own_is_taken_and_can_be_written_out(folder):
 
 def loads_of(file):
     events = tomllib.loads(file.read_text(encoding="utf-8"))["event"]
-    return [event["load_torque_Nm"] for event in events if "load_torque_Nm" in event]
+    return [event[key] for event in events for key in ("load_torque_Nm", "load_vibration_Nm")
+            if key in event]
 
 
 def a_motor_that_the_drive_refuses_is_a_verdict(folder):

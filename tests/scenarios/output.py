@@ -106,6 +106,20 @@ def events_act_at_their_time(folder):
                 "a move at time zero begins two periods late and takes its 0.02 s")
 
 
+def a_load_ramps_and_vibrates(folder):
+    ramp = "\n[[event]]\ntime_s = 0.01\nload_torque_Nm = 0.02\nramp_s = 0.01\n"
+    sine = "\n[[event]]\ntime_s = 0.03\nload_vibration_Nm = 0.01\nload_vibration_Hz = 100\n"
+    end = "\n[[event]]\ntime_s = 0.045\nload_vibration_Nm = 0\n"
+    run_small(folder, SMALL + ramp + sine + end)
+    head, rows = table(folder)
+    load = [row[head.index("load_torque_Nm")] for row in rows]
+    expected = [0.0] * 100 + [0.02 * (k + 1) / 100 for k in range(100)] + [0.02] * 301
+    for k in range(300, 450):
+        expected[k] += 0.01 * math.sin(2 * math.pi * 100 * (k - 300) * 1e-4)
+    CHECKS.that(all(math.isclose(a, b, abs_tol=1e-9) for a, b in zip(load, expected)),
+                "a ramp to 0.02 N m, a sine of 1.5 cycles on top")
+
+
 def a_drive_that_does_not_get_ready_fails(folder):
     result = run_small(folder, SMALL, "--set", "plant.current_offset_a_A=4.0")
     CHECKS.that(result.returncode == 1, f"exit code {result.returncode}")
@@ -243,7 +257,7 @@ def a_creep_that_the_sensing_hides_is_reported(folder):
 
 
 for check in (files_are_complete, trace_is_complete, metrics_agree_with_the_trace,
-              enabling_is_recorded_on_request, events_act_at_their_time,
+              enabling_is_recorded_on_request, events_act_at_their_time, a_load_ramps_and_vibrates,
               a_drive_that_does_not_get_ready_fails,
               a_rotor_that_is_turned_while_it_is_enabled_fails, base_and_set_change_only_what_they_name,
               parameter_sets_lie_under_the_scenario,
