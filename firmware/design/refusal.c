@@ -3,7 +3,13 @@
 #include "firmware/design/elementary.h"
 #include "firmware/design/text.h"
 
-enum { DIGITS = 4 };
+enum { DIGITS = 4, MORE_DIGITS = 7 };
+
+/* As many as tell a value from its limit. */
+static int digits_of(double value, double limit)
+{
+    return magnitude(value - limit) < 1e-3 * magnitude(limit) ? MORE_DIGITS : DIGITS;
+}
 
 bool design_refuse(char error[DESIGN_ERROR_TEXT], const char *text)
 {
@@ -16,16 +22,17 @@ bool design_refuse(char error[DESIGN_ERROR_TEXT], const char *text)
 bool design_refuse_limit(char error[DESIGN_ERROR_TEXT], struct refusal refusal)
 {
     struct text text = text_in(error, DESIGN_ERROR_TEXT);
+    const int digits = digits_of(refusal.value, refusal.limit);
 
     text_put(&text, refusal.quantity);
     text_put(&text, " ");
-    text_number(&text, refusal.value, DIGITS);
+    text_number(&text, refusal.value, digits);
     text_put(&text, " ");
     text_put(&text, refusal.unit);
     text_put(&text, ": must be ");
     text_put(&text, refusal.relation);
     text_put(&text, " ");
-    text_number(&text, refusal.limit, DIGITS);
+    text_number(&text, refusal.limit, digits);
     text_put(&text, " ");
     text_put(&text, refusal.unit);
     text_put(&text, ", ");
