@@ -89,6 +89,17 @@ class Points(unittest.TestCase):
         self.assertEqual(run["metrics"]["all"]["fault"], "none")
 
 
+    def test_the_drive_accepts_the_fastest_point(self):
+        text = points.scenario_of(
+            points.Point(points.PANELS[0], max(points.speeds_of(HOME, quick=False)), 0.1, 0.0471),
+            HOME, "bench")
+        with tempfile.TemporaryDirectory() as scratch:
+            file = pathlib.Path(scratch, "point.toml")
+            file.write_text(text, encoding="utf-8")
+            shutil.copy(HOME.file, scratch)
+            (run,) = simulator.Simulator(PROGRAM).run([file])
+        self.assertIsNone(run["failure"])
+
     def test_a_point_of_no_speed_rests_and_then_bears_the_load(self):
         text = points.scenario_of(points.Point(points.PANELS[0], 0.0, 0.3, 0.1413), HOME, "bench")
         (load,) = tomllib.loads(text)["event"]

@@ -48,7 +48,7 @@ def rounded(value, digits=4):
 
 
 def speeds_of(motor, quick):
-    return [rounded(share * motor.limit_speed_rad_s, 2)
+    return [rounded(share * motor.limit_speed_rad_s, 3)
             for share in (QUICK_SPEEDS if quick else SPEEDS)]
 
 
