@@ -5,7 +5,7 @@
 
 enum { DIGITS = 4, MORE_DIGITS = 7 };
 
-/* As many as tell a value from its limit. */
+/* As many as distinguish a value from its limit. */
 static int digits_of(double value, double limit)
 {
     return magnitude(value - limit) < 1e-3 * magnitude(limit) ? MORE_DIGITS : DIGITS;

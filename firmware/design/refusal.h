@@ -22,7 +22,7 @@ struct refusal {
 
 /*
  * Writes "<quantity> <value> <unit>: must be <relation> <limit> <unit>, <reason>", numbers with
- * four significant digits, seven where four do not tell them apart, cut to fit. Returns false.
+ * four significant digits, seven where four do not distinguish them, cut to fit. Returns false.
  */
 bool design_refuse_limit(char error[DESIGN_ERROR_TEXT], struct refusal refusal);
 

@@ -7,6 +7,7 @@
 #include "sil/plant/real_motor.h"
 #include "sil/plant/require.h"
 #include "sil/plant/sensors.h"
+#include "sil/plant/shaft_load.h"
 
 namespace plant
 {
@@ -74,7 +75,7 @@ double capacitor_of(const RealMotor &motor)
 struct Plant::Parts {
     explicit Parts(const Config &configured)
         : config(configured), bridge(bridge_of(config)), sensors(config.sensors, config.seed),
-          motor(motor_of(config)), period_s(config.bridge.period_s),
+          motor(motor_of(config)), period_s(config.bridge.period_s), shaft_load(period_s),
           delayed(config.bridge.delay_periods == 1), track_energy(config.track_energy)
     {
         std::visit([this](const auto &machine) { take_reference(machine); }, motor);
@@ -93,6 +94,7 @@ struct Plant::Parts {
     Sensors sensors;
     std::variant<Motor, RealMotor> motor;
     const double period_s;
+    ShaftLoad shaft_load;
     const bool delayed;
     const bool track_energy;
     double magnetic_reference_J = 0.0;
@@ -127,6 +129,9 @@ void Plant::step(const Duties &duties)
         },
         plant.motor);
     plant.period++;
+    if (plant.shaft_load.moves(plant.period)) {
+        load_shaft();
+    }
     observe();
 }
 
@@ -181,12 +186,29 @@ template <typename AnyMotor> void Plant::observe(const AnyMotor &motor)
     }
 }
 
-void Plant::set_load_torque(double load_torque_Nm)
+/* From the present S(k) on. */
+void Plant::load_shaft()
+{
+    const double torque_Nm = parts_->shaft_load.torque_Nm(parts_->period);
+    std::visit([torque_Nm](auto &motor) { motor.set_load_torque(torque_Nm); }, parts_->motor);
+    state_.load_torque_Nm = torque_Nm;
+}
+
+void Plant::set_load_torque(double load_torque_Nm, double ramp_s)
 {
     require(magnitude(load_torque_Nm) <= 1e3, "load_torque_Nm", load_torque_Nm, "-1000...1000 N m");
-    std::visit([load_torque_Nm](auto &motor) { motor.set_load_torque(load_torque_Nm); },
-               parts_->motor);
-    state_.load_torque_Nm = load_torque_Nm;
+    require(ramp_s >= 0 && ramp_s <= 1e6, "ramp_s", ramp_s, "0...1e6 s");
+    parts_->shaft_load.go_to(load_torque_Nm, ramp_s, parts_->period);
+    load_shaft();
+}
+
+void Plant::vibrate(double load_torque_Nm, double frequency_Hz)
+{
+    require(load_torque_Nm >= 0 && load_torque_Nm <= 1e3, "vibration", load_torque_Nm,
+            "0...1000 N m");
+    require(frequency_Hz >= 0 && frequency_Hz <= 1e6, "frequency_Hz", frequency_Hz, "0...1e6 Hz");
+    parts_->shaft_load.vibrate(load_torque_Nm, frequency_Hz, parts_->period);
+    load_shaft();
 }
 
 /* Energy that a change of L or J adds to what is stored came from nowhere: it is not counted. */

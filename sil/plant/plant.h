@@ -171,9 +171,10 @@ class Plant
      * Drift and faults: act from the present S(k) on, those of the sensing in the samples from
      * S(k+1) on. All throw std::invalid_argument naming the field.
      */
-    void set_load_torque(double load_torque_Nm);
-    void set_motor(const MotorConfig &motor);      /* currents, angle and speed go on */
-    void set_coulomb_friction(double share);       /* as in ImperfectionConfig */
+    void set_load_torque(double load_torque_Nm, double ramp_s = 0); /* from where it stands */
+    void vibrate(double load_torque_Nm, double frequency_Hz); /* amplitude of a sine beside it */
+    void set_motor(const MotorConfig &motor);                 /* currents, angle and speed go on */
+    void set_coulomb_friction(double share);                  /* as in ImperfectionConfig */
     void set_bus(double bus_V);                    /* the source's; a capacitor follows */
     void set_sensors(const SensorConfig &sensors); /* offsets, gains and noise may differ */
     /* Friction beside the motor's own; 0 frees the rotor, held_Nm stops it within this S(k). */
@@ -192,6 +193,7 @@ class Plant
     template <typename Change> void change_real_motor(const Change &change);
     void look();
     void observe();
+    void load_shaft();
     template <typename AnyMotor> void observe(const AnyMotor &motor);
 
     std::unique_ptr<Parts> parts_;

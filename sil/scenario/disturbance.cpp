@@ -169,6 +169,35 @@ std::vector<Drift> read_drifts(const Value &table, const std::string &path)
     return drifts;
 }
 
+const char *const load_torque_key = "load_torque_Nm";
+const char *const load_vibration_key = "load_vibration_Nm";
+
+LoadChange read_load_change(TableReader &event)
+{
+    constexpr double largest_Nm = 100, lowest_Hz = 0.01, highest_Hz = 1000;
+    LoadChange change;
+    if (event.number(load_torque_key, change.torque_Nm, -largest_Nm, largest_Nm)) {
+        event.number("ramp_s", change.ramp_s, 0, longest_ramp_s);
+        return change;
+    }
+    change.vibrates = true;
+    event.number(load_vibration_key, change.torque_Nm, 0, largest_Nm);
+    if (change.torque_Nm > 0) {
+        event.require("load_vibration_Hz");
+    }
+    event.number("load_vibration_Hz", change.frequency_Hz, lowest_Hz, highest_Hz);
+    return change;
+}
+
+void put_load(const LoadChange &change, plant::Plant &plant)
+{
+    if (change.vibrates) {
+        plant.vibrate(change.torque_Nm, change.frequency_Hz);
+    } else {
+        plant.set_load_torque(change.torque_Nm, change.ramp_s);
+    }
+}
+
 const std::vector<std::string> &plant_fault_names()
 {
     static const std::vector<std::string> names = [] {

@@ -54,6 +54,25 @@ struct Drift {
 /* The keys of an event's `plant`, at least one; throws InputError. */
 std::vector<Drift> read_drifts(const Value &table, const std::string &path);
 
+/* The longest way of a load, or of another value that goes somewhere. */
+constexpr double longest_ramp_s = 600;
+
+/* Of the machine's torque on the shaft: its steady part goes somewhere, or it vibrates. */
+struct LoadChange {
+    bool vibrates = false;
+    double torque_Nm = 0; /* where to; of a vibration the amplitude, 0 ends it */
+    double ramp_s = 0;
+    double frequency_Hz = 0;
+};
+
+/* The keys by which an event is recognised as one. */
+extern const char *const load_torque_key;
+extern const char *const load_vibration_key;
+
+/* Of an event that has one of the two; throws InputError. */
+LoadChange read_load_change(TableReader &event);
+void put_load(const LoadChange &change, plant::Plant &plant);
+
 /* The names of the faults, by which an event is recognised as one. */
 const std::vector<std::string> &plant_fault_names();
 

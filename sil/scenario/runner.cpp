@@ -82,7 +82,7 @@ class Runner
        are typed. */
     Runner(const Scenario &scenario, sil::DriveBoard &board, sil::Board *direct, Record &record)
         : scenario_(scenario), board_(board), direct_(direct), record_(record),
-          period_s_(scenario.plant.bridge.period_s), values_(values_of(scenario)), load_(period_s_),
+          period_s_(scenario.plant.bridge.period_s), values_(values_of(scenario)),
           motor_(scaled(scenario.motor.params, scenario.scales)),
           creep_(drive_blind_speed_rad_s(&scenario.drive, &board.facts())), line_(board),
           tape_(scenario.events, period_s_)
@@ -236,7 +236,7 @@ class Runner
             } else if (event.stall_us) {
                 board_.stall_control_interrupt(*event.stall_us * 1e-6);
             } else if (event.load) {
-                load_.change(*event.load, n);
+                put_load(*event.load, board_.plant());
             } else if (event.fault) {
                 event.fault(board_.plant());
             } else {
@@ -250,9 +250,6 @@ class Runner
             tape_.type(n, time_zero_, line_);
         }
         stream(n);
-        if (load_.moves(n)) {
-            board_.plant().set_load_torque(load_.torque_Nm(n));
-        }
         drift(n);
     }
 
@@ -392,7 +389,6 @@ class Runner
     Record &record_;
     double period_s_;
     PlantValues values_;
-    Load load_;
     plant::MotorConfig motor_;
     Run result_;
     Creep creep_;

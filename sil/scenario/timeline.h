@@ -12,7 +12,6 @@
 #include "sil/board/board.h"
 #include "sil/scenario/disturbance.h"
 #include "sil/scenario/document.h"
-#include "sil/scenario/load.h"
 #include "sil/scenario/window.h"
 #include "sil/scenario/table_reader.h"
 

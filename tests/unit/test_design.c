@@ -341,7 +341,7 @@ static void numbers_in_refusals_have_four_digits(void)
     }
 }
 
-static void a_value_can_be_told_from_its_limit(void)
+static void a_value_differs_in_print_from_its_limit(void)
 {
     struct refusal refusal = {.quantity = "speed",
                               .value = 140.0,
@@ -466,7 +466,7 @@ int main(void)
     RUN_TEST(a_period_for_which_the_euler_model_swings_up_is_refused);
     RUN_TEST(a_hold_without_current_is_refused);
     RUN_TEST(numbers_in_refusals_have_four_digits);
-    RUN_TEST(a_value_can_be_told_from_its_limit);
+    RUN_TEST(a_value_differs_in_print_from_its_limit);
     RUN_TEST(a_long_refusal_is_cut_to_fit);
     RUN_TEST(paper_gain_at_standstill_is_the_one_extracted);
     RUN_TEST(motion_gains_are_the_optimum_found_for_the_reference_motor);
