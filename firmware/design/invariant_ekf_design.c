@@ -100,9 +100,6 @@ static const struct tuning hold_tuning = {
 #define LOAD_STEP_NOISE 16.0
 #define LOAD_STEP_MIN   (0.015 / RATED_TORQUE_NM)
 #define LOAD_STEP_MAX   (0.025 / RATED_TORQUE_NM)
-/* The detent torque that a led rotor passes is no step: there the change counts beyond twice its
-   mean over twice the time in which the load returns. */
-#define LED_MEMORY 0.5
 /* A load step is followed until the rotor has swung out, in units of 1/w_h. */
 #define FOLLOWING_SWING 8.0
 /* Behind the gains that follow a load step the hold returns to the load found, for a while, unless
@@ -114,10 +111,6 @@ static const struct tuning hold_tuning = {
 #define SWING_S 0.050
 /* The settled load is the mean of the estimate over this time. */
 #define LOAD_SETTLE_TIME_S 5e-4
-/* A settled hold takes the back-EMF of a rotor that creeps under a slow load for an offset, within
-   some 1/w_h. When the rotor stops, that offset is wrong, and shows as a step of the load: only
-   what has lasted as long as this is kept then. 0.1 to 1 s serve. */
-#define BIAS_SETTLE_TIME_S 0.3
 
 static uint32_t periods(double time_s, double period_s)
 {
@@ -412,8 +405,6 @@ bool invariant_ekf_load_step_hold_design(const struct motor_params *motor, doubl
     gains->rest_periods = periods(REST_S, period_s);
     gains->swing_periods = periods(SWING_S, period_s);
     gains->load_step_Nm = load_step_Nm(motor, period_s, hold_current_A);
-    gains->bias_settle_s = BIAS_SETTLE_TIME_S;
-    gains->led_load_memory = LED_MEMORY * gains->quiet.load_return;
     return true;
 }
 

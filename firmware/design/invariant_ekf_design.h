@@ -59,8 +59,6 @@ struct invariant_ekf_hold_gains {
     uint32_t rest_periods;                /* behind that, in which none is */
     uint32_t swing_periods;               /* in which a rotor swings into place */
     double load_step_Nm;                  /* change that ends the settled hold */
-    double bias_settle_s;                 /* an offset that has lasted so long is one */
-    double led_load_memory; /* of the mean change where the hold leads, share per period */
 };
 
 /* Of an estimated angle, electrical: half of what loses the rotor, and a little for parts that

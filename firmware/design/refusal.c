@@ -8,7 +8,7 @@ enum { DIGITS = 4, MORE_DIGITS = 7 };
 /* As many as distinguish a value from its limit. */
 static int digits_of(double value, double limit)
 {
-    return magnitude(value - limit) < 1e-3 * magnitude(limit) ? MORE_DIGITS : DIGITS;
+    return magnitude(value - limit) < 1e-4 * magnitude(limit) ? MORE_DIGITS : DIGITS;
 }
 
 bool design_refuse(char error[DESIGN_ERROR_TEXT], const char *text)

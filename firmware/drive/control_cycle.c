@@ -299,7 +299,9 @@ static struct passage observe(struct drive *drive, const struct sample_set *now)
     struct estimator_input input = {
         .winding = now->winding,
         .encoder_count = now->encoder_count,
-        .hold = {.active = drive->hold.active, .leads = &drive->hold.leads},
+        .hold = {.active = drive->hold.active,
+                 .leads = &drive->hold.leads,
+                 .frame = &drive->hold.frame},
     };
 
     modulator_track_bus(&drive->modulator, now->bus);
@@ -320,7 +322,8 @@ IN_PLACE struct passage observe_sensorless(struct drive *drive, const struct sam
 
     return invariant_ekf_step(&drive->estimator.invariant_ekf,
                               &drive->params.estimator.invariant_ekf, now->winding.current,
-                              surprise, in_force, (struct rotor_hold){held, &drive->hold.leads});
+                              surprise, in_force,
+                              (struct rotor_hold){held, &drive->hold.leads, &drive->hold.frame});
 }
 
 /* Where a phase or a stop begins, nothing else that can wait is done in this period, and what has

@@ -117,8 +117,8 @@ static enum synchronism step(struct drive *drive, const struct rotor *rotor)
     case TAKE:
         drive->synchronism.block_began = drive->supervision.period;
         if (drive->hold.active) {
-            invariant_ekf_settle_bias(&drive->estimator.invariant_ekf,
-                                      &drive->params.estimator.invariant_ekf);
+            invariant_ekf_watch_hold(&drive->estimator.invariant_ekf,
+                                     &drive->params.estimator.invariant_ekf, drive->hold.leads);
         }
         synchronism_monitor_take(monitor, params,
                                  invariant_ekf_take_innovation_sum(&drive->estimator.invariant_ekf),

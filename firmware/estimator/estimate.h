@@ -7,7 +7,9 @@
 /* What the hold does with the rotor over the period. */
 struct rotor_hold {
     bool active;
-    const bool *leads; /* the rotor, else it holds it at rest; read in hold alone */
+    /* Read in hold alone: */
+    const bool *leads;          /* the rotor, else it holds it at rest */
+    const struct sincos *frame; /* of the hold's current */
 };
 
 /* What is known when the bridge is switched on: at rest, without current. */

@@ -1,4 +1,3 @@
-#include "firmware/design/elementary.h"
 #include "firmware/estimator/invariant_ekf_step.h"
 #include "firmware/estimator/synchronism_monitor.h"
 
@@ -29,6 +28,25 @@ static struct invariant_ekf_gain_set scale(const struct per_unit *base,
     return set;
 }
 
+/* A settled hold takes the back-EMF of a rotor that creeps under a slow load for an offset, within
+   some 1/w_h. When the rotor stops, that offset is wrong, and shows as a step of the load: only
+   what has lasted as long as this is kept then. 0.1 to 1 s serve. */
+#define BIAS_SETTLE_TIME_S 0.3
+/* A load vibrates that has swung to the other side three times, or has made six steps, each no
+   longer than this behind the one before: behind a step the rotor swings, too, and a load that
+   grows makes some to one side. */
+#define REVERSAL         2u
+#define VIBRATION_SWINGS 6u
+#define VIBRATION_CALM_S 0.25
+/* The mean change of a load that swings: over a cycle of 30 Hz. */
+#define USUAL_CHANGE_TIME_S 0.03
+
+enum { CALM_BLOCKS = (int)(VIBRATION_CALM_S / SYNCHRONISM_BLOCK_S) };
+
+/* 1 - exp(-x), x a block's share of a time: to 4e-7 of it. */
+#define SHARE(x)         ((x) * (1.0 - (x) / 2.0 * (1.0 - (x) / 3.0 * (1.0 - (x) / 4.0))))
+#define BLOCK_OF(time_s) SHARE(SYNCHRONISM_BLOCK_S / (time_s))
+
 struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params *model,
                                                 const struct per_unit *base,
                                                 const struct invariant_ekf_gains *moving,
@@ -45,9 +63,8 @@ struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params 
         .rest_periods = hold->rest_periods,
         .swing_periods = hold->swing_periods,
         .load_step = num_from_double(hold->load_step_Nm / base->torque_Nm),
-        .bias_settle =
-            coef_from_double(1.0 - exponential(-SYNCHRONISM_BLOCK_S / hold->bias_settle_s)),
-        .led_memory = coef_from_double(hold->led_load_memory),
+        .bias_settle = coef_from_double(BLOCK_OF(BIAS_SETTLE_TIME_S)),
+        .usual_memory = coef_from_double(BLOCK_OF(USUAL_CHANGE_TIME_S)),
     };
     return params;
 }
@@ -58,20 +75,35 @@ void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_p
     estimate_reset(&ekf->estimate, &params->model, position, resistance);
     ekf->bias = (struct phases){NUM(0.0), NUM(0.0)};
     ekf->innovation_sum = NUM(0.0);
-    ekf->led_change = NUM(0.0);
+    ekf->usual_change = NUM(0.0);
+    ekf->swings = 0u;
+    ekf->swung_up = false;
+    ekf->calm_blocks = 0u;
+    ekf->step_limit = params->load_step;
     ekf->unloaded_periods = unloaded_periods;
     ekf->swing_end =
         unloaded_periods > params->swing_periods ? unloaded_periods - params->swing_periods : 0u;
     invariant_ekf_settle(ekf);
 }
 
+__attribute__((noinline)) static void note_swing(struct invariant_ekf *ekf, num_t away)
+{
+    if ((away > NUM(0.0)) != ekf->swung_up) {
+        ekf->swung_up = !ekf->swung_up;
+        ekf->swings += REVERSAL;
+    }
+    ekf->calm_blocks = CALM_BLOCKS;
+}
+
 void invariant_ekf_follow_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params)
 {
+    note_swing(ekf, invariant_ekf_away_from_settled_load(ekf));
+    ekf->swings++;
     ekf->following_periods = params->following_periods + params->rest_periods;
     ekf->bias = ekf->settled_bias;
 }
 
-void invariant_ekf_settle_bias(struct invariant_ekf *ekf, const struct invariant_ekf_params *params)
+static void settle_bias(struct invariant_ekf *ekf, const struct invariant_ekf_params *params)
 {
     if (ekf->following_periods == 0u) {
         struct phases *settled = &ekf->settled_bias;
@@ -79,6 +111,26 @@ void invariant_ekf_settle_bias(struct invariant_ekf *ekf, const struct invariant
         settled->a += num_mul_coef_nearest(ekf->bias.a - settled->a, params->bias_settle);
         settled->b += num_mul_coef_nearest(ekf->bias.b - settled->b, params->bias_settle);
     }
+}
+
+void invariant_ekf_watch_hold(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
+                              bool leads)
+{
+    const num_t away = invariant_ekf_away_from_settled_load(ekf);
+    const num_t change = num_abs(away);
+
+    settle_bias(ekf, params);
+    if (ekf->following_periods <= params->rest_periods) {
+        ekf->usual_change +=
+            num_mul_coef(change + change + change - ekf->usual_change, params->usual_memory);
+    }
+    if (change > num_half(params->load_step)) {
+        note_swing(ekf, away);
+    } else if (ekf->calm_blocks > 0u && --ekf->calm_blocks == 0u) {
+        ekf->swings = 0u;
+    }
+    ekf->step_limit = params->load_step +
+                      (leads || ekf->swings >= VIBRATION_SWINGS ? ekf->usual_change : NUM(0.0));
 }
 
 struct passage invariant_ekf_observe(struct invariant_ekf *ekf,

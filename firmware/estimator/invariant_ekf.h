@@ -12,7 +12,9 @@
  *   i_hat += k_i (i - i_hat)          w_hat  += k_w nu_q
  *   theta += k_td sat(w/w_s) nu_d + k_tq nu_q
  *   T_L   += k_T nu_q
- *   b     += (k_bd sat(w/w_s) nu_d + k_bq nu_q) q      q: the q axis, in phase coordinates
+ *   b     += (k_bd sat(w/w_s) nu_d + k_bq nu_q) q      q: the q axis, in phase coordinates; in
+ *                                                     hold that of the current, as a correction
+ *                                                     that swings with the rotor would add up in d
  *   R     += k_R i_d nu_d                              while holding
  *
  * b is the offset of the voltage measurement, constant in phase coordinates, where the back-EMF
@@ -26,8 +28,8 @@
  * estimated is the load from there on, and of the offset stays what has lasted: the rest was the
  * motion of a rotor that crept under a slow load. Of small steps one in 10 ms is believed, so that
  * the estimate cannot run away with the current that compensates it. A rotor that is led along a
- * creeping reference passes its detent torque, which is no step: there what exceeds twice the
- * difference of late is one.
+ * creeping reference passes its detent torque, and a machine may vibrate, which several steps on
+ * end show: there what exceeds three times the mean difference of late is a step.
  *
  * Gains: design/invariant_ekf_design.h.
  */
@@ -65,7 +67,7 @@ struct invariant_ekf_params {
     uint32_t swing_periods;                  /* in which a rotor swings into place */
     num_t load_step;                         /* what a quiet hold takes for a step of the load */
     coef_t bias_settle;                      /* share per block of settled_bias' way to the bias */
-    coef_t led_memory; /* share per period of led_change's way to the change */
+    coef_t usual_memory;                     /* share per block of usual_change's way */
 };
 
 struct invariant_ekf {
@@ -75,7 +77,11 @@ struct invariant_ekf {
     num_t innovation_sum;       /* of nu_d since the synchronism monitor has taken it; runs on
                                    without one */
     num_t settled_load;         /* torque that a hold returns to */
-    num_t led_change;           /* twice the mean of the load's change, where the hold leads */
+    num_t step_limit;           /* beyond which a change of the load is a step */
+    num_t usual_change;         /* three times the mean of the load's change of late */
+    uint32_t swings;            /* of the load on end: steps, and twice as much for a reversal */
+    uint32_t calm_blocks;       /* left until they are at an end */
+    bool swung_up;              /* the last time */
     uint32_t following_periods; /* left of the gains that follow a load step, and of their rest */
     uint32_t swing_end;         /* of unloaded_periods, when the rotor has swung into place */
     uint32_t unloaded_periods;  /* left of the hold in which no load step is expected */
@@ -108,10 +114,15 @@ static inline num_t invariant_ekf_take_innovation_sum(struct invariant_ekf *ekf)
 __attribute__((noinline)) void invariant_ekf_follow_step(struct invariant_ekf *ekf,
                                                          const struct invariant_ekf_params *params);
 
-/* In a settled hold, once a block of the synchronism monitor: the lasting offset goes some of its
-   way to the offset. Without a monitor it stays as the hold began with it. */
-__attribute__((noinline)) void invariant_ekf_settle_bias(struct invariant_ekf *ekf,
-                                                         const struct invariant_ekf_params *params);
+/*
+ * In a settled hold, once a block of the synchronism monitor: the lasting offset goes some of its
+ * way to the offset; and what counts as a step of the load, which is more where it swings, as that
+ * of a rotor which is led and passes its detent torque, or one that has made several steps on end.
+ * Without a monitor both stay as the hold began with them.
+ */
+__attribute__((noinline)) void invariant_ekf_watch_hold(struct invariant_ekf *ekf,
+                                                        const struct invariant_ekf_params *params,
+                                                        bool leads);
 
 /* At S(k): corrects what was predicted for it, and predicts S(k+1). The default path does not come
    here: invariant_ekf_step.h. */

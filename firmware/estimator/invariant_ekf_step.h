@@ -10,7 +10,7 @@
 /* Corrections that differ between motion and hold. */
 struct invariant_ekf_correction {
     num_t turns;  /* of the angle */
-    num_t bias_q; /* of the voltage offset, in the direction of the frame's q axis */
+    num_t bias_q; /* of the voltage offset, along a q axis: the rotor's; in hold the frame's */
     num_t load_torque;
 };
 
@@ -51,8 +51,9 @@ static inline num_t invariant_ekf_away_from_settled_load(const struct invariant_
 __attribute__((always_inline)) static inline struct dq
 invariant_ekf_correct(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
                       const struct invariant_ekf_gain_set *gain, struct phases measured,
-                      struct phases surprise, bool holding)
+                      struct phases surprise, struct rotor_hold hold)
 {
+    const bool holding = hold.active;
     struct estimate *x = &ekf->estimate;
     const struct outlook *expected = &x->next;
     const struct sincos frame = expected->frame;
@@ -69,8 +70,10 @@ invariant_ekf_correct(struct invariant_ekf *ekf, const struct invariant_ekf_para
     x->rotor.speed = expected->speed + num_mul_coef(innovation.q, gain->speed_q);
     x->rotor.position = position_add(expected->position, angle_from_any_turns(by.turns));
     x->rotor.load_torque += by.load_torque;
-    ekf->bias.a -= num_mul_unit_nearest(by.bias_q, frame.sin);
-    ekf->bias.b += num_mul_unit_nearest(by.bias_q, frame.cos);
+    const struct sincos bias_frame = RARE(holding) ? *hold.frame : frame;
+
+    ekf->bias.a -= num_mul_unit_nearest(by.bias_q, bias_frame.sin);
+    ekf->bias.b += num_mul_unit_nearest(by.bias_q, bias_frame.cos);
     return innovation;
 }
 
@@ -86,22 +89,9 @@ static inline void invariant_ekf_adapt_resistance(struct invariant_ekf *ekf,
     winding_set_resistance(&x->winding, &params->model, x->winding.resistance + change);
 }
 
-/* By how much the change of the load is more than twice what it has been of late: a rotor that is
-   led passes its detent torque. */
-static inline num_t invariant_ekf_beyond_detent(struct invariant_ekf *ekf,
-                                                const struct invariant_ekf_params *params,
-                                                num_t change)
-{
-    const num_t beyond = change - ekf->led_change;
-
-    ekf->led_change += num_mul_coef(change + beyond, params->led_memory);
-    return beyond;
-}
-
 /* Which of the sets of gains serves this period of the hold. */
 static inline const struct invariant_ekf_gain_set *
-invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                         bool leads)
+invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_params *params)
 {
     if (ekf->unloaded_periods > 0u) {
         ekf->unloaded_periods--;
@@ -113,11 +103,10 @@ invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_p
     }
 
     const num_t away = invariant_ekf_away_from_settled_load(ekf);
-    const num_t change =
-        leads ? invariant_ekf_beyond_detent(ekf, params, num_abs(away)) : num_abs(away);
+    const num_t change = num_abs(away);
 
-    if (RARE(change > params->load_step) &&
-        (ekf->following_periods == 0u || num_half(change) > params->load_step)) {
+    if (RARE(change > ekf->step_limit) &&
+        (ekf->following_periods == 0u || num_half(change) > ekf->step_limit)) {
         invariant_ekf_follow_step(ekf, params);
     }
     if (ekf->following_periods == 0u) {
@@ -156,9 +145,8 @@ invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_params 
 {
     const bool holding = hold.active;
     const struct invariant_ekf_gain_set *gain =
-        RARE(holding) ? invariant_ekf_hold_gains(ekf, params, *hold.leads) : &params->moving;
-    const struct dq innovation =
-        invariant_ekf_correct(ekf, params, gain, current, surprise, holding);
+        RARE(holding) ? invariant_ekf_hold_gains(ekf, params) : &params->moving;
+    const struct dq innovation = invariant_ekf_correct(ekf, params, gain, current, surprise, hold);
 
     ekf->innovation_sum = num_add_around(ekf->innovation_sum, innovation.d);
     if (RARE(holding) && !*hold.leads) { /* a led rotor's lag behind its frame shows in nu_d, too */

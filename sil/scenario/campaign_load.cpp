@@ -160,6 +160,9 @@ class LoadWatch : public CampaignWatch
         }
         last_s_ = record.time_s(record.rows());
         const double off_deg = std::fabs(row[THETA] - row[THETA_REF]) * degrees_;
+        const double load_Nm = std::fabs(row[LOAD_TORQUE]);
+        falls_ = load_Nm < largest_Nm_;
+        largest_Nm_ = std::max(largest_Nm_, load_Nm);
         largest_deg_ = std::max(largest_deg_, off_deg);
         if (row[DRIVE_STATE] == double(DRIVE_FAULT)) {
             fault_s_ = last_s_;
@@ -185,7 +188,8 @@ class LoadWatch : public CampaignWatch
         } else {
             static const char *const names[kinds] = {"growing load", "", "vibration at rest",
                                                      "vibration in motion"};
-            const std::string name = names[static_cast<std::size_t>(kind)];
+            const std::string name =
+                kind == Kind::growing && falls_ ? "release" : names[static_cast<std::size_t>(kind)];
             outcome.verdict = faulted || !result.not_as_described().empty() ? name + ": fault"
                               : passed                                      ? name + ": slipped"
                                                                             : "held";
@@ -198,6 +202,8 @@ class LoadWatch : public CampaignWatch
     static constexpr std::size_t figures = 2; /* before those of each kind */
 
     double degrees_, largest_deg_ = 0;
+    double largest_Nm_ = 0;
+    bool falls_ = false;                               /* the load, by the fault */
     bool lost_ = false;                                /* the fault says so of the estimate */
     double fault_s_ = -1, passed_s_ = -1, last_s_ = 0; /* negative: has not come */
 };

@@ -71,13 +71,15 @@ static double estimated_resistance_ohm(void)
 }
 
 static const bool leads = false;
+static angle_t hold_angle; /* electrical, of the frame of the hold's current */
 
 static void correct(struct bench_vector current, struct phases surprise, bool in_hold)
 {
+    const struct sincos hold_frame = sincos_of(hold_angle);
     const struct estimator_input input = {
         .winding.current = bench_phases(current.a, current.b, base.current_A),
         .surprise = surprise,
-        .hold = {in_hold, &leads},
+        .hold = {in_hold, &leads, &hold_frame},
     };
 
     (void)invariant_ekf_observe(&ekf, &params, &input);
@@ -144,10 +146,12 @@ static struct state predicted(struct state x, struct bench_vector u)
     return y;
 }
 
+/* `hold_rad`: electrical angle of the hold's frame, NAN in motion. */
 static struct state corrected(struct state x, struct state y, const struct invariant_ekf_gains *k,
-                              struct bench_vector i)
+                              struct bench_vector i, double hold_rad)
 {
     const double h = 50.0 * PERIOD_S * x.speed;
+    const bool in_hold = !isnan(hold_rad);
     const struct bench_vector nu = bench_to_rotor(i.a - y.i_a, i.b - y.i_b, 50.0 * x.angle + h);
     const double direction = fmin(fmax(y.speed / k->angle_d_full_speed_rad_s, -1.0), 1.0);
     const double k_current = 0.5 * (k->k_current_d + k->k_current_q);
@@ -155,7 +159,7 @@ static struct state corrected(struct state x, struct state y, const struct invar
     const struct bench_vector bias = bench_to_phases(
         0.0,
         k->k_bias_d_V_A * direction * nu.a + k->k_bias_q_V_A * nu.b - k->bias_return_V_Nm * away,
-        50.0 * x.angle + h);
+        in_hold ? hold_rad : 50.0 * x.angle + h);
 
     y.i_a += k_current * (i.a - y.i_a);
     y.i_b += k_current * (i.b - y.i_b);
@@ -216,6 +220,7 @@ static void test_a_step_is_that_of_the_equations_in_motion_and_in_hold(void)
     static const struct bench_vector voltage = {3.0, -2.0};
     static const struct bench_vector current = {0.95, -0.4};
 
+    hold_angle = 0x10000000u; /* a sixteenth turn */
     for (unsigned i = 0; i < sizeof starts / sizeof starts[0]; i++) {
         const struct state x = starts[i];
         const bool load_step = fabs(x.load - x.settled) > holding.load_step_Nm;
@@ -223,12 +228,14 @@ static void test_a_step_is_that_of_the_equations_in_motion_and_in_hold(void)
         set(x);
         step(voltage, current, true);
         is_state(corrected(x, predicted(x, voltage),
-                           load_step ? &holding.following : &holding.quiet, current));
+                           load_step ? &holding.following : &holding.quiet, current,
+                           TWO_PI / 16.0));
 
         set(x);
         step(voltage, current, false);
-        is_state(corrected(x, predicted(x, voltage), &moving, current));
+        is_state(corrected(x, predicted(x, voltage), &moving, current, NAN));
     }
+    hold_angle = 0u;
 }
 
 /* The surprise moves the predicted current; what it does to the rotor in a period is left out. */
@@ -428,6 +435,32 @@ static void test_a_load_step_in_hold_is_followed_before_the_rotor_has_turned_far
     }
 }
 
+/*
+ * 15 % of the rated torque, of the hold's twice as much, for 2 s. The first half-cycles look like
+ * steps of the load. A correction of the offset that swings with the rotor would add up along the
+ * current, and turn the resistance away.
+ */
+static void test_a_load_that_vibrates_is_no_load_and_no_resistance(void)
+{
+    static const double frequencies_Hz[] = {20.0, 45.0, 80.0}, amplitude_Nm = 0.07;
+
+    for (unsigned i = 0; i < 3u; i++) {
+        start_at(0.0, 0.0);
+        hold(0.0, 1000);
+        for (int k = 0; k < 20000; k++) {
+            motor.load_torque_Nm = amplitude_Nm * sin(TWO_PI * frequencies_Hz[i] * k * PERIOD_S);
+            hold(estimated_load_Nm() / 0.157 - 2.0 * 0.39 * estimated_speed_rad_s(), 1);
+            if (k % 16 == 0) {
+                invariant_ekf_watch_hold(&ekf, &params, false);
+            }
+        }
+        TEST_ASSERT_DOUBLE_WITHIN(2.0 * amplitude_Nm, 0.0,
+                                  num_to_double(ekf.settled_load) * base.torque_Nm);
+        TEST_ASSERT_DOUBLE_WITHIN(0.02 * 0.37, 0.37, estimated_resistance_ohm());
+        TEST_ASSERT_DOUBLE_WITHIN(5e-3, 0.0, num_to_double(ekf.bias.a) * base.voltage_V);
+    }
+}
+
 /* Without motion nothing may drift: a minute of hold is 600,000 such periods. */
 static void test_a_settled_hold_stays_where_it_is(void)
 {
@@ -534,6 +567,7 @@ int main(void)
     RUN_TEST(test_a_voltage_offset_across_the_current_is_found_in_hold);
     RUN_TEST(test_a_hold_of_150_ms_calibrates_the_resistance_from_half_to_one_and_a_half);
     RUN_TEST(test_a_load_step_in_hold_is_followed_before_the_rotor_has_turned_far);
+    RUN_TEST(test_a_load_that_vibrates_is_no_load_and_no_resistance);
     RUN_TEST(test_a_settled_hold_stays_where_it_is);
     RUN_TEST(test_a_settled_hold_returns_to_its_load_with_the_angle);
     RUN_TEST(test_in_an_unloaded_hold_an_offset_is_no_load);
