@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "tests/unit/bench.h"
+#include "tests/unit/emulated.h"
 #include "tests/unit/num_assert.h"
 
 /* Per-unit. */
@@ -202,7 +203,7 @@ static void test_a_large_resistance_leaves_no_more_than_the_noise_of_both_sensor
 {
     const double drop_codes = small_motor.resistance_ohm * 12.0 / 62.4;
     const double sample_noise = sqrt((1.0 + 1.0 / 12.0) * (1.0 + square(drop_codes)));
-    const int calibrations = 100;
+    const int calibrations = EMULATED ? 25 : 100;
     double sum_of_squares = 0.0;
 
     offsets(12.37, -8.81, 3.14, -30.59);
@@ -297,7 +298,7 @@ static void test_a_rotor_that_is_turned_is_noticed_by_its_currents(void)
 /* 1 code of bench_facts is 3 mA; the same noise on a range of 0.9 A is 7 codes. */
 static void test_noise_alone_is_no_rotor_that_turns(void)
 {
-    for (int i = 0; i < 400; i++) {
+    for (int i = 0; i < (EMULATED ? 40 : 400); i++) {
         world.noise_codes = i % 2 == 0 ? 1.0 : 7.0;
         TEST_ASSERT_EQUAL(OFFSETS_FOUND, calibrate());
     }
