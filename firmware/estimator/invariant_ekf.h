@@ -12,9 +12,9 @@
  *   i_hat += k_i (i - i_hat)          w_hat  += k_w nu_q
  *   theta += k_td sat(w/w_s) nu_d + k_tq nu_q
  *   T_L   += k_T nu_q
- *   b     += (k_bd sat(w/w_s) nu_d + k_bq nu_q) q      q: the q axis, in phase coordinates; in
- *                                                     hold that of the current, as a correction
- *                                                     that swings with the rotor would add up in d
+ *   b     += (k_bd sat(w/w_s) nu_d + k_bq nu_q) q      q: the q axis, in phase coordinates: the
+ *                                                     rotor's; in hold the frame's, since what
+ *                                                     swings with the rotor adds up in d
  *   R     += k_R i_d nu_d                              while holding
  *
  * b is the offset of the voltage measurement, constant in phase coordinates, where the back-EMF
