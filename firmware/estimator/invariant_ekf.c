@@ -43,9 +43,9 @@ static struct invariant_ekf_gain_set scale(const struct per_unit *base,
 
 enum { CALM_BLOCKS = (int)(VIBRATION_CALM_S / SYNCHRONISM_BLOCK_S) };
 
-/* 1 - exp(-x), x a block's share of a time: to 4e-7 of it. */
-#define SHARE(x)         ((x) * (1.0 - (x) / 2.0 * (1.0 - (x) / 3.0 * (1.0 - (x) / 4.0))))
-#define BLOCK_OF(time_s) SHARE(SYNCHRONISM_BLOCK_S / (time_s))
+/* 1 - exp(-x), x below 0.06, to 1e-7 of it: of constants, so by the compiler. */
+#define FALLEN(x)               ((x) * (1.0 - (x) / 2.0 * (1.0 - (x) / 3.0 * (1.0 - (x) / 4.0))))
+#define SHARE_PER_BLOCK(time_s) FALLEN(SYNCHRONISM_BLOCK_S / (time_s))
 
 struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params *model,
                                                 const struct per_unit *base,
@@ -63,8 +63,8 @@ struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params 
         .rest_periods = hold->rest_periods,
         .swing_periods = hold->swing_periods,
         .load_step = num_from_double(hold->load_step_Nm / base->torque_Nm),
-        .bias_settle = coef_from_double(BLOCK_OF(BIAS_SETTLE_TIME_S)),
-        .usual_memory = coef_from_double(BLOCK_OF(USUAL_CHANGE_TIME_S)),
+        .bias_settle = coef_from_double(SHARE_PER_BLOCK(BIAS_SETTLE_TIME_S)),
+        .usual_memory = coef_from_double(SHARE_PER_BLOCK(USUAL_CHANGE_TIME_S)),
     };
     return params;
 }

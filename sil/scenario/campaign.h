@@ -60,6 +60,26 @@ struct Drawn {
                                     which the scenario expects beside itself; else "" */
 };
 
+/* When something happens for the first time in a run. */
+struct First {
+    static constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+    std::size_t row = none;
+    double time_s = 0;
+
+    bool came() const
+    {
+        return row != none;
+    }
+    void note(const Record &record, bool happens)
+    {
+        if (!came() && happens) {
+            row = record.rows();
+            time_s = record.time_s(row);
+        }
+    }
+};
+
 /* Sees a run of a campaign as it goes, and judges it when it has ended. */
 class CampaignWatch : public RowReader
 {

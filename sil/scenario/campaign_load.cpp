@@ -155,7 +155,7 @@ class LoadWatch : public CampaignWatch
 
     void read(const Record &record, const Row &row) override
     {
-        if (record.rows() < record.time_zero_row() || fault_s_ >= 0) {
+        if (record.rows() < record.time_zero_row() || fault_.came()) {
             return;
         }
         last_s_ = record.time_s(record.rows());
@@ -164,21 +164,23 @@ class LoadWatch : public CampaignWatch
         falls_ = load_Nm < largest_Nm_;
         largest_Nm_ = std::max(largest_Nm_, load_Nm);
         largest_deg_ = std::max(largest_deg_, off_deg);
-        if (row[DRIVE_STATE] == double(DRIVE_FAULT)) {
-            fault_s_ = last_s_;
-            lost_ = static_cast<drive_synchronism>(row[SYNCHRONISM]) == DRIVE_SYNCHRONISM_LOST;
-        } else if (off_deg > 180 && passed_s_ < 0) {
-            passed_s_ = last_s_;
-        }
+        const bool fault = row[DRIVE_STATE] == double(DRIVE_FAULT);
+        fault_.note(record, fault);
+        passed_.note(record, !fault && off_deg > 180);
+        lost_ = static_cast<drive_synchronism>(row[SYNCHRONISM]) == DRIVE_SYNCHRONISM_LOST;
     }
 
     CampaignOutcome judge(const Result &result) const override
     {
         const Kind kind = kind_of(result.seed);
-        const bool faulted = fault_s_ >= 0, passed = passed_s_ >= 0;
-        const double delay_s = passed ? (faulted ? fault_s_ : last_s_) - passed_s_ : 0;
+        const bool faulted = fault_.came(), passed = passed_.came();
+        const double delay_s = passed ? (faulted ? fault_.time_s : last_s_) - passed_.time_s : 0;
         CampaignOutcome outcome;
         outcome.figures.assign(figures + kinds, Metrics::none);
+        if (!result.not_as_described().empty() && !faulted) {
+            outcome.verdict = "failed";
+            return outcome;
+        }
         if (kind == Kind::overload) {
             outcome.verdict = delay_s > latest_s           ? "late"
                               : lost_ && largest_deg_ < 45 ? "false alarm"
@@ -190,9 +192,7 @@ class LoadWatch : public CampaignWatch
                                                      "vibration in motion"};
             const std::string name =
                 kind == Kind::growing && falls_ ? "release" : names[static_cast<std::size_t>(kind)];
-            outcome.verdict = faulted || !result.not_as_described().empty() ? name + ": fault"
-                              : passed                                      ? name + ": slipped"
-                                                                            : "held";
+            outcome.verdict = faulted ? name + ": fault" : passed ? name + ": slipped" : "held";
         }
         outcome.figures[figures + static_cast<std::size_t>(kind)] = largest_deg_;
         return outcome;
@@ -203,9 +203,10 @@ class LoadWatch : public CampaignWatch
 
     double degrees_, largest_deg_ = 0;
     double largest_Nm_ = 0;
-    bool falls_ = false;                               /* the load, by the fault */
-    bool lost_ = false;                                /* the fault says so of the estimate */
-    double fault_s_ = -1, passed_s_ = -1, last_s_ = 0; /* negative: has not come */
+    bool falls_ = false;   /* the load, by the fault */
+    bool lost_ = false;    /* the fault says so of the estimate */
+    First fault_, passed_; /* half an electrical turn */
+    double last_s_ = 0;
 };
 
 std::unique_ptr<CampaignWatch> watch_load(const Scenario &scenario)

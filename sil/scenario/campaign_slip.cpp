@@ -21,26 +21,7 @@ namespace
 {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr std::size_t none = static_cast<std::size_t>(-1);
 constexpr double latest_s = 0.02; /* behind a slip, for it to be reported */
-
-/* When something happens for the first time. */
-struct First {
-    std::size_t row = none;
-    double time_s = 0;
-
-    bool came() const
-    {
-        return row != none;
-    }
-    void note(const Record &record, bool happens)
-    {
-        if (!came() && happens) {
-            row = record.rows();
-            time_s = record.time_s(row);
-        }
-    }
-};
 
 /* Up to the fault, if one comes. */
 class SlipWatch : public CampaignWatch

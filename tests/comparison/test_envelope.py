@@ -64,6 +64,16 @@ class Outcome(unittest.TestCase):
         self.assertAlmostEqual(self.of(*runs[:4])["error_deg"], 4.0, places=2)
 
 
+def run_of(point):
+    """(summary, lines of the trace) of the reference motor on bench."""
+    with tempfile.TemporaryDirectory() as scratch:
+        file = pathlib.Path(scratch, "point.toml")
+        file.write_text(points.scenario_of(point, HOME, "bench"), encoding="utf-8")
+        shutil.copy(HOME.file, scratch)
+        (run,) = simulator.Simulator(PROGRAM).run([file], out=scratch)
+        return run, pathlib.Path(scratch, "point/trace.csv").read_text().splitlines()
+
+
 class Points(unittest.TestCase):
     def test_a_motor_gets_shares_of_its_own_limits(self):
         found = points.points_of(HOME, points.PANELS[:1], quick=False)
@@ -73,13 +83,7 @@ class Points(unittest.TestCase):
 
     def test_the_load_comes_at_speed_and_the_true_motor_is_the_panels(self):
         panel = points.PANELS[1]
-        text = points.scenario_of(points.Point(panel, 20.0, 0.5, 0.2355), HOME, "bench")
-        with tempfile.TemporaryDirectory() as scratch:
-            file = pathlib.Path(scratch, "point.toml")
-            file.write_text(text, encoding="utf-8")
-            shutil.copy(HOME.file, scratch)
-            (run,) = simulator.Simulator(PROGRAM).run([file], out=scratch)
-            head, *rows = pathlib.Path(scratch, "point/trace.csv").read_text().splitlines()
+        run, (head, *rows) = run_of(points.Point(panel, 20.0, 0.5, 0.2355))
         column = {name: i for i, name in enumerate(head.split(","))}
         rows = [[float(cell) for cell in row.split(",")] for row in rows]
         loaded = [row for row in rows if row[column["load_torque_Nm"]] > 0]
@@ -88,16 +92,9 @@ class Points(unittest.TestCase):
         self.assertAlmostEqual(rows[0][column["resistance_ohm"]], 0.7 * 0.37)
         self.assertEqual(run["metrics"]["all"]["fault"], "none")
 
-
     def test_the_drive_accepts_the_fastest_point(self):
-        text = points.scenario_of(
-            points.Point(points.PANELS[0], max(points.speeds_of(HOME, quick=False)), 0.1, 0.0471),
-            HOME, "bench")
-        with tempfile.TemporaryDirectory() as scratch:
-            file = pathlib.Path(scratch, "point.toml")
-            file.write_text(text, encoding="utf-8")
-            shutil.copy(HOME.file, scratch)
-            (run,) = simulator.Simulator(PROGRAM).run([file])
+        fastest = max(points.speeds_of(HOME, quick=False))
+        run, _ = run_of(points.Point(points.PANELS[0], fastest, 0.1, 0.0471))
         self.assertIsNone(run["failure"])
 
     def test_a_point_of_no_speed_rests_and_then_bears_the_load(self):

@@ -436,8 +436,8 @@ static void test_a_load_step_in_hold_is_followed_before_the_rotor_has_turned_far
 
 /*
  * 15 % of the rated torque, of the hold's twice as much, for 2 s. The first half-cycles look like
- * steps of the load; to follow all of them would pull the rotor out. A correction of the offset that swings with the rotor would add up along the
- * current, and turn the resistance away.
+ * steps of the load; to follow all of them would pull the rotor out. A correction of the offset
+ * that swings with the rotor would add up along the current, and turn the resistance away.
  */
 static void test_a_load_that_vibrates_is_no_load_and_no_resistance(void)
 {
