@@ -28,8 +28,8 @@ enum application_settings {
 /* One instance, which stays where it was initialised. */
 struct application {
     struct drive drive;
-    struct hal_outputs outputs; /* of the last control interrupt */
     uint64_t gains_hash;        /* drive_hash_gains of this start */
+    struct hal_outputs outputs; /* of the last control interrupt */
     struct control_cycles cycles;
     struct control_cycle_statistics cycle_statistics;
 

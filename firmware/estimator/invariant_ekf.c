@@ -33,15 +33,15 @@ static struct invariant_ekf_gain_set scale(const struct per_unit *base,
    what has lasted as long as this is kept then. 0.1 to 1 s serve. */
 #define BIAS_SETTLE_TIME_S 0.3
 /* A load vibrates that has swung to the other side three times, or has made six steps, each no
-   longer than this behind the one before: behind a step the rotor swings, too, and a load that
-   grows makes some to one side. */
-#define REVERSAL         2u
+   longer than this behind the one before, a cycle of 15 Hz and a half. Behind a step the rotor
+   swings, too; a load that grows makes some to one side; a rotor of too much inertia is slower. */
 #define VIBRATION_SWINGS 6u
-#define VIBRATION_CALM_S 0.25
+#define VIBRATION_CALM_S 0.1
 /* The mean change of a load that swings: over a cycle of 30 Hz. */
 #define USUAL_CHANGE_TIME_S 0.03
 
 enum { CALM_BLOCKS = (int)(VIBRATION_CALM_S / SYNCHRONISM_BLOCK_S) };
+_Static_assert(CALM_BLOCKS < UINT8_MAX, "calm_blocks counts them");
 
 /* 1 - exp(-x), x below 0.06, to 1e-7 of it: of constants, so by the compiler. */
 #define FALLEN(x)               ((x) * (1.0 - (x) / 2.0 * (1.0 - (x) / 3.0 * (1.0 - (x) / 4.0))))
@@ -86,11 +86,19 @@ void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_p
     invariant_ekf_settle(ekf);
 }
 
+static void count_swing(struct invariant_ekf *ekf)
+{
+    if (ekf->swings < VIBRATION_SWINGS) {
+        ekf->swings++;
+    }
+}
+
 __attribute__((noinline)) static void note_swing(struct invariant_ekf *ekf, num_t away)
 {
     if ((away > NUM(0.0)) != ekf->swung_up) {
         ekf->swung_up = !ekf->swung_up;
-        ekf->swings += REVERSAL;
+        count_swing(ekf);
+        count_swing(ekf);
     }
     ekf->calm_blocks = CALM_BLOCKS;
 }
@@ -98,7 +106,7 @@ __attribute__((noinline)) static void note_swing(struct invariant_ekf *ekf, num_
 void invariant_ekf_follow_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params)
 {
     note_swing(ekf, invariant_ekf_away_from_settled_load(ekf));
-    ekf->swings++;
+    count_swing(ekf);
     ekf->following_periods = params->following_periods + params->rest_periods;
     ekf->bias = ekf->settled_bias;
 }

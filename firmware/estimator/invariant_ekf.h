@@ -79,8 +79,8 @@ struct invariant_ekf {
     num_t settled_load;         /* torque that a hold returns to */
     num_t step_limit;           /* beyond which a change of the load is a step */
     num_t usual_change;         /* three times the mean of the load's change of late */
-    uint32_t swings;            /* of the load on end: steps, and twice as much for a reversal */
-    uint32_t calm_blocks;       /* left until they are at an end */
+    uint8_t swings;             /* of the load on end, a reversal twice; up to what vibrates */
+    uint8_t calm_blocks;        /* left until they are at an end */
     bool swung_up;              /* the last time */
     uint32_t following_periods; /* left of the gains that follow a load step, and of their rest */
     uint32_t swing_end;         /* of unloaded_periods, when the rotor has swung into place */
