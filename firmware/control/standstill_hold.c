@@ -10,10 +10,12 @@ struct standstill_hold_params standstill_hold_design(const struct per_unit *base
                                                      const struct standstill_hold_task *task)
 {
     const double ramp_periods = task->ramp_s / task->period_s;
+    const double current = task->current_A / base->current_A;
     struct standstill_hold_params params;
 
-    params.current = num_from_double(task->current_A / base->current_A);
-    params.current_ramp = num_from_double(task->current_A / base->current_A / ramp_periods);
+    params.current = num_from_double(current);
+    params.ramp_in = num_from_double(current / ramp_periods);
+    params.ramp_out = num_from_double(current * task->period_s / task->ramp_out_s);
     params.motion_current = num_from_double(task->motion_current_A / base->current_A);
     params.current_limit = num_from_double(task->current_limit_A / base->current_A);
     params.damping = coef_from_double(task->damping_As_rad * base->speed_rad_s / base->current_A);

@@ -20,9 +20,10 @@
 struct standstill_hold_params {
     num_t current;        /* i_d* when ramped in */
     num_t motion_current; /* i_d* when ramped out */
-    num_t current_ramp;   /* per period */
-    num_t current_limit;  /* of the q current */
-    coef_t damping;       /* k_w */
+    num_t ramp_in;        /* of i_d*, per period */
+    num_t ramp_out;
+    num_t current_limit; /* of the q current */
+    coef_t damping;      /* k_w */
     uint32_t delay_periods;
     num_t error_limit; /* electrical turns within which the hold may be entered */
     num_t speed_limit;
@@ -42,6 +43,7 @@ struct standstill_hold_task {
     double current_A;
     double motion_current_A;
     double ramp_s;
+    double ramp_out_s;
     double delay_s;
     bool enters_at_rest;
     double current_limit_A;
@@ -82,14 +84,27 @@ static inline bool standstill_hold_leads_in(uint32_t period)
     return (period & 3u) == 1u;
 }
 
-/* One period: ramps the d current to `target`, the hold's or motion's, and returns it. */
-static inline num_t standstill_hold_step(struct standstill_hold *hold,
-                                         const struct standstill_hold_params *params, num_t target)
+/* One period of the ramp: moves the d current by at most `step` towards `target`; returns it. */
+static inline num_t standstill_hold_ramp(struct standstill_hold *hold, num_t target, num_t step)
 {
     if (RARE(hold->i_d != target)) {
-        hold->i_d += num_limit(target - hold->i_d, params->current_ramp);
+        hold->i_d += num_limit(target - hold->i_d, step);
     }
     return hold->i_d;
+}
+
+/* One period of the hold: its d current. */
+static inline num_t standstill_hold_current(struct standstill_hold *hold,
+                                            const struct standstill_hold_params *params)
+{
+    return standstill_hold_ramp(hold, hold->current, params->ramp_in);
+}
+
+/* One period of motion: its d current. */
+static inline num_t standstill_hold_motion_current(struct standstill_hold *hold,
+                                                   const struct standstill_hold_params *params)
+{
+    return standstill_hold_ramp(hold, params->motion_current, params->ramp_out);
 }
 
 /*

@@ -78,7 +78,7 @@ IN_PLACE void hold_rotor(struct current_demand *demand, struct drive *drive,
 {
     const struct standstill_hold_params *params = &drive->params.hold;
 
-    demand->current.d = standstill_hold_step(&drive->hold, params, drive->hold.current);
+    demand->current.d = standstill_hold_current(&drive->hold, params);
     demand->current.q = standstill_hold_torque_current(
         params, next->rotor.speed - drive->hold.speed,
         drive->supervision.aligns ? NUM(0.0) : next->rotor.load_torque);
@@ -91,8 +91,7 @@ IN_PLACE void move_rotor(struct current_demand *demand, struct drive *drive,
     const struct drive_params *params = &drive->params;
     const struct position_law_input input = law_input(next, feed_forward);
 
-    demand->current.d =
-        standstill_hold_step(&drive->hold, &params->hold, params->hold.motion_current);
+    demand->current.d = standstill_hold_motion_current(&drive->hold, &params->hold);
     demand->current.q =
         position_law_current(params->position_law, &drive->law, &params->law, &input);
     demand->frame.begin = next->frame;
@@ -130,8 +129,7 @@ static struct phases regulate_voltage(struct drive *drive, const struct estimate
         .current = park(next->current, next->frame),
         .undisturbed_current = park(next->undisturbed_current, next->frame),
         .innovation = expectation_innovation(&drive->expectation, estimate->current),
-        .current_d_reference =
-            standstill_hold_step(&drive->hold, &params->hold, params->hold.motion_current),
+        .current_d_reference = standstill_hold_motion_current(&drive->hold, &params->hold),
         .reference_jerk = params->path.feed_forward
                               ? reference_jerk(&drive->reference, &params->reference)
                               : NUM(0.0),

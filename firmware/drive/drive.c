@@ -99,6 +99,15 @@ static bool design_detection(struct drive *drive, const struct drive_settings *s
                                    &settings->motor, &drive->base, &task, error);
 }
 
+/* An inductance that is off by dL errs the voltage in d by dL di_d/dt. Without an encoder that
+   looks like an angle of dL di_d/dt / (N Km w), as long as the rotor is slow. As steep as in, the
+   angle at the start of a motion is a quarter further off; half as steep, a load that steps there
+   is seen a tenth later. */
+static double ramp_out_s(const struct drive_settings *settings)
+{
+    return (settings->feedback == DRIVE_FEEDBACK_SENSORLESS ? 1.5 : 1.0) * settings->hold_ramp_s;
+}
+
 static bool design_hold(struct drive *drive, const struct drive_settings *settings, double period_s,
                         char error[DRIVE_ERROR_TEXT])
 {
@@ -113,6 +122,7 @@ static bool design_hold(struct drive *drive, const struct drive_settings *settin
         .current_A = settings->hold_current_A,
         .motion_current_A = settings->motion_current_A,
         .ramp_s = settings->hold_ramp_s,
+        .ramp_out_s = ramp_out_s(settings),
         .delay_s = settings->hold_delay_s,
         .enters_at_rest = settings->hold_at_rest,
         .current_limit_A = settings->current_limit_A,
