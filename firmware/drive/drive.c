@@ -100,12 +100,12 @@ static bool design_detection(struct drive *drive, const struct drive_settings *s
 }
 
 /* An inductance that is off by dL errs the voltage in d by dL di_d/dt. Without an encoder that
-   looks like an angle of dL di_d/dt / (N Km w), as long as the rotor is slow. As steep as in, the
-   angle at the start of a motion is a quarter further off; half as steep, a load that steps there
-   is seen a tenth later. */
+   looks like an angle of dL di_d/dt / (N Km w), as long as the rotor is slow. In the time of
+   the ramp in, the angle at the start of a motion is a tenth further off; in 1.5 times that, a load
+   that steps there is seen a tenth later. */
 static double ramp_out_s(const struct drive_settings *settings)
 {
-    return (settings->feedback == DRIVE_FEEDBACK_SENSORLESS ? 1.5 : 1.0) * settings->hold_ramp_s;
+    return (settings->feedback == DRIVE_FEEDBACK_SENSORLESS ? 1.25 : 1.0) * settings->hold_ramp_s;
 }
 
 static bool design_hold(struct drive *drive, const struct drive_settings *settings, double period_s,

@@ -117,7 +117,7 @@
     REAL(0x2146, motion_current_A, "A", FIXED(0.0), RATED(1.0), FIXED(0.0), IN_MOTION,             \
          "d-axis current in motion")                                                               \
     REAL(0x2147, hold_ramp_s, "s", FIXED(1e-3), FIXED(1.0), FIXED(0.010), AT_ENABLE,               \
-         "time for the hold current to ramp in; out, 1.5 of it without an encoder")                \
+         "time for the hold current to ramp in; out, 1.25 of it without an encoder")               \
     REAL(0x2148, hold_delay_s, "s", FIXED(0.0), FIXED(100.0), FOLLOWS, AT_ENABLE,                  \
          "from the end of a profile to the hold: 0.015, of a hold quicker than 280 rad/s 4.2 "     \
          "over that")                                                                              \

@@ -45,7 +45,7 @@ static void test_get_says_value_unit_range_default_and_what_it_is_for(void)
 {
     answers("get hold_ramp_s", "ok get hold_ramp_s=0.01 s; 0.001...1; default 0.01; at enable; "
                                "time for the hold current to ramp "
-                               "in; out, 1.5 of it without an encoder\n");
+                               "in; out, 1.25 of it without an encoder\n");
     answers(
         "get current_limit_A",
         "ok get current_limit_A=3 A; 0.03...6; default 3; in motion; of the current reference\n");
