@@ -14,27 +14,28 @@ enum { DIGITS = 6 };
 #define TEXT_OF(token) #token
 #define NUMERIC(token) TEXT_OF(token) /* of NUM_FORMAT: float, fixed or double */
 
-static void put_number(struct text *text, const char *name, double value)
+static void put_name(struct text *text, const char *name)
 {
     text_put(text, " ");
     text_put(text, name);
     text_put(text, "=");
+}
+
+static void put_number(struct text *text, const char *name, double value)
+{
+    put_name(text, name);
     text_number(text, value, DIGITS);
 }
 
 static void put_word(struct text *text, const char *name, const char *value)
 {
-    text_put(text, " ");
-    text_put(text, name);
-    text_put(text, "=");
+    put_name(text, name);
     text_put(text, value);
 }
 
 static void put_count(struct text *text, const char *name, uint32_t value)
 {
-    text_put(text, " ");
-    text_put(text, name);
-    text_put(text, "=");
+    put_name(text, name);
     text_unsigned(text, value);
 }
 

@@ -118,29 +118,29 @@ void command_queue_drop(struct command_queue *queue)
     queue->read = queue->read + 1u;
 }
 
-void command_queue_put_take_over(struct command_queue *queue, const struct take_over *take_over)
+void command_queue_put_preemption(struct command_queue *queue, const struct preemption *preemption)
 {
-    struct take_over *own = &queue->take_over;
+    struct preemption *own = &queue->preemption;
 
     own->posted = false;
-    own->at_period = take_over->at_period;
-    own->plan = take_over->plan;
-    own->of_command = take_over->of_command;
-    own->command = take_over->command;
+    own->at_period = preemption->at_period;
+    own->plan = preemption->plan;
+    own->of_command = preemption->of_command;
+    own->command = preemption->command;
     atomic_signal_fence(memory_order_release);
     own->posted = true;
     command_queue_look_next(queue);
 }
 
-void command_queue_withdraw_take_over(struct command_queue *queue)
+void command_queue_withdraw_preemption(struct command_queue *queue)
 {
-    queue->take_over.posted = false;
+    queue->preemption.posted = false;
 }
 
-const struct motion_plan *command_queue_take_over(struct command_queue *queue, uint32_t period,
-                                                  uint32_t *wait)
+const struct motion_plan *command_queue_preemption(struct command_queue *queue, uint32_t period,
+                                                   uint32_t *wait)
 {
-    struct take_over *own = &queue->take_over;
+    struct preemption *own = &queue->preemption;
 
     if (!own->posted || !come_or_wait(own->at_period, period, wait)) {
         return NULL;
@@ -149,9 +149,9 @@ const struct motion_plan *command_queue_take_over(struct command_queue *queue, u
     return own->of_command && own->command != queue->read ? NULL : own->plan;
 }
 
-void command_queue_accept_take_over(struct command_queue *queue)
+void command_queue_accept_preemption(struct command_queue *queue)
 {
-    if (queue->take_over.of_command) {
+    if (queue->preemption.of_command) {
         command_queue_drop(queue);
     }
 }

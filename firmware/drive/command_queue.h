@@ -56,8 +56,8 @@ struct urgent_command {
     volatile uint32_t flush_to; /* queue entries posted before it */
 };
 
-/* A plan that takes the reference over in its period. */
-struct take_over {
+/* A plan that preempts what the reference does, in its period. */
+struct preemption {
     volatile bool posted;
     uint32_t at_period;
     const struct motion_plan *plan;
@@ -75,7 +75,7 @@ struct command_queue {
     struct urgent_command disable;
     struct urgent_command stop;
     uint32_t stop_acted_in; /* period of the last stop; the interrupt's */
-    struct take_over take_over;
+    struct preemption preemption;
     uint32_t dropped; /* commands that found the drive in a state in which they are not obeyed
                          (command_rules.h), or a move another start; the interrupt's */
     enum drive_command_kind dropped_kind; /* of the last of them */
@@ -147,21 +147,21 @@ static inline void command_queue_stop_acted(struct command_queue *queue, uint32_
     queue->stop_acted_in = period;
 }
 
-/* Background: `plan` must live until it is taken over and done, or withdrawn. */
-void command_queue_put_take_over(struct command_queue *queue, const struct take_over *take_over);
+/* Background: `plan` must live until the reference has done with it, or it is withdrawn. */
+void command_queue_put_preemption(struct command_queue *queue, const struct preemption *preemption);
 
-/* Background: the take-over that has not acted, if any, never will. */
-void command_queue_withdraw_take_over(struct command_queue *queue);
+/* Background: the preemption that has not acted, if any, never will. */
+void command_queue_withdraw_preemption(struct command_queue *queue);
 
 /*
  * Interrupt: the plan whose period has come and whose command has not been flushed, once; else
  * NULL.
  */
-const struct motion_plan *command_queue_take_over(struct command_queue *queue, uint32_t period,
-                                                  uint32_t *wait);
+const struct motion_plan *command_queue_preemption(struct command_queue *queue, uint32_t period,
+                                                   uint32_t *wait);
 
 /* Interrupt: the reference has accepted it; its command leaves the queue. */
-void command_queue_accept_take_over(struct command_queue *queue);
+void command_queue_accept_preemption(struct command_queue *queue);
 
 /* Whether commands wait in the queue; those that are urgent do not count. */
 static inline bool command_queue_holds_any(const struct command_queue *queue)
@@ -181,7 +181,7 @@ static inline void command_queue_rest(struct command_queue *queue, uint32_t peri
 static inline void command_queue_rest_if_empty(struct command_queue *queue, uint32_t period,
                                                uint32_t wait)
 {
-    if (queue->written == queue->read && !queue->take_over.posted) {
+    if (queue->written == queue->read && !queue->preemption.posted) {
         command_queue_rest(queue, period, wait);
     }
 }

@@ -9,7 +9,7 @@
  */
 #include "firmware/drive/modulate.h"
 #include "firmware/drive/drive.h"
-#include "firmware/drive/finding_position.h"
+#include "firmware/drive/position_detecting.h"
 #include "firmware/drive/prepared_input.h"
 #include "firmware/drive/standstill_angle.h"
 #include "firmware/drive/state_machine.h"
@@ -259,8 +259,8 @@ IN_PLACE void enter_or_leave_hold(struct drive *drive, bool held)
     }
 }
 
-/* Between hold and voltage law nothing of the past of the one that takes over is left. */
-IN_PLACE void hand_over(struct drive *drive, const struct estimate *estimate, bool held)
+/* Bumpless: between hold and voltage law nothing of the past of the one that begins is left. */
+IN_PLACE void transfer(struct drive *drive, const struct estimate *estimate, bool held)
 {
     enter_or_leave_hold(drive, held);
     if (drive->hold.active && !held) {
@@ -397,7 +397,7 @@ static void control_with_all(struct drive *drive, const struct estimate *estimat
     if (has_zero_delay(&params->path)) {
         act_at_once(drive);
     }
-    hand_over(drive, estimate, held);
+    transfer(drive, estimate, held);
 }
 
 /*
@@ -447,8 +447,8 @@ IN_PLACE void control_current(struct drive *drive, const struct hal_samples *sam
 __attribute__((noinline)) static void rest(struct drive *drive, const struct hal_samples *samples,
                                            struct hal_outputs *outputs)
 {
-    if (drive->supervision.state == DRIVE_FINDING_POSITION) {
-        *outputs = finding_position_cycle(drive, samples);
+    if (drive->supervision.state == DRIVE_DETECTING_POSITION) {
+        *outputs = position_detecting_cycle(drive, samples);
         return;
     }
     modulator_see_bus(&drive->modulator, measurement_bus(&drive->params.measurement, samples));

@@ -52,7 +52,7 @@ void planner_follow(struct drive *drive)
     const uint32_t epoch = interrupt_view_epoch(drive);
 
     if (p->epoch != epoch) { /* a reset, or the stop of a plan */
-        command_queue_withdraw_take_over(queue);
+        command_queue_withdraw_preemption(queue);
         reference_continue(&drive->reference, NULL);
         p->epoch = epoch;
         p->offered = NULL;
@@ -78,11 +78,11 @@ static void settle_offer(struct drive *drive)
     if (p->offered == NULL) {
         return;
     }
-    if (queue->take_over.posted) {
-        if ((int32_t)(interrupt_view_period(drive) - queue->take_over.at_period) <= 0) {
+    if (queue->preemption.posted) {
+        if ((int32_t)(interrupt_view_period(drive) - queue->preemption.at_period) <= 0) {
             return;
         }
-        command_queue_withdraw_take_over(queue); /* a stop or disable came first */
+        command_queue_withdraw_preemption(queue); /* a stop or disable came first */
     }
     if (drive->reference.plan == p->offered) {
         p->last = p->offered;
@@ -90,7 +90,7 @@ static void settle_offer(struct drive *drive)
         p->stop_due = p->stop_due && !p->offered_is_stop;
         p->lead_periods = lead_periods(drive, DRIVE_LEAD_s);
     } else {
-        const bool wanted = p->offered_is_stop || queue->take_over.command == queue->read;
+        const bool wanted = p->offered_is_stop || queue->preemption.command == queue->read;
         const uint32_t longest = lead_periods(drive, DRIVE_LEAD_MAX_s);
 
         if (wanted) {
@@ -104,15 +104,15 @@ static void settle_offer(struct drive *drive)
     p->offered = NULL;
 }
 
-static void offer(struct drive *drive, const struct take_over *take_over,
+static void offer(struct drive *drive, const struct preemption *preemption,
                   enum planner_motion motion)
 {
     struct planner *p = &drive->planner;
 
-    p->offered = take_over->plan;
+    p->offered = preemption->plan;
     p->offered_motion = motion;
-    p->offered_is_stop = !take_over->of_command;
-    command_queue_put_take_over(&drive->commands, take_over);
+    p->offered_is_stop = !preemption->of_command;
+    command_queue_put_preemption(&drive->commands, preemption);
 }
 
 /* Behind the point of continuation, to rest in case the continuation does not come. */
@@ -147,7 +147,7 @@ static bool too_late(const struct drive *drive)
 {
     const struct reference *r = &drive->reference;
 
-    return r->phase != REFERENCE_PLANNED || r->segment > r->plan->handover;
+    return r->phase != REFERENCE_PLANNED || r->segment > r->plan->continues_after;
 }
 
 static void end_motion(struct drive *drive)
@@ -157,7 +157,7 @@ static void end_motion(struct drive *drive)
 
     p->motion = PLANNER_IDLE;
     p->set_points_open = false;
-    if (plan->segments > plan->handover) { /* it had to be brought to rest */
+    if (plan->segments > plan->continues_after) { /* it had to be brought to rest */
         p->underruns++;
     }
 }
@@ -176,7 +176,7 @@ static void continue_motion(struct drive *drive)
     if (r->plan != p->last) {
         return; /* the continuation has not been taken yet */
     }
-    if (p->last->handover > PLAN_SEGMENTS) {
+    if (p->last->continues_after > PLAN_SEGMENTS) {
         p->motion = PLANNER_IDLE; /* the end of the sine */
         return;
     }
@@ -233,7 +233,7 @@ static void stop(struct drive *drive)
     if (begin_plan(drive, plan, at_period)) {
         motion_plan_speed(plan, &p->end, 0.0, &p->limits);
         plan->creeps = p->creeps;
-        offer(drive, &(struct take_over){.at_period = at_period, .plan = plan}, PLANNER_IDLE);
+        offer(drive, &(struct preemption){.at_period = at_period, .plan = plan}, PLANNER_IDLE);
     }
 }
 
@@ -340,7 +340,7 @@ static void take_command(struct drive *drive)
 
         p->motion = PLANNER_IDLE; /* what has been going on ends */
         offer(drive,
-              &(struct take_over){
+              &(struct preemption){
                   .at_period = at_period, .plan = plan, .of_command = true, .command = entry},
               motion);
     }

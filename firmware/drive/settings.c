@@ -66,7 +66,7 @@ const char *drive_state_name(enum drive_state state)
     static const char *const names[DRIVE_STATES] = {
         [DRIVE_SWITCH_ON_DISABLED] = "switch-on-disabled",
         [DRIVE_CALIBRATING_OFFSETS] = "calibrating-offsets",
-        [DRIVE_FINDING_POSITION] = "finding-position",
+        [DRIVE_DETECTING_POSITION] = "detecting-position",
         [DRIVE_ALIGNING] = "aligning",
         [DRIVE_OPERATION_ENABLED] = "operation-enabled",
         [DRIVE_FAULT] = "fault",

@@ -78,12 +78,12 @@ static void power_up(struct drive *drive)
     }
 }
 
-/* The turn is the one that the drive is told; nearest, if it is told wrong by less than half. */
+/* The turn is the one that is assumed; nearest, if that is wrong by less than half. */
 void state_machine_position_found(struct drive *drive, angle_t angle)
 {
-    const struct position told = drive->params.enabling.initial_position;
+    const struct position assumed = drive->params.enabling.initial_position;
 
-    drive->enabling.start = position_add(told, (int32_t)(angle - told.fraction));
+    drive->enabling.start = position_add(assumed, (int32_t)(angle - assumed.fraction));
     power_up(drive);
 }
 
@@ -97,7 +97,7 @@ static void find_position_or_power_up(struct drive *drive)
         drive_reset_motion(drive);
         initial_position_start(&drive->enabling.detection, &drive->enabling.detection_params,
                                drive->enabling.start.fraction);
-        enter(drive, DRIVE_FINDING_POSITION);
+        enter(drive, DRIVE_DETECTING_POSITION);
     } else {
         power_up(drive);
     }
@@ -153,7 +153,7 @@ static bool obey(struct drive *drive, struct queued_command *command)
         return true;
     }
     if (queued_command_is_planned(command)) {
-        return false; /* it goes when its plan takes over */
+        return false; /* it goes when its plan begins */
     }
     if (command->kind == DRIVE_COMMAND_HOLD) {
         reference_count_as_slow(&drive->reference);
@@ -161,11 +161,11 @@ static bool obey(struct drive *drive, struct queued_command *command)
     return true;
 }
 
-static void take_over(struct drive *drive, const struct motion_plan *plan)
+static void preempt(struct drive *drive, const struct motion_plan *plan)
 {
     if (drive->supervision.state == DRIVE_OPERATION_ENABLED &&
-        reference_take_over(&drive->reference, plan)) {
-        command_queue_accept_take_over(&drive->commands);
+        reference_preempt(&drive->reference, plan)) {
+        command_queue_accept_preemption(&drive->commands);
     }
 }
 
@@ -201,9 +201,9 @@ __attribute__((noinline)) static void take_commands(struct drive *drive)
         command_queue_rest_if_empty(queue, period, urgent_wait);
         return;
     }
-    plan = command_queue_take_over(queue, period + 1u, &wait);
+    plan = command_queue_preemption(queue, period + 1u, &wait);
     if (plan != NULL) {
-        take_over(drive, plan);
+        preempt(drive, plan);
     } else {
         command_queue_rest(queue, period, wait);
     }
@@ -267,7 +267,7 @@ __attribute__((noinline)) static bool step_outside_operation(struct drive *drive
     } else if (drive->supervision.state == DRIVE_ALIGNING) {
         align(drive, samples);
     }
-    if (drive->supervision.state == DRIVE_FINDING_POSITION) {
+    if (drive->supervision.state == DRIVE_DETECTING_POSITION) {
         state_machine_fault(drive, protection_check_samples(&drive->params.protection, samples));
     }
     return state_machine_powered(drive);

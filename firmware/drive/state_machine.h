@@ -1,7 +1,7 @@
 /*
  * States of the drive (CiA 402 names) and what leads from one to the next:
  *
- *   switch-on-disabled --enable--> calibrating-offsets --> finding-position --> aligning -->
+ *   switch-on-disabled --enable--> calibrating-offsets --> detecting-position --> aligning -->
  *          ^                                                           operation-enabled
  *          |                                                                  |
  *          +-------------------- disable (from anywhere) <--------------------+
@@ -23,7 +23,7 @@ static inline uint32_t state_machine_begin_period(struct drive *drive)
     return period;
 }
 
-/* The bridge is on and the control runs; finding-position has the bridge for itself. */
+/* The bridge is on and the control runs; detecting-position has the bridge for itself. */
 static inline bool state_machine_powered(const struct drive *drive)
 {
     return drive->supervision.state == DRIVE_OPERATION_ENABLED ||
@@ -45,7 +45,7 @@ bool state_machine_obey(struct drive *drive, const struct hal_samples *samples);
 __attribute__((noinline)) void state_machine_check_samples(struct drive *drive,
                                                            const struct hal_samples *samples);
 
-/* The steps of enabling behind finding-position: the rotor stands at this electrical angle. */
+/* The steps of enabling behind detecting-position: the rotor stands at this electrical angle. */
 void state_machine_position_found(struct drive *drive, angle_t angle);
 
 /* The bridge while nothing controls it: off; in the second stage of the offsets' calibration on,

@@ -41,8 +41,8 @@ enum step {
     JUDGE_TORQUE,
     JUDGE_LOAD,
     JUDGE_FOLLOWING,
-    JUDGE_GRIP,
-    DOUBT,
+    JUDGE_PULL_OUT,
+    JUDGE_LOAD_ANGLE,
     FOLLOW,     /* with an encoder: all there is */
     UNMONITORED /* no block, ever */
 };
@@ -70,10 +70,10 @@ void synchronism_start(struct drive *drive)
     }
 }
 
-static enum synchronism doubt(struct drive *drive)
+static enum synchronism judge_load_angle(struct drive *drive)
 {
-    const enum synchronism verdict =
-        synchronism_monitor_doubt(&drive->synchronism.monitor, &drive->synchronism.params);
+    const enum synchronism verdict = synchronism_monitor_judge_load_angle(
+        &drive->synchronism.monitor, &drive->synchronism.params);
 
     drive->synchronism.step = TAKE;
     if (drive->supervision.period - drive->synchronism.block_began <
@@ -93,10 +93,10 @@ static num_t error_of(const struct drive *drive, const struct rotor *rotor)
     return position_difference(drive->reference.now.position, rotor->position);
 }
 
-/* A hold that has lost its grip drives the rotor on: the position law catches it, if it may. */
-static enum synchronism judge_grip(struct drive *drive, const struct rotor *rotor)
+/* A hold whose rotor has pulled out drives it on: the position law catches it, if it may. */
+static enum synchronism judge_pull_out(struct drive *drive, const struct rotor *rotor)
 {
-    const enum synchronism verdict = synchronism_monitor_judge_grip(
+    const enum synchronism verdict = synchronism_monitor_judge_pull_out(
         &drive->synchronism.monitor, &drive->synchronism.params, error_of(drive, rotor));
 
     if (verdict != SYNCHRONISM_SURE) {
@@ -140,10 +140,10 @@ static enum synchronism step(struct drive *drive, const struct rotor *rotor)
     case JUDGE_FOLLOWING:
         return synchronism_monitor_judge_following(monitor, params, error_of(drive, rotor),
                                                    drive->reference.now.speed - rotor->speed);
-    case JUDGE_GRIP:
-        return drive->hold.active ? judge_grip(drive, rotor) : SYNCHRONISM_SURE;
-    case DOUBT:
-        return doubt(drive);
+    case JUDGE_PULL_OUT:
+        return drive->hold.active ? judge_pull_out(drive, rotor) : SYNCHRONISM_SURE;
+    case JUDGE_LOAD_ANGLE:
+        return judge_load_angle(drive);
     default:
         drive->synchronism.step = UNMONITORED;
         drive->synchronism.due = drive->supervision.period + NOT_YET;
@@ -152,7 +152,7 @@ static enum synchronism step(struct drive *drive, const struct rotor *rotor)
 }
 
 /* With the policy `warn` the worst stays on show: a loss until the bridge is switched on anew, the
-   rest until no doubt is left. */
+   rest until the estimate is sure again. */
 static enum drive_fault act(struct drive *drive, enum synchronism verdict)
 {
     static const enum drive_synchronism shown[] = {

@@ -21,15 +21,15 @@
  * turns. In motion an offset shows as an angle error that turns with it, so in nu_d; at rest, where
  * the mean back-EMF is null, in nu_q.
  *
- * At rest no innovation tells load from displacement; only the back-EMF of the rotor's own motion
- * does, and what is integrated of it walks away with noise and offset. So the hold follows the load
- * at once, but returns within 3 to 10 ms, load and angle together, to the load it had settled at,
- * and takes what lasts for an offset; unless the difference shows a load step: then what is
- * estimated is the load from there on, and of the offset stays what has lasted: the rest was the
- * motion of a rotor that crept under a slow load. Of small steps one in 10 ms is believed, so that
- * the estimate cannot run away with the current that compensates it. A rotor that is led along a
- * creeping reference passes its detent torque, and a machine may vibrate, which several steps on
- * end show: there what exceeds three times the mean difference of late is a step.
+ * At rest no innovation distinguishes load and displacement; only the back-EMF of the rotor's own
+ * motion does, and what is integrated of it walks away with noise and offset. So the hold follows
+ * the load at once, but returns within 3 to 10 ms, load and angle together, to the load it had
+ * settled at, and takes what lasts for an offset; unless the difference shows a load step: then
+ * what is estimated is the load from there on, and of the offset stays what has lasted: the rest
+ * was the motion of a rotor that crept under a slow load. Of small steps one in 10 ms is believed,
+ * so that the estimate cannot run away with the current that compensates it. A rotor that is led
+ * along a creeping reference passes its detent torque, and a machine may vibrate, which several
+ * steps on end show: there what exceeds three times the mean difference of late is a step.
  *
  * Gains: design/invariant_ekf_design.h.
  */
@@ -65,7 +65,7 @@ struct invariant_ekf_params {
     uint32_t following_periods;              /* how long a load step is followed */
     uint32_t rest_periods;                   /* behind that, in which none is */
     uint32_t swing_periods;                  /* in which a rotor swings into place */
-    num_t load_step;                         /* what a quiet hold takes for a step of the load */
+    num_t load_step;                         /* what a settled hold takes for a step of the load */
     coef_t bias_settle;                      /* share per block of settled_bias' way to the bias */
     coef_t usual_memory;                     /* share per block of usual_change's way */
 };

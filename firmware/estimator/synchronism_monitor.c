@@ -240,9 +240,9 @@ synchronism_monitor_judge_following(struct synchronism_monitor *monitor,
     return stalled_after(monitor, params, monitor->behind, params->behind_blocks);
 }
 
-enum synchronism synchronism_monitor_judge_grip(struct synchronism_monitor *monitor,
-                                                const struct synchronism_monitor_params *params,
-                                                num_t error)
+enum synchronism synchronism_monitor_judge_pull_out(struct synchronism_monitor *monitor,
+                                                    const struct synchronism_monitor_params *params,
+                                                    num_t error)
 {
     const num_t load_angle = num_abs(error);
 
@@ -252,8 +252,9 @@ enum synchronism synchronism_monitor_judge_grip(struct synchronism_monitor *moni
     return load_angle > PULL_OUT_ANGLE ? SYNCHRONISM_STALLED : SYNCHRONISM_SURE;
 }
 
-enum synchronism synchronism_monitor_doubt(struct synchronism_monitor *monitor,
-                                           const struct synchronism_monitor_params *params)
+enum synchronism
+synchronism_monitor_judge_load_angle(struct synchronism_monitor *monitor,
+                                     const struct synchronism_monitor_params *params)
 {
     if (monitor->behind >= params->warning_blocks || monitor->standing >= params->warning_blocks) {
         monitor->doubtful = params->doubtful_blocks;

@@ -150,12 +150,13 @@ synchronism_monitor_judge_following(struct synchronism_monitor *monitor,
                                     num_t deficit);
 
 /* In a hold: whether the load angle is that of pull-out: stalled, or sure. */
-enum synchronism synchronism_monitor_judge_grip(struct synchronism_monitor *monitor,
-                                                const struct synchronism_monitor_params *params,
-                                                num_t error);
+enum synchronism synchronism_monitor_judge_pull_out(struct synchronism_monitor *monitor,
+                                                    const struct synchronism_monitor_params *params,
+                                                    num_t error);
 
 /* What the block's other steps leave: doubtful, or sure. */
-enum synchronism synchronism_monitor_doubt(struct synchronism_monitor *monitor,
-                                           const struct synchronism_monitor_params *params);
+enum synchronism
+synchronism_monitor_judge_load_angle(struct synchronism_monitor *monitor,
+                                     const struct synchronism_monitor_params *params);
 
 #endif

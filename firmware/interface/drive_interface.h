@@ -24,7 +24,7 @@ struct hal_facts;
 enum drive_state {
     DRIVE_SWITCH_ON_DISABLED,  /* bridge off, waits for an enable command */
     DRIVE_CALIBRATING_OFFSETS, /* converter offsets are averaged, with the bridge off, then on */
-    DRIVE_FINDING_POSITION,    /* voltage impulses, or a gentle alignment, find the rotor */
+    DRIVE_DETECTING_POSITION,  /* voltage impulses, or a gentle alignment, find the rotor */
     DRIVE_ALIGNING,          /* d-axis hold at the known angle, or an encoder's zero is found by it;
                                 series resistance is calibrated */
     DRIVE_OPERATION_ENABLED, /* ready: holds or moves */

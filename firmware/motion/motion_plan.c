@@ -62,7 +62,7 @@ void motion_plan_begin(struct motion_plan *plan, const struct motion_state *from
     plan->epoch = epoch;
     plan->speed_jump = 0;
     plan->segments = 0;
-    plan->handover = PLAN_SEGMENTS + 1u;
+    plan->continues_after = PLAN_SEGMENTS + 1u;
     plan->endless = false;
     plan->creeps = false;
     plan->lands = false;

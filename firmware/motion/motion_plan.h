@@ -10,8 +10,8 @@
  * exactly what the interrupt reaches, and plan after plan begins where the one before is.
  *
  * A plan begins from any speed and acceleration and ends at rest, or goes on at constant speed for
- * ever. Where more is to come, `handover` says behind which segment it begins; the segments after
- * it bring the reference to rest if it does not come in time.
+ * ever. Where more is to come, `continues_after` says behind which segment it begins; the segments
+ * after it bring the reference to rest if it does not come in time.
  *
  * Runs in the background, in double precision.
  */
@@ -44,10 +44,11 @@ struct motion_plan {
     int64_t speed_jump;       /* at its begin; 0 but for a sine without a ramp, and what rounding
                                  leaves of a target, far below 2^-32 turn in a period */
     uint32_t segments;
-    uint32_t handover; /* segments before the continuation; PLAN_SEGMENTS + 1: there is none */
-    bool endless;      /* the last segment goes on for ever */
-    bool creeps;       /* is part of a motion that is never faster than creep, or ends in one */
-    bool lands;        /* ends at `target`, else where it comes to rest */
+    uint32_t
+        continues_after; /* segments before the continuation; PLAN_SEGMENTS + 1: there is none */
+    bool endless;        /* the last segment goes on for ever */
+    bool creeps;         /* is part of a motion that is never faster than creep, or ends in one */
+    bool lands;          /* ends at `target`, else where it comes to rest */
     struct position target;
     struct motion_segment segment[PLAN_SEGMENTS];
 };

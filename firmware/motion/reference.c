@@ -160,7 +160,7 @@ __attribute__((noinline)) static void begin_next_segment(struct reference *r)
         r->stop_requested = false;
         r->epoch++;
     }
-    if (r->segment == r->plan->handover && continuation != NULL) {
+    if (r->segment == r->plan->continues_after && continuation != NULL) {
         r->continuation = NULL;
         r->plan = continuation;
         r->creeps = continuation->creeps;
@@ -242,7 +242,7 @@ static inline __attribute__((always_inline)) void begin_next_phase(struct refere
     r->next.moving = r->phase < REFERENCE_REST;
 }
 
-bool reference_take_over(struct reference *r, const struct motion_plan *plan)
+bool reference_preempt(struct reference *r, const struct motion_plan *plan)
 {
     const struct motion_state *from = &plan->from;
 

@@ -70,7 +70,7 @@ struct reference {
     struct reference_sample next; /* at S(k+1) */
     uint32_t slow_periods;        /* since it came to rest or to creep, at S(k); saturates */
 
-    struct profile *profile; /* the one taken over */
+    struct profile *profile; /* the one in force */
     enum reference_phase phase;
     uint32_t periods_left; /* of the phase */
     bool creeps;           /* the profile or plan does */
@@ -81,7 +81,7 @@ struct reference {
     int64_t jerk;
     int64_t jerk_sixth;
 
-    const struct motion_plan *plan; /* the one taken over last */
+    const struct motion_plan *plan; /* the one that began last */
     uint32_t segment;               /* of the plan: how many have begun */
     uint32_t epoch;                 /* counts resets and stops of plans: older plans are void */
     const struct motion_plan *volatile continuation; /* NULL: has not come */
@@ -130,15 +130,16 @@ static inline bool reference_busy(const struct reference *reference)
 bool reference_load(struct reference *reference, struct profile *profile);
 
 /*
- * Takes a plan over whatever it does: the first segment begins at S(k+1). The plan must live until
- * another one is taken over. Refused (false) if a reset or a stop came in between or the reference
- * is not where the plan takes over: nothing has happened then, and the background plans again.
+ * Goes on with a plan whatever it does: the first segment begins at S(k+1). The plan must live
+ * until another one is in force. Refused (false) if a reset or a stop came in between or the
+ * reference is not where the plan begins: nothing has happened then, and the background plans
+ * again.
  */
-bool reference_take_over(struct reference *reference, const struct motion_plan *plan);
+bool reference_preempt(struct reference *reference, const struct motion_plan *plan);
 
 /*
  * Background: offers the continuation of the plan in force, or withdraws it (NULL). The interrupt
- * takes it where that plan hands over, and never again after that: it can pre-empt this at any
+ * takes it where that plan continues, and never again after that: it can preempt this at any
  * instant and sees either none or all of the continuation, because a barrier keeps the compiler
  * from writing the pointer before what it points to, and on one core nothing else could.
  */

@@ -74,7 +74,7 @@ bool set_points_continue(struct set_points *points, struct motion_plan *plan,
     };
 
     motion_plan_transfer(plan, end, &target, points->interval_periods);
-    plan->handover = plan->segments;
+    plan->continues_after = plan->segments;
     points->behind = here;
     points->read++;
     return true;

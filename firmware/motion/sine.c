@@ -143,6 +143,6 @@ bool sine_continue(struct sine *sine, struct motion_plan *plan, struct motion_st
             return false;
         }
     }
-    plan->handover = plan->segments;
+    plan->continues_after = plan->segments;
     return true;
 }

@@ -19,7 +19,7 @@ struct position {
     angle_t fraction; /* rest, 0...1 turn */
 };
 
-/* Largest difference of positions that position_difference tells apart, electrical turns. */
+/* Largest difference of positions that position_difference distinguishes, electrical turns. */
 #define POSITION_DIFFERENCE_MAX 15.0
 
 /* Both parts as one number, in 2^-32 turn; wraps as the turns do. */

@@ -685,7 +685,7 @@ MUTANTS = [
     Mutant(ESTIMATOR + "initial_position.c", "initial_position",
            "each_detection_waits_for_the_rotor_as_often_as_the_first",
            "    detection->repetitions = 0;\n", ""),
-    Mutant(DRIVE + "finding_position.c", "drive",
+    Mutant(DRIVE + "position_detecting.c", "drive",
            "behind_an_alignment_its_current_flows_on_into_the_hold",
            "if (!detection->by_impulses)", "if (detection->by_impulses)"),
     Mutant(DRIVE + "synchronism.h", "drive",

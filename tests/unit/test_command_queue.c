@@ -244,14 +244,14 @@ static void look(uint32_t period)
     (void)command_queue_take_urgent(&queue, &queue.disable, period, &wait);
     (void)command_queue_take_urgent(&queue, &queue.stop, period, &wait);
     (void)command_queue_due(&queue, period + 1u, &wait);
-    (void)command_queue_take_over(&queue, period, &wait);
+    (void)command_queue_preemption(&queue, period, &wait);
     command_queue_rest(&queue, period, wait);
 }
 
 /* What lets the interrupt pass the queue by. */
 static void test_the_queue_is_due_when_something_was_posted_and_when_its_period_comes(void)
 {
-    const struct take_over take_over = {.at_period = 130};
+    const struct preemption preemption = {.at_period = 130};
 
     look(10);
     TEST_ASSERT_EQUAL_INT(-1, calls_from(11, 200));
@@ -265,14 +265,14 @@ static void test_the_queue_is_due_when_something_was_posted_and_when_its_period_
 
     command_queue_put_urgent(&queue, &queue.disable, 120);
     command_queue_put_urgent(&queue, &queue.stop, 110);
-    command_queue_put_take_over(&queue, &take_over);
+    command_queue_put_preemption(&queue, &preemption);
     look(100);
     TEST_ASSERT_EQUAL_INT(110, calls_from(101, 200));
     look(110);
     TEST_ASSERT_EQUAL_INT(120, calls_from(111, 200));
     look(120);
     TEST_ASSERT_EQUAL_INT(130, calls_from(121, 200));
-    command_queue_withdraw_take_over(&queue);
+    command_queue_withdraw_preemption(&queue);
     look(130);
     TEST_ASSERT_EQUAL_INT(-1, calls_from(131, 200));
 }

@@ -79,7 +79,7 @@ static struct motion_plan *new_plan(void)
 
 static void must_preempt(const struct motion_plan *plan)
 {
-    TEST_ASSERT_TRUE(reference_take_over(&reference, plan));
+    TEST_ASSERT_TRUE(reference_preempt(&reference, plan));
 }
 
 static void go_at(double speed)
@@ -289,19 +289,19 @@ static void test_a_plan_made_for_another_state_or_epoch_is_refused(void)
     plan = new_plan();
     motion_plan_speed(plan, &end, 0.0, &limits);
     step();
-    TEST_ASSERT_FALSE(reference_take_over(&reference, plan));
+    TEST_ASSERT_FALSE(reference_preempt(&reference, plan));
     run_without_a_kink(700); /* the plan in force goes on */
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, limits.speed, motion_to_turns(reference.at.speed));
 
     plan = new_plan();
     motion_plan_speed(plan, &end, 0.0, &limits);
     reference_stop(&reference);
-    TEST_ASSERT_FALSE(reference_take_over(&reference, plan));
+    TEST_ASSERT_FALSE(reference_preempt(&reference, plan));
     reference_reset(&reference, origin);
     plan = new_plan();
     motion_plan_speed(plan, &end, limits.speed, &limits);
     reference_reset(&reference, origin);
-    TEST_ASSERT_FALSE(reference_take_over(&reference, plan));
+    TEST_ASSERT_FALSE(reference_preempt(&reference, plan));
 }
 
 /* ---- sine ---- */
@@ -523,7 +523,7 @@ static void test_set_points_on_a_parabola_give_the_parabola(void)
 
         motion_plan_begin(&plan, &end, reference.epoch);
         TEST_ASSERT_TRUE(set_points_continue(&points, &plan, &end));
-        TEST_ASSERT_EQUAL_UINT32(3, plan.handover);
+        TEST_ASSERT_EQUAL_UINT32(3, plan.continues_after);
         TEST_ASSERT_DOUBLE_WITHIN(3e-10, a / 2.0 * t * t,
                                   (double)end.turns +
                                       (double)end.fraction / 18446744073709551616.0);

@@ -245,7 +245,7 @@ static void test_a_background_that_is_late_plans_further_ahead(void)
     must_post(velocity(-2.0));
     drive_background(&drive);
     TEST_ASSERT_NOT_NULL(drive.planner.offered);
-    drive.commands.take_over.at_period -= LEAD_PERIODS; /* as if so much time had passed */
+    drive.commands.preemption.at_period -= LEAD_PERIODS; /* as if so much time had passed */
     run(2);
     TEST_ASSERT_EQUAL_UINT32(2u * LEAD_PERIODS, drive.planner.lead_periods);
     run(250);
@@ -258,7 +258,7 @@ static void be_late(void)
 {
     drive_background(&drive);
     TEST_ASSERT_NOT_NULL(drive.planner.offered);
-    drive.commands.take_over.at_period = drive.supervision.period - 1u;
+    drive.commands.preemption.at_period = drive.supervision.period - 1u;
     run(2);
 }
 
@@ -436,7 +436,7 @@ static void test_set_points_posted_while_the_first_plan_is_on_offer_overwrite_no
         must_post(set_point(wanted(i)));
     }
     must_refuse(set_point(wanted(16)), "15 set-points are waiting already");
-    command_queue_withdraw_take_over(&drive.commands); /* what a refusal leaves */
+    command_queue_withdraw_preemption(&drive.commands); /* what a refusal leaves */
     drive_background(&drive);
     must_refuse(set_point(wanted(16)), "15 set-points are waiting already");
     run(2u * LEAD_PERIODS + 2u); /* it has begun: there is room again */

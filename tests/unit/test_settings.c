@@ -334,7 +334,7 @@ static void test_the_rated_current_has_a_range_of_its_own(void)
 static void test_names_are_spelt_as_scenarios_and_the_serial_line_do(void)
 {
     static const char *const states[DRIVE_STATES] = {"switch-on-disabled", "calibrating-offsets",
-                                                     "finding-position",   "aligning",
+                                                     "detecting-position", "aligning",
                                                      "operation-enabled",  "fault"};
     static const char *const faults[DRIVE_FAULTS] = {"none",
                                                      "overcurrent",

@@ -381,7 +381,7 @@ static void begin_detection(void)
     power_up();
     post_kind(DRIVE_COMMAND_ENABLE);
     run(1);
-    is_in(DRIVE_FINDING_POSITION, true);
+    is_in(DRIVE_DETECTING_POSITION, true);
 }
 
 static void test_a_position_that_cannot_be_found_is_a_fault_with_a_name(void)
@@ -400,7 +400,7 @@ static void test_initial_position_detection_follows_the_offsets(void)
     run(OFFSET_PERIODS - 1u);
     is_in(DRIVE_CALIBRATING_OFFSETS, true);
     run(1);
-    is_in(DRIVE_FINDING_POSITION, true);
+    is_in(DRIVE_DETECTING_POSITION, true);
 }
 
 static void test_a_fault_opens_the_bridge_while_the_position_is_found(void)

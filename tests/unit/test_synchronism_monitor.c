@@ -78,7 +78,8 @@ static enum synchronism block(const struct course *c)
         synchronism_monitor_judge_load(&monitor, &params,
                                        num_from_double(c->load_Nm / base.torque_Nm)),
         synchronism_monitor_judge_following(&monitor, &params, error, deficit),
-        c->holding ? synchronism_monitor_judge_grip(&monitor, &params, error) : SYNCHRONISM_SURE,
+        c->holding ? synchronism_monitor_judge_pull_out(&monitor, &params, error)
+                   : SYNCHRONISM_SURE,
     };
 
     for (size_t i = 0; i < sizeof verdict / sizeof *verdict; ++i) {
@@ -86,7 +87,7 @@ static enum synchronism block(const struct course *c)
             return verdict[i];
         }
     }
-    return synchronism_monitor_doubt(&monitor, &params);
+    return synchronism_monitor_judge_load_angle(&monitor, &params);
 }
 
 /* The verdict after a time of the same. */

@@ -13,7 +13,7 @@ INTERRUPTS = ["control_interrupt", "deadline_guard_interrupt"]
 ENABLING = {
     "encoder_aligning_step",
     "find_position_or_power_up",
-    "finding_position_cycle",
+    "position_detecting_cycle",
     "offset_calibration_step",
     "phase_balancing_start",
     "phase_balancing_step",

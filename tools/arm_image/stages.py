@@ -57,7 +57,7 @@ CONTROL_CYCLE = {
     "law_input": "position law",
     "consider_hold": "position law",
     "wanted_current": "position law",
-    "hand_over": "position law",
+    "transfer": "position law",
     "modulate": "modulator",
 }
 

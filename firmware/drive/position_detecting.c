@@ -1,4 +1,4 @@
-#include "firmware/drive/finding_position.h"
+#include "firmware/drive/position_detecting.h"
 
 #include "firmware/drive/modulate.h"
 #include "firmware/drive/prepared_input.h"
@@ -44,7 +44,7 @@ static void go_on(struct drive *drive, const struct sample_set *now)
 
 /* Measures on its own: a sample set that is passed in would cost the default path registers. */
 __attribute__((noinline)) struct hal_outputs
-finding_position_cycle(struct drive *drive, const struct hal_samples *samples)
+position_detecting_cycle(struct drive *drive, const struct hal_samples *samples)
 {
     const struct sample_set set =
         measurement_step(&drive->measurement, &drive->params.measurement, samples);

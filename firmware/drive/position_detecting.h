@@ -1,6 +1,6 @@
-/* The state finding-position: the bridge belongs to estimator/initial_position.h. */
-#ifndef STEADYSTEP_FINDING_POSITION_H
-#define STEADYSTEP_FINDING_POSITION_H
+/* The state detecting-position: the bridge belongs to estimator/initial_position.h. */
+#ifndef STEADYSTEP_POSITION_DETECTING_H
+#define STEADYSTEP_POSITION_DETECTING_H
 
 #include "firmware/drive/drive.h"
 
@@ -9,6 +9,6 @@
  * rotor's angle known, or for the fault position-not-found.
  */
 __attribute__((noinline)) struct hal_outputs
-finding_position_cycle(struct drive *drive, const struct hal_samples *samples);
+position_detecting_cycle(struct drive *drive, const struct hal_samples *samples);
 
 #endif
