@@ -33,6 +33,8 @@ static bool design(struct application *application, const struct drive_settings 
         return false;
     }
     application->gains_hash = drive_hash_gains(&application->drive.params);
+    application->timeout_periods =
+        (uint32_t)(settings->command_timeout_s / application->facts.control_period_s + 0.5);
     application->in_force = *settings;
     application->awaits_enable = false;
     return true;
@@ -48,6 +50,8 @@ static void prepare(struct application *application, const struct hal *board)
     application->cycles = (struct control_cycles){.periods = 0};
     application->cycle_statistics = (struct control_cycle_statistics){.periods = 0};
     application->stored_refused = false;
+    application->heard_in = 0;
+    application->unheard = false;
     console_init(&application->console);
 }
 
@@ -137,9 +141,42 @@ static bool prepare_enable(struct application *application, uint32_t *at_period,
     return true;
 }
 
+void application_hear(struct application *application, uint32_t period)
+{
+    application->heard_in = period;
+    application->unheard = false;
+}
+
+/* The reference moves, or will. */
+static bool commands_motion(const struct drive *drive)
+{
+    return interrupt_view_state(drive) == DRIVE_OPERATION_ENABLED &&
+           (interrupt_view_moves(drive) || command_queue_holds_any(&drive->commands));
+}
+
+/* Acts as if it had been asked for in the period in which the time is over, whenever the background
+   comes to it. */
+static void stop_if_unheard(struct application *application)
+{
+    const struct drive *drive = &application->drive;
+    const uint32_t over = application->heard_in + application->timeout_periods;
+    char refusal[DRIVE_ERROR_TEXT];
+
+    if (application->timeout_periods > 0u && !application->unheard &&
+        (int32_t)(interrupt_view_period(drive) - over) >= 0 && commands_motion(drive)) {
+        const struct drive_command stop = {
+            .kind = DRIVE_COMMAND_STOP,
+            .at_period = over + application_typed_delay(application),
+        };
+
+        application->unheard = drive_command_asked_in(&application->drive, &stop, over, refusal);
+    }
+}
+
 bool application_command(struct application *application, struct drive_command *command,
                          uint32_t asked_in, char error[DRIVE_ERROR_TEXT])
 {
+    application_hear(application, asked_in);
     return (command->kind != DRIVE_COMMAND_ENABLE ||
             prepare_enable(application, &command->at_period, error)) &&
            drive_command_asked_in(&application->drive, command, asked_in, error);
@@ -149,6 +186,7 @@ CALLED_FROM_OUTSIDE void application_background(struct application *application)
 {
     drive_feed_watchdog(&application->drive);
     drive_background(&application->drive);
+    stop_if_unheard(application);
     control_cycles_gather(&application->cycle_statistics, &application->cycles);
     console_background(application);
 }

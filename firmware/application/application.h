@@ -40,6 +40,9 @@ struct application {
     enum application_settings settings_from;
     struct drive_settings chosen;          /* as given, stored or set: what `store` keeps */
     struct drive_settings in_force;        /* those that the drive was designed by */
+    uint32_t timeout_periods;              /* command_timeout_s in force; 0: none */
+    uint32_t heard_in;                     /* period of the last line or command */
+    bool unheard;                          /* since then for so long that a motion was stopped */
     bool awaits_enable;                    /* `chosen` does, as it may differ from them */
     bool stored_refused;                   /* by the drive: the defaults are in force */
     char stored_refusal[DRIVE_ERROR_TEXT]; /* why */
@@ -68,6 +71,9 @@ bool application_init_with(struct application *application, const struct hal *bo
  */
 bool application_command(struct application *application, struct drive_command *command,
                          uint32_t asked_in, char error[DRIVE_ERROR_TEXT]);
+
+/* Background: whoever commands the drive was heard in this period. */
+void application_hear(struct application *application, uint32_t period);
 
 /* DRIVE_TYPED_DELAY_s in control periods. */
 uint32_t application_typed_delay(const struct application *application);

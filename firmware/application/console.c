@@ -97,6 +97,18 @@ static bool announce_dropped(const struct application *application,
     return true;
 }
 
+/* That a motion was stopped since no line came. */
+static bool announce_unheard(const struct application *application,
+                             struct console_announced *announced, struct text *text)
+{
+    if (announced->unheard != application->unheard) {
+        announced->unheard = application->unheard;
+        text_put(text,
+                 application->unheard ? "warning: stop: nothing heard for command_timeout_s" : "");
+    }
+    return text->length > 0u;
+}
+
 static bool announce(struct application *application)
 {
     struct console *console = &application->console;
@@ -112,7 +124,8 @@ static bool announce(struct application *application)
     } else if (application->drive.planner.underruns != announced->underruns) {
         announced->underruns = application->drive.planner.underruns;
         text_put(&text, "warning: the reference came to rest: what continues it came too late");
-    } else if (!announce_state(application, announced, &text) &&
+    } else if (!announce_unheard(application, announced, &text) &&
+               !announce_state(application, announced, &text) &&
                !announce_dropped(application, announced, &text) &&
                !announce_synchronism(application, announced, &text)) {
         return false;
@@ -256,6 +269,7 @@ static bool obey_line(struct application *application, uint32_t line_period)
 
     console->line[too_long ? CONSOLE_LINE_BYTES : console->line_length] = '\0';
     console->line_length = 0;
+    application_hear(application, line_period);
     text_put(&answer, "error: ");
     if (console->bytes_lost) {
         text_put(&answer, "bytes of the line were lost, it came faster than it is read");

@@ -27,13 +27,14 @@
 enum {
     CONSOLE_LINE_BYTES = 200,   /* longest line, its end not counted */
     CONSOLE_ANSWER_BYTES = 640, /* longest line that the console writes, its end counted */
-    CONSOLE_PIECE_BYTES = 64    /* read from the board at once */
+    CONSOLE_PIECE_BYTES = 32    /* read from the board at once */
 };
 
 /* What of a drive was announced last. */
 struct console_announced {
     bool start;
     bool refused_settings;
+    bool unheard;
     enum drive_state state;
     uint32_t state_since;
     uint32_t underruns;

@@ -7,6 +7,7 @@
 #include "firmware/design/hold_check.h"
 #include "firmware/drive/fault_reason.h"
 #include "firmware/interface/dictionary.h"
+#include "firmware/interface/settings.h"
 #include "firmware/drive/interrupt_view.h"
 
 enum { DIGITS = 6 };
@@ -69,12 +70,11 @@ void report_start(struct text *text, const struct application *application)
     text_put(text, board->facts->board_name);
     text_put(text, "; settings: ");
     text_put(text, from[application->settings_from]);
-    put_number(text, "resistance_ohm", settings->motor.resistance_ohm);
-    put_number(text, "inductance_H", settings->motor.inductance_H);
-    put_number(text, "torque_constant_Nm_A", settings->motor.torque_constant_Nm_A);
-    put_count(text, "rotor_teeth", (uint32_t)settings->motor.rotor_teeth);
-    put_number(text, "rated_current_A", settings->motor.rated_current_A);
-    put_number(text, "supply_V", settings->motor.supply_V);
+    for (size_t i = 0; i < SETTINGS_OF_MOTOR; i++) {
+        const struct setting *setting = setting_number(i);
+
+        put_number(text, setting->name, setting_get(settings, setting, 0));
+    }
     put_word(text, "law", drive_law_name(settings->law));
     put_word(text, "feedback", drive_feedback_name(settings->feedback));
     if (settings->feedback == DRIVE_FEEDBACK_SENSORLESS) {

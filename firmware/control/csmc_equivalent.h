@@ -48,9 +48,9 @@ struct csmc_equivalent_law_state {
 extern const struct law_gain_list csmc_equivalent_law_gains;
 
 /* false: the sampled loop cannot bear the bandwidth, the limit in error. */
-bool csmc_equivalent_law_design(struct csmc_equivalent_law_params *params,
-                                const struct position_law_task *task,
-                                char error[DESIGN_ERROR_TEXT]);
+__attribute__((cold)) bool csmc_equivalent_law_design(struct csmc_equivalent_law_params *params,
+                                                      const struct position_law_task *task,
+                                                      char error[DESIGN_ERROR_TEXT]);
 
 struct voltage_demand csmc_equivalent_law_step(struct csmc_equivalent_law_state *state,
                                                const struct csmc_equivalent_law_params *params,

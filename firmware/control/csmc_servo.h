@@ -51,8 +51,9 @@ extern const struct law_gain_list csmc_servo_law_gains;
 
 /* servo_frequency_rad_s must be given. false: a frequency or bandwidth is beyond its limit, in
    error. */
-bool csmc_servo_law_design(struct csmc_servo_law_params *params,
-                           const struct position_law_task *task, char error[DESIGN_ERROR_TEXT]);
+__attribute__((cold)) bool csmc_servo_law_design(struct csmc_servo_law_params *params,
+                                                 const struct position_law_task *task,
+                                                 char error[DESIGN_ERROR_TEXT]);
 
 struct voltage_demand csmc_servo_law_step(struct csmc_servo_law_state *state,
                                           const struct csmc_servo_law_params *params,

@@ -31,8 +31,9 @@ struct foc_law_state {
 extern const struct law_gain_list foc_law_gains;
 
 /* false: the loops cannot bear the bandwidths, the limit in error. */
-bool foc_law_design(struct foc_law_params *params, const struct position_law_task *task,
-                    char error[DESIGN_ERROR_TEXT]);
+__attribute__((cold)) bool foc_law_design(struct foc_law_params *params,
+                                          const struct position_law_task *task,
+                                          char error[DESIGN_ERROR_TEXT]);
 
 struct voltage_demand foc_law_step(struct foc_law_state *state, const struct foc_law_params *params,
                                    const struct voltage_law_input *input);

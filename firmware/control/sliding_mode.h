@@ -91,8 +91,10 @@ struct sliding_surface_params sliding_surface_design(const struct position_law_t
  * bandwidths. false: the sampled loop cannot bear a bandwidth that a gain follows from, the limit
  * in error.
  */
-bool sliding_mode_design(struct sliding_mode_params *params, struct sliding_mode_gains *gains,
-                         const struct position_law_task *task, char error[DESIGN_ERROR_TEXT]);
+__attribute__((cold)) bool sliding_mode_design(struct sliding_mode_params *params,
+                                               struct sliding_mode_gains *gains,
+                                               const struct position_law_task *task,
+                                               char error[DESIGN_ERROR_TEXT]);
 
 struct conditional_integrator_params conditional_integrator_design(double k0_1_s, double period_s);
 

@@ -51,8 +51,9 @@ enum {
 bool torque_demand_needs_design(const struct position_law_task *task);
 
 /* false: a gain that is not given cannot follow from the bandwidth, the limit in error. */
-bool torque_demand_design(struct torque_demand_params *params, const struct position_law_task *task,
-                          char error[DESIGN_ERROR_TEXT]);
+__attribute__((cold)) bool torque_demand_design(struct torque_demand_params *params,
+                                                const struct position_law_task *task,
+                                                char error[DESIGN_ERROR_TEXT]);
 
 /* One period: i_q*, within +-current_limit. */
 num_t torque_demand_step(struct torque_demand_state *state,

@@ -54,6 +54,12 @@ static inline const struct motion_plan *interrupt_view_plan(const struct drive *
     return INTERRUPT_VIEW(const struct motion_plan *, drive->reference.plan);
 }
 
+/* Whether the reference is within a profile or a plan. */
+static inline bool interrupt_view_moves(const struct drive *drive)
+{
+    return INTERRUPT_VIEW(enum reference_phase, drive->reference.phase) != REFERENCE_REST;
+}
+
 /* Counts resets of the reference, and stops of its plans. */
 static inline uint32_t interrupt_view_epoch(const struct drive *drive)
 {

@@ -129,11 +129,12 @@ double initial_position_peak_A(const struct initial_position_task *task);
  * Impulses as strong as the overcurrent trip allows; false: the motor or the trip leaves none,
  * reason in error.
  */
-bool initial_position_design(struct initial_position_params *params,
-                             const struct motor_model_params *model,
-                             const struct motor_params *motor, const struct per_unit *base,
-                             const struct initial_position_task *task,
-                             char error[DESIGN_ERROR_TEXT]);
+__attribute__((cold)) bool initial_position_design(struct initial_position_params *params,
+                                                   const struct motor_model_params *model,
+                                                   const struct motor_params *motor,
+                                                   const struct per_unit *base,
+                                                   const struct initial_position_task *task,
+                                                   char error[DESIGN_ERROR_TEXT]);
 
 /* Begins with the bridge open and the rotor at rest. An alignment draws the rotor to `final_angle`.
  */

@@ -97,8 +97,10 @@ invariant_ekf_scale(const struct motor_model_params *model, const struct per_uni
  * At rest at a known position, without current and load. In the first `unloaded_periods` of holding
  * a torque is taken for a voltage offset that is still to be found, not for a load.
  */
-void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                         struct position position, num_t resistance, uint32_t unloaded_periods);
+__attribute__((cold)) void invariant_ekf_reset(struct invariant_ekf *ekf,
+                                               const struct invariant_ekf_params *params,
+                                               struct position position, num_t resistance,
+                                               uint32_t unloaded_periods);
 
 /* The sum of nu_d, which begins anew. */
 static inline num_t invariant_ekf_take_innovation_sum(struct invariant_ekf *ekf)

@@ -61,10 +61,11 @@ struct standstill_pulses_task {
     double impulse_peak_A; /* of the impulses of the initial position */
 };
 
-void standstill_pulses_design(struct standstill_pulses_params *params,
-                              const struct motor_model_params *model,
-                              const struct motor_params *motor, const struct per_unit *base,
-                              const struct standstill_pulses_task *task);
+__attribute__((cold)) void standstill_pulses_design(struct standstill_pulses_params *params,
+                                                    const struct motor_model_params *model,
+                                                    const struct motor_params *motor,
+                                                    const struct per_unit *base,
+                                                    const struct standstill_pulses_task *task);
 
 /* `asymmetry` that the impulses have shown, in sums of eight; 0: none. */
 void standstill_pulses_reset(struct standstill_pulses *pulses,

@@ -94,7 +94,7 @@ static inline int32_t angle_from_any_turns(num_t turns)
 }
 
 /* Start-up and telemetry only. Mechanical rad, |rad| < 2^31 electrical turns. */
-struct position position_from_rad(double rad, int32_t rotor_teeth);
-double position_to_rad(struct position p, int32_t rotor_teeth);
+__attribute__((cold)) struct position position_from_rad(double rad, int32_t rotor_teeth);
+__attribute__((cold)) double position_to_rad(struct position p, int32_t rotor_teeth);
 
 #endif

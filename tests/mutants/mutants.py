@@ -60,6 +60,10 @@ MUTANTS = [
            "it_goes_to_both_sides_and_stays_where_it_is_led_to",
            "way < 0 ? -angle->speed", "way < 0 ? angle->speed"),
 
+    Mutant("firmware/control/standstill_hold.h", "standstill_hold",
+           "a_reference_that_moves_ends_the_hold_at_once_and_ramps_the_current_out_slower",
+           "params->motion_current, params->ramp_out", "params->motion_current, params->ramp_in"),
+
     Mutant(MOTOR + "bridge_loss.c", "bridge_loss",
            "at_any_current_the_voltage_is_that_of_a_switched_bridge",
            "const num_t first = before + quarter + shift;",
@@ -568,6 +572,14 @@ MUTANTS = [
            "#define CURRENT_BANDWIDTH_PERIOD_MAX 0.3", "#define CURRENT_BANDWIDTH_PERIOD_MAX 0.31"),
 
     # ---- application ----
+    Mutant(APPLICATION + "console.c", "console",
+           "a_motion_stops_when_no_line_comes_for_the_command_timeout",
+           "    application_hear(application, line_period);\n", ""),
+    Mutant(APPLICATION + "application.c", "console",
+           "a_motion_stops_when_no_line_comes_for_the_command_timeout",
+           "&stop, over, refusal)", "&stop, over, refusal) && false"),
+    Mutant(APPLICATION + "application.c", "console", "silence_at_rest_is_no_timeout",
+           " && commands_motion(drive)", ""),
     Mutant("firmware/drive/drive.c", "application",
            "the_watchdog_is_fed_only_while_control_interrupts_come",
            "period != drive->fed_in", "true"),

@@ -250,7 +250,7 @@ static inline const char *bench_ask(const char *line)
     (void)bench_heard();
     bench_type(line);
     bench_type("\n");
-    for (int i = 0; i < 5; i++) { /* 64 bytes each */
+    for (int i = 0; i < CONSOLE_LINE_BYTES / CONSOLE_PIECE_BYTES + 2; i++) {
         application_background(&bench.application);
     }
     return bench_heard();

@@ -452,6 +452,51 @@ static void test_a_line_with_a_nul_byte_is_refused(void)
     assert_begins(bench_heard(), "ok stop");
 }
 
+/* 50 periods of silence; a keep-alive is any line, an empty one, too. */
+static void test_a_motion_stops_when_no_line_comes_for_the_command_timeout(void)
+{
+    struct drive_settings settings = bench_quick_settings();
+
+    settings.command_timeout_s = 50.0 * bench_facts.control_period_s;
+    TEST_ASSERT_TRUE(bench_start(&settings));
+    enable();
+    answers("velocity 5 acceleration_rad_s2=500 jerk_rad_s3=1e5", "ok velocity at=");
+    for (int i = 0; i < 5; i++) {
+        bench_periods(40);
+        answers(i < 4 ? "state" : "", i < 4 ? "ok operation-enabled" : "");
+    }
+    bench_periods(49);
+    TEST_ASSERT_EQUAL_STRING("", bench_heard());
+    bench_interrupts(3); /* the background is late */
+    const uint32_t heard_in = bench.application.heard_in;
+
+    bench_periods(1);
+    assert_begins(bench_heard(), "warning: stop: nothing heard for command_timeout_s\n");
+    TEST_ASSERT_EQUAL_UINT32(heard_in + 60u, drive->commands.stop.at_period);
+    bench_periods(900);
+    TEST_ASSERT_FALSE(drive->reference.now.moving);
+    TEST_ASSERT_EQUAL_STRING("", bench_heard()); /* once */
+    answers("move 0.1", "ok move at=");
+    bench_periods(20);
+    TEST_ASSERT_TRUE(drive->reference.now.moving);
+}
+
+/* Nothing to stop: nothing is said. What waits for its period is flushed like a motion. */
+static void test_silence_at_rest_is_no_timeout(void)
+{
+    struct drive_settings settings = bench_quick_settings();
+
+    settings.command_timeout_s = 50.0 * bench_facts.control_period_s;
+    TEST_ASSERT_TRUE(bench_start(&settings));
+    enable();
+    bench_periods(500);
+    TEST_ASSERT_EQUAL_STRING("", bench_heard());
+    answers("move 0.1 at=3000", "ok move at=3000");
+    bench_periods(100);
+    assert_begins(bench_heard(), "warning: stop: nothing heard for command_timeout_s\n");
+    TEST_ASSERT_FALSE(command_queue_holds_any(&drive->commands));
+}
+
 static void test_long_and_damaged_lines_are_refused_as_a_whole(void)
 {
     char line[400];
@@ -509,6 +554,8 @@ int main(void)
     RUN_TEST(test_a_carriage_return_ends_its_line_at_once);
     RUN_TEST(test_a_line_ended_by_carriage_return_counts_from_when_it_is_read);
     RUN_TEST(test_a_line_with_a_nul_byte_is_refused);
+    RUN_TEST(test_a_motion_stops_when_no_line_comes_for_the_command_timeout);
+    RUN_TEST(test_silence_at_rest_is_no_timeout);
     RUN_TEST(test_long_and_damaged_lines_are_refused_as_a_whole);
     RUN_TEST(test_the_longest_answers_are_not_cut);
     return UNITY_END();
