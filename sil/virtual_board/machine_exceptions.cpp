@@ -117,6 +117,9 @@ std::uint32_t Machine::push_frame()
 
 void Machine::begin_control()
 {
+    if (system_.floating_point_allowed() && !system_.keeps_floating_point()) {
+        fail("FPCCR.ASPEN is 0: the control interrupt would change S0...S15 under the program");
+    }
     above_control_ = 1;
     first_of_control_ = true;
     control_instructions_ = 0;

@@ -23,17 +23,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 PORT = ("hal/stm32g474", "hal/cortex_m")
-# What is run: a shorted leg; an interrupt held up; motion; `store` in motion; a fast sine, which the
-# background plans all the time.
+# What is run: a shorted leg; an interrupt held up; motion; `store` in motion.
 SHORT_CIRCUIT = ["board-overcurrent"]
 OVERRUN = ["board-overrun"]
 MOVE = ["board-short-stall"]
 STORE = ["board-busy-line"]
-PLANNED = [
-    "reference-sine",
-    "--set",
-    "event=[{time_s=0.0,command='sine',amplitude_rad=0.2,frequency_Hz=17.0,cycles=40,ramp_s=0.2}]",
-]
 
 
 @dataclass
@@ -120,8 +114,8 @@ MUTANTS = [
         "    SCB->CPACR |= ",
         "    *(volatile uint32_t *)0xe000ef34u = 0; /* FPCCR: no automatic state preservation */\n"
         "    SCB->CPACR |= ",
-        PLANNED,
-        "",
+        MOVE,
+        "FPCCR",
         numeric="float",
     ),
     Mutant(

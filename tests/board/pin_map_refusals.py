@@ -14,7 +14,7 @@ from pathlib import Path
 
 PORT = Path("hal/stm32g474")
 GATES, INTEGRATED = "nucleo_g474re", "nucleo_g474re_drv8412"
-FLAGS = "-mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard -std=c11 -fsyntax-only".split()
+FLAGS = "-mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=softfp -std=c11 -fsyntax-only".split()
 
 # pin map, name of a definition (or text), what it becomes, in the compiler's words
 REFUSED = [

@@ -9,7 +9,8 @@ set(STEADYSTEP_COMPILER gcc CACHE STRING "Arm compiler: gcc or clang")
 list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES STEADYSTEP_CORE STEADYSTEP_COMPILER)
 
 if(STEADYSTEP_CORE STREQUAL "m4f")
-  set(core_flags "-mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard")
+  # softfp: design and planning are in double, of which no part is passed in the FPU's registers
+  set(core_flags "-mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=softfp")
   set(machine mps2-an386)
 elseif(STEADYSTEP_CORE STREQUAL "m0plus")
   # QEMU has no Cortex-M0+; its Cortex-M0 machine executes the same instruction set, ARMv6-M.
