@@ -25,7 +25,7 @@ static bool design(struct application *application, const struct drive_settings 
     }
     if (ESTIMATORS_READ_ENCODER && settings->feedback == DRIVE_FEEDBACK_ENCODER &&
         application->facts.encoder_counts_per_turn == 0u) {
-        return design_refuse(error, "feedback = encoder, but the board has none that is known: set "
+        return design_refuse(error, "feedback = encoder, but none is known: set "
                                     "encoder_counts_per_turn, or feedback = sensorless");
     }
     if (!(starts ? drive_init(&application->drive, &application->board, settings, error)
@@ -186,6 +186,7 @@ CALLED_FROM_OUTSIDE void application_background(struct application *application)
 {
     drive_feed_watchdog(&application->drive);
     drive_background(&application->drive);
+    phase_watch_background(&application->drive);
     stop_if_unheard(application);
     control_cycles_gather(&application->cycle_statistics, &application->cycles);
     console_background(application);

@@ -15,20 +15,20 @@
 
 static const struct line_form forms[] = {
     {"help", LINE_HELP, DRIVE_COMMANDS, 0, 0, false, "lists commands; help <command> explains one"},
-    {"state", LINE_STATE, DRIVE_COMMANDS, 0, 0, false, "what the drive does and measures"},
+    {"state", LINE_STATE, DRIVE_COMMANDS, 0, 0, false, "what it does and measures"},
     {"cycles", LINE_CYCLES, DRIVE_COMMANDS, 0, 0, false,
      "cycles of the control interrupt, mean and most; cycles reset begins anew"},
-    {"signals", LINE_SIGNALS, DRIVE_COMMANDS, 0, 0, false, "all signals with their values"},
+    {"signals", LINE_SIGNALS, DRIVE_COMMANDS, 0, 0, false, "all signals"},
     {"move", LINE_MOVE, DRIVE_COMMAND_MOVE_SMOOTH, WITH(position_rad),
      WITH(duration_s) | WITH(ramp_s) | WITH(jerk_s), true,
-     "jerk-limited move to a position; the times are the motor's if not given"},
+     "jerk-limited move; its times are the motor's if not given"},
     DRIVE_COMMANDS_TABLE(COMMAND_FORM){
         "get", LINE_GET, DRIVE_COMMANDS, 0, 0, false,
         "a setting: value, unit, range, default; get hold* lists those that begin so"},
     {"set", LINE_SET, DRIVE_COMMANDS, 0, 0, false,
      "set hold_current_A 1.2, or default; acts at the next enable, or in motion at once"},
     {"defaults", LINE_DEFAULTS, DRIVE_COMMANDS, 0, 0, false,
-     "sets all settings but the motor's to their defaults"},
+     "all settings but the motor's to their defaults"},
 };
 
 #define PARAMETER(index, member, unit, least, most, sentence)                                      \

@@ -103,8 +103,7 @@ static bool announce_unheard(const struct application *application,
 {
     if (announced->unheard != application->unheard) {
         announced->unheard = application->unheard;
-        text_put(text,
-                 application->unheard ? "warning: stop: nothing heard for command_timeout_s" : "");
+        text_put(text, application->unheard ? "warning: stop: no line for command_timeout_s" : "");
     }
     return text->length > 0u;
 }
@@ -123,7 +122,7 @@ static bool announce(struct application *application)
         report_refused_settings(&text, application);
     } else if (application->drive.planner.underruns != announced->underruns) {
         announced->underruns = application->drive.planner.underruns;
-        text_put(&text, "warning: the reference came to rest: what continues it came too late");
+        text_put(&text, "warning: the reference rests: what continues it came too late");
     } else if (!announce_unheard(application, announced, &text) &&
                !announce_state(application, announced, &text) &&
                !announce_dropped(application, announced, &text) &&
@@ -272,7 +271,7 @@ static bool obey_line(struct application *application, uint32_t line_period)
     application_hear(application, line_period);
     text_put(&answer, "error: ");
     if (console->bytes_lost) {
-        text_put(&answer, "bytes of the line were lost, it came faster than it is read");
+        text_put(&answer, "bytes of the line were lost: it came too fast");
     } else if (console->nul) {
         text_put(&answer, "the line contains a NUL byte");
     } else if (too_long) {

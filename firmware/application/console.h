@@ -26,8 +26,8 @@
 
 enum {
     CONSOLE_LINE_BYTES = 200,   /* longest line, its end not counted */
-    CONSOLE_ANSWER_BYTES = 640, /* longest line that the console writes, its end counted */
-    CONSOLE_PIECE_BYTES = 32    /* read from the board at once */
+    CONSOLE_ANSWER_BYTES = 576, /* longest line that the console writes, its end counted */
+    CONSOLE_PIECE_BYTES = 64    /* read from the board at once */
 };
 
 /* What of a drive was announced last. */

@@ -22,6 +22,7 @@
 #include "firmware/drive/planner.h"
 #include "firmware/drive/protection.h"
 #include "firmware/estimator/encoder_alignment.h"
+#include "firmware/drive/phase_watch.h"
 #include "firmware/estimator/estimator.h"
 #include "firmware/estimator/initial_position.h"
 #include "firmware/estimator/standstill_pulses.h"
@@ -88,6 +89,7 @@ struct supervision {
     enum drive_fault fault;
     uint32_t period;      /* index of the present or last control interrupt; 0 is the first */
     uint32_t state_since; /* period in which the state was entered */
+    uint8_t asked_for;    /* fault: by the background, of the next interrupt */
     bool aligns; /* draws the rotor to where it is assumed to be: what the encoder then knows of the
                     frame, and with it load and detent, is worth nothing */
 };
@@ -162,6 +164,9 @@ struct drive {
 
     struct supervision supervision;
     int32_t encoder_count; /* of this S(k) */
+    struct {
+        uint16_t a, b;
+    } current_codes; /* of the last S(k) of a bridge that is on */
     struct expectation expectation;
     struct synchronism_supervision synchronism;
     struct following_error following; /* with an encoder, in the monitor's place */
@@ -169,6 +174,8 @@ struct drive {
     struct command_queue commands;
 
     /* background */
+    struct phase_watch phase_watch;
+    struct phase_watch_params phase_watch_params;
     const struct hal *board;
     uint32_t fed_in; /* period in which the watchdog was fed */
     struct drive_settings settings;

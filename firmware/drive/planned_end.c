@@ -38,7 +38,7 @@ bool planned_end_require_known(struct drive *drive, char error[DRIVE_ERROR_TEXT]
     return planned_end_require_no_stop(drive, error) &&
            (drive->planned_end.known == PLANNED_END_KNOWN ||
             design_refuse(error, "move refused: the reference follows a sine, set-points or a "
-                                 "speed: stop it and wait for rest, or retarget"));
+                                 "speed: stop it, or retarget"));
 }
 
 void planned_end_note_enable(struct drive *drive)

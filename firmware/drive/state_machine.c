@@ -1,5 +1,7 @@
 #include "firmware/drive/state_machine.h"
 
+#include <stdatomic.h>
+
 #include "firmware/drive/block_reset.h"
 #include "firmware/drive/command_rules.h"
 #include "firmware/drive/encoder_aligning.h"
@@ -116,11 +118,36 @@ __attribute__((noinline)) static void start_enabling(struct drive *drive)
     }
 }
 
+void state_machine_ask_for_fault(struct drive *drive, enum drive_fault fault)
+{
+    drive->supervision.asked_for = (uint8_t)fault;
+    atomic_signal_fence(memory_order_release);
+    command_queue_look_next(&drive->commands);
+}
+
 static void disable(struct drive *drive)
 {
     drive->supervision.aligns = false;
     drive->supervision.fault = DRIVE_FAULT_NONE;
     enter(drive, DRIVE_SWITCH_ON_DISABLED);
+}
+
+/* Apart: rare. */
+__attribute__((noinline)) static void enter_fault(struct drive *drive, enum drive_fault fault)
+{
+    drive->supervision.fault = fault;
+    command_queue_look_next(&drive->commands); /* nothing waits for a rest any more */
+    enter(drive, DRIVE_FAULT);
+}
+
+__attribute__((cold, noinline)) static void enter_fault_asked_for(struct drive *drive)
+{
+    const enum drive_fault fault = (enum drive_fault)drive->supervision.asked_for;
+
+    drive->supervision.asked_for = DRIVE_FAULT_NONE;
+    if (drive->supervision.state == DRIVE_OPERATION_ENABLED) {
+        enter_fault(drive, fault);
+    }
 }
 
 /* true: done with the command; false: it waits for its period or for the reference to rest. */
@@ -184,6 +211,10 @@ __attribute__((noinline)) static void take_commands(struct drive *drive)
 
     command_queue_look(queue, period);
     synchronism_wait(drive, 1u);
+    if (drive->supervision.asked_for != DRIVE_FAULT_NONE) {
+        enter_fault_asked_for(drive);
+        return;
+    }
     if (command_queue_take_urgent(queue, &queue->disable, period, &wait)) {
         disable(drive);
         return;
@@ -232,14 +263,6 @@ static void calibrate_offsets(struct drive *drive, const struct hal_samples *sam
         state_machine_fault(drive, DRIVE_FAULT_OFFSET_RANGE);
         break;
     }
-}
-
-/* Apart: rare. */
-__attribute__((noinline)) static void enter_fault(struct drive *drive, enum drive_fault fault)
-{
-    drive->supervision.fault = fault;
-    command_queue_look_next(&drive->commands); /* nothing waits for a rest any more */
-    enter(drive, DRIVE_FAULT);
 }
 
 void state_machine_fault(struct drive *drive, enum drive_fault fault)

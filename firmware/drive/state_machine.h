@@ -52,6 +52,9 @@ void state_machine_position_found(struct drive *drive, angle_t angle);
    all legs at half duty. */
 struct hal_outputs state_machine_resting_bridge(const struct drive *drive);
 
+/* Background: the next interrupt enters the fault state, if the drive is in operation still. */
+void state_machine_ask_for_fault(struct drive *drive, enum drive_fault fault);
+
 /* Enters the fault state if there is a fault; the bridge opens in the same period. */
 void state_machine_fault(struct drive *drive, enum drive_fault fault);
 

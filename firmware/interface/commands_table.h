@@ -64,7 +64,7 @@
                 WITH(jerk_rad_s3),                                                                 \
             0, IN_OPERATION, AHEAD, "to a position from whatever motion")                          \
     COMMAND(12, STORE, "store", 0, 0, ANY_STATE, AT_ONCE,                                          \
-            "keeps the settings and what was learned across power cycles; not while a sine or "    \
+            "keeps settings and what was learned; not while a sine or "                            \
             "set-points go on")
 
 #endif

@@ -53,6 +53,14 @@
     FAULT(FOLLOWING_ERROR, 0x8600, "following-error", "the rotor was off its reference by",        \
           LIMIT(following_error_rad),                                                              \
           "free the axis, reduce the load or move more gently; check that the encoder counts, "    \
-          "each turn all its counts, and in the rotor's direction")
+          "each turn all its counts, and in the rotor's direction")                                \
+    FAULT(OPEN_PHASE_A, 0xff03, "open-phase-a", "no current flows", NO_LIMIT,                      \
+          "check both leads of phase a, and its current sensor")                                   \
+    FAULT(OPEN_PHASE_B, 0xff04, "open-phase-b", "no current flows", NO_LIMIT,                      \
+          "check both leads of phase b, and its current sensor")                                   \
+    FAULT(CURRENT_SENSOR_A, 0xff05, "current-sensor-a", "it is stuck", NO_LIMIT,                   \
+          "check shunt, amplifier and converter of phase a")                                       \
+    FAULT(CURRENT_SENSOR_B, 0xff06, "current-sensor-b", "it is stuck", NO_LIMIT,                   \
+          "check shunt, amplifier and converter of phase b")
 
 #endif

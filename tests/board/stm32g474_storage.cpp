@@ -149,10 +149,9 @@ void encoder_is_asked_for(Expectations &expectations, const std::string &image)
 {
     Powered run(image, board_config(), ask_for_encoder);
     const std::string text = run.start();
-    expectations.expect(
-        count(text, "settings: default") == 1 &&
-            count(text, "not in force: feedback = encoder, but the board has none") == 1,
-        "without an encoder settings that ask for one are refused");
+    expectations.expect(count(text, "settings: default") == 1 &&
+                            count(text, "not in force: feedback = encoder, but none is known") == 1,
+                        "without an encoder settings that ask for one are refused");
 }
 
 /* STEADYSTEP_SIMULATION=OFF, as in every image. */

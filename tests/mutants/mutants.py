@@ -547,7 +547,7 @@ MUTANTS = [
            "if ((void)reference_load(&drive->reference, &command->profile), false)"),
     Mutant(DRIVE + "state_machine.c", "state_machine",
            "what_waits_for_the_end_of_a_move_is_dropped_when_a_fault_ends_it",
-           "command_queue_look_next(&drive->commands);", ""),
+           "command_queue_look_next(&drive->commands); /* nothing", "/* nothing"),
     Mutant(DRIVE + "default_settings.c", "settings",
            "what_is_not_given_follows_from_motor_and_period",
            "#define HOLD_CURRENT_SHARE      1.0", "#define HOLD_CURRENT_SHARE      0.5"),
@@ -570,6 +570,15 @@ MUTANTS = [
     Mutant("firmware/design/loop_bandwidth.h", "drive",
            "bandwidths_too_fast_are_refused_with_their_limit",
            "#define CURRENT_BANDWIDTH_PERIOD_MAX 0.3", "#define CURRENT_BANDWIDTH_PERIOD_MAX 0.31"),
+
+    Mutant(DRIVE + "phase_watch.c", "phase_watch", "noise_stands_and_more_does_not",
+           "-away <= (int)params->noise_codes", "true"),
+    Mutant(DRIVE + "phase_watch.c", "phase_watch", "a_background_that_was_busy_begins_anew",
+           "passed > GAP_PERIODS", "false"),
+    Mutant(DRIVE + "phase_watch.c", "phase_watch", "what_passes_for_noise",
+           "if (settings->feedback == DRIVE_FEEDBACK_ENCODER)", "if (false)"),
+    Mutant(DRIVE + "state_machine.c", "state_machine", "a_fault_that_comes_too_late_is_none",
+           "    drive->supervision.asked_for = DRIVE_FAULT_NONE;\n", ""),
 
     # ---- application ----
     Mutant(APPLICATION + "console.c", "console",

@@ -49,12 +49,24 @@ static inline void bench_bridge_disable(void *context)
     b->trip_latched = false;
 }
 
+/* A control interrupt. No motor: the currents are noise, or their phases would be taken for open.
+ */
+static inline const struct hal_outputs *bench_interrupt(void)
+{
+    const int noise = 60 * ((int)(bench.period % 3u) - 1);
+    struct hal_samples samples = bench.samples;
+
+    bench.period++;
+    samples.current_a = (uint16_t)(samples.current_a + noise);
+    samples.current_b = (uint16_t)(samples.current_b + noise);
+    return application_control_interrupt(&bench.application, &samples);
+}
+
 /* What a real background does not notice, if it takes its time. */
 static inline void bench_interrupts_between(struct console_bench *b)
 {
     for (int i = 0; i < b->periods_between; i++) {
-        b->period++;
-        b->bridge_was_on |= application_control_interrupt(&b->application, &b->samples)->bridge_on;
+        b->bridge_was_on |= bench_interrupt()->bridge_on;
     }
 }
 
@@ -195,8 +207,7 @@ static inline bool bench_start(const struct drive_settings *settings)
 /* The control interrupt and one turn of the main loop. */
 static inline void bench_period(void)
 {
-    bench.period++;
-    (void)application_control_interrupt(&bench.application, &bench.samples);
+    (void)bench_interrupt();
     application_background(&bench.application);
 }
 
@@ -211,8 +222,7 @@ static inline void bench_periods(int count)
 static inline void bench_interrupts(int count)
 {
     for (int i = 0; i < count; i++) {
-        bench.period++;
-        (void)application_control_interrupt(&bench.application, &bench.samples);
+        (void)bench_interrupt();
     }
 }
 

@@ -57,7 +57,7 @@ static void test_stored_settings_for_an_encoder_that_is_not_there_say_what_to_do
     store(&settings, 0);
     TEST_ASSERT_TRUE_MESSAGE(start(), error);
     TEST_ASSERT_EQUAL_INT(APPLICATION_SETTINGS_DEFAULT, bench.application.settings_from);
-    TEST_ASSERT_EQUAL_STRING("feedback = encoder, but the board has none that is known: set "
+    TEST_ASSERT_EQUAL_STRING("feedback = encoder, but none is known: set "
                              "encoder_counts_per_turn, or feedback = sensorless",
                              bench.application.stored_refusal);
 }

@@ -471,7 +471,7 @@ static void test_a_motion_stops_when_no_line_comes_for_the_command_timeout(void)
     const uint32_t heard_in = bench.application.heard_in;
 
     bench_periods(1);
-    assert_begins(bench_heard(), "warning: stop: nothing heard for command_timeout_s\n");
+    assert_begins(bench_heard(), "warning: stop: no line for command_timeout_s\n");
     TEST_ASSERT_EQUAL_UINT32(heard_in + 60u, drive->commands.stop.at_period);
     bench_periods(900);
     TEST_ASSERT_FALSE(drive->reference.now.moving);
@@ -493,7 +493,7 @@ static void test_silence_at_rest_is_no_timeout(void)
     TEST_ASSERT_EQUAL_STRING("", bench_heard());
     answers("move 0.1 at=3000", "ok move at=3000");
     bench_periods(100);
-    assert_begins(bench_heard(), "warning: stop: nothing heard for command_timeout_s\n");
+    assert_begins(bench_heard(), "warning: stop: no line for command_timeout_s\n");
     TEST_ASSERT_FALSE(command_queue_holds_any(&drive->commands));
 }
 
@@ -508,7 +508,7 @@ static void test_long_and_damaged_lines_are_refused_as_a_whole(void)
     answers(line, "error: the line is longer than 200 characters\n");
     line[CONSOLE_LINE_BYTES] = '\0';
     answers(line, "error: \"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...\": expected a command");
-    answers("enable\x18", "error: bytes of the line were lost, it came faster than it is read\n");
+    answers("enable\x18", "error: bytes of the line were lost: it came too fast\n");
     TEST_ASSERT_EQUAL_UINT32(0, drive->commands.written);
     answers("help stop", "ok stop");
 }

@@ -210,7 +210,7 @@ static void test_a_set_up_that_the_drive_refuses_leaves_the_one_before(void)
 static void test_an_encoder_that_there_is_not_is_refused_at_the_enable(void)
 {
     begins("set feedback encoder", "ok set ");
-    begins("enable", "error: feedback = encoder, but the board has none that is known");
+    begins("enable", "error: feedback = encoder, but none is known");
     begins("set encoder_counts_per_turn 4000", "ok set ");
     begins("enable", "ok enable ");
     TEST_ASSERT_EQUAL_UINT32(4000, drive->board->facts->encoder_counts_per_turn);

@@ -283,6 +283,33 @@ static void test_after_a_trip_of_the_board_the_drive_can_be_enabled_again(void)
     is_in(DRIVE_OPERATION_ENABLED, true);
 }
 
+static void test_a_fault_that_the_background_sees_opens_the_bridge_in_the_next_interrupt(void)
+{
+    enable();
+    state_machine_ask_for_fault(&drive, DRIVE_FAULT_OPEN_PHASE_B);
+    is_in(DRIVE_OPERATION_ENABLED, true);
+    run(1);
+    has_fault(DRIVE_FAULT_OPEN_PHASE_B);
+    run(10);
+    post_kind(DRIVE_COMMAND_DISABLE);
+    run(1);
+    is_in(DRIVE_SWITCH_ON_DISABLED, false);
+}
+
+/* The drive has been disabled before the interrupt came: nothing is left for the next enable. */
+static void test_a_fault_that_comes_too_late_is_none(void)
+{
+    enable();
+    post_kind(DRIVE_COMMAND_DISABLE);
+    run(1);
+    state_machine_ask_for_fault(&drive, DRIVE_FAULT_OPEN_PHASE_B);
+    run(1);
+    is_in(DRIVE_SWITCH_ON_DISABLED, false);
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(5);
+    is_in(DRIVE_OPERATION_ENABLED, true);
+}
+
 /* The disable is on its way: it counts although the drive is in fault still. */
 static void test_after_a_trip_of_the_board_disable_and_enable_can_be_posted_at_once(void)
 {
@@ -1041,6 +1068,8 @@ int main(void)
     RUN_TEST(test_the_hold_current_is_in_when_the_alignment_ends);
     RUN_TEST(test_enabling_waits_for_the_period_it_is_addressed_to);
     RUN_TEST(test_enabling_is_refused_while_the_boards_trip_cannot_be_cleared);
+    RUN_TEST(test_a_fault_that_the_background_sees_opens_the_bridge_in_the_next_interrupt);
+    RUN_TEST(test_a_fault_that_comes_too_late_is_none);
     RUN_TEST(test_after_a_trip_of_the_board_the_drive_can_be_enabled_again);
     RUN_TEST(test_after_a_trip_of_the_board_disable_and_enable_can_be_posted_at_once);
     RUN_TEST(test_a_disable_for_later_does_not_clear_the_boards_trip);

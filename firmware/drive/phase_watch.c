@@ -1,0 +1,157 @@
+#include "firmware/drive/phase_watch.h"
+
+#include "firmware/control/position_law_dispatch.h"
+#include "firmware/drive/drive.h"
+#include "firmware/drive/interrupt_view.h"
+#include "firmware/drive/state_machine.h"
+#include "firmware/numeric/trig.h"
+
+/* Six sigma of a noisy board, or 2 % of the rated current. */
+#define NOISE_CODES       8u
+#define NOISE_SHARE       0.02
+#define LOOK_PERIODS      4u /* from look to look: a hundredth of the background's time, then */
+#define LOOKS             4u /* two currents of a moving rotor can be the same */
+#define GAP_PERIODS       14u
+#define PUSHED_MAX        NUM(1.0) /* twice the rated current */
+#define VOLTAGE_ERROR     0.05     /* of the supply */
+#define COUNTS_ERROR      2.0
+#define RESISTANCE_ERROR  NUM(0.6)   /* what a winding that warms up or is not known may have */
+#define CURRENT_DEVIATION NUM(0.075) /* of twice the rated current */
+#define CURRENT_MIN       NUM(0.025)
+
+static const double two_pi = 6.283185307179586476925;
+
+struct phase_watch_params phase_watch_design(const struct per_unit *base,
+                                             const struct hal_facts *facts,
+                                             const struct drive_settings *settings)
+{
+    const uint16_t codes =
+        (uint16_t)(NOISE_SHARE * settings->motor.rated_current_A / facts->current_A_per_code);
+    double voltage = VOLTAGE_ERROR;
+
+    if (settings->feedback == DRIVE_FEEDBACK_ENCODER) {
+        voltage += COUNTS_ERROR * two_pi / (double)facts->encoder_counts_per_turn *
+                   settings->observer_bandwidth_rad_s / base->speed_rad_s;
+    }
+    return (struct phase_watch_params){num_from_double(voltage),
+                                       codes > NOISE_CODES ? codes : NOISE_CODES};
+}
+
+static bool stands(uint16_t at, uint16_t code, const struct phase_watch_params *params)
+{
+    const int away = (int)code - (int)at;
+
+    return away <= (int)params->noise_codes && -away <= (int)params->noise_codes;
+}
+
+_Static_assert(DRIVE_FAULT_OPEN_PHASE_A + 1 == (int)DRIVE_FAULT_OPEN_PHASE_B &&
+                   DRIVE_FAULT_CURRENT_SENSOR_A + 1 == (int)DRIVE_FAULT_CURRENT_SENSOR_B,
+               "phase b behind phase a");
+
+enum drive_fault phase_watch_step(struct phase_watch *watch,
+                                  const struct phase_watch_params *params,
+                                  const struct phase_look *look)
+{
+    const uint32_t passed = look->period - watch->period;
+    enum drive_fault fault = DRIVE_FAULT_NONE;
+
+    watch->period = look->period;
+    for (int phase = 0; phase < 2; phase++) {
+        if (passed > GAP_PERIODS || !stands(watch->code[phase], look->code[phase], params)) {
+            watch->code[phase] = look->code[phase];
+            watch->looks[phase] = 0;
+            watch->pushed[phase] = NUM(0.0);
+            continue;
+        }
+        for (uint32_t k = 0; k < passed && watch->pushed[phase] <= PUSHED_MAX; k++) {
+            watch->pushed[phase] += look->push[phase];
+        }
+        watch->looks[phase]++;
+        if (watch->looks[phase] >= LOOKS && watch->pushed[phase] > PUSHED_MAX) {
+            fault = (enum drive_fault)((int)(look->flows[phase] ? DRIVE_FAULT_CURRENT_SENSOR_A
+                                                                : DRIVE_FAULT_OPEN_PHASE_A) +
+                                       phase);
+        }
+    }
+    return fault;
+}
+
+static num_t push(const struct drive *drive, num_t current, num_t voltage, num_t emf)
+{
+    const num_t drop = num_mul(drive->estimator.estimate.winding.resistance, current);
+    const num_t sure = num_abs(voltage - drop - emf) - drive->phase_watch_params.voltage_error -
+                       num_mul(RESISTANCE_ERROR, num_abs(drop));
+
+    return sure > NUM(0.0) ? num_mul_coef(sure, drive->params.model.rate) : NUM(0.0);
+}
+
+/* What is measured, in the frame of the control. */
+static bool follows(const struct drive *drive, struct phases current)
+{
+    const struct sincos frame = drive->hold.active
+                                    ? drive->hold.frame
+                                    : sincos_of(drive->estimator.estimate.rotor.position.fraction);
+    const struct dq now = park(current, frame);
+
+    return !(position_law_gives_voltage(drive->params.position_law) && !drive->hold.active) &&
+           num_abs(drive->current_reference.d - now.d) < CURRENT_DEVIATION &&
+           num_abs(drive->current_reference.q - now.q) < CURRENT_DEVIATION;
+}
+
+/* Against the voltage of S(k+1)...S(k+2). Without an encoder of the reference: an estimator finds a
+   rotor for any current. */
+static struct phases back_emf(const struct drive *drive)
+{
+    const struct rotor *rotor = &drive->estimator.estimate.rotor;
+    const struct reference_sample *reference = &drive->reference.next; /* at S(k+1) */
+    const bool encoder = drive->settings.feedback == DRIVE_FEEDBACK_ENCODER;
+    const num_t speed = encoder ? rotor->speed : reference->speed;
+    const num_t turn = num_mul_coef(speed, drive->params.model.turns_per_speed);
+    const angle_t begin = encoder ? rotor->position.fraction + (angle_t)angle_from_turns(turn)
+                                  : reference->position.fraction;
+
+    return inverse_park((struct dq){NUM(0.0), speed},
+                        sincos_of(begin + (angle_t)angle_from_turns(num_half(turn))));
+}
+
+static void look_at(struct phase_look *look, const struct drive *drive)
+{
+    const struct hal_samples samples = {.current_a = drive->current_codes.a,
+                                        .current_b = drive->current_codes.b};
+    const struct phases current =
+        measurement_step(&drive->measurement, &drive->params.measurement, &samples).winding.current;
+    const struct phases emf = back_emf(drive);
+    const struct actuation *actuation = &drive->actuation;
+    const bool follow = follows(drive, current);
+
+    look->code[0] = samples.current_a;
+    look->code[1] = samples.current_b;
+    look->push[0] =
+        follow ? NUM(0.0) : push(drive, current.a, actuation->command.a + actuation->loss.a, emf.a);
+    look->push[1] =
+        follow ? NUM(0.0) : push(drive, current.b, actuation->command.b + actuation->loss.b, emf.b);
+    look->flows[0] = num_abs(current.a) > CURRENT_MIN;
+    look->flows[1] = num_abs(current.b) > CURRENT_MIN;
+}
+
+void phase_watch_background(struct drive *drive)
+{
+    struct phase_look look = {.period = interrupt_view_period(drive)};
+    enum drive_fault fault;
+
+    if (look.period - drive->phase_watch.period < LOOK_PERIODS ||
+        interrupt_view_state(drive) != DRIVE_OPERATION_ENABLED ||
+        has_zero_delay(&drive->params.path)) {
+        return;
+    }
+    atomic_signal_fence(memory_order_seq_cst);
+    look_at(&look, drive);
+    atomic_signal_fence(memory_order_seq_cst);
+    if (look.period != interrupt_view_period(drive)) {
+        return; /* an interrupt has come in between */
+    }
+    fault = phase_watch_step(&drive->phase_watch, &drive->phase_watch_params, &look);
+    if (fault != DRIVE_FAULT_NONE) {
+        state_machine_ask_for_fault(drive, fault);
+    }
+}

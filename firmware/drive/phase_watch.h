@@ -1,0 +1,60 @@
+/*
+ * Whether each phase does what its voltage asks for. A lead that breaks leaves a current of zero, a
+ * current sensor that is stuck one of any size; the control then pushes against what does not move,
+ * and what really flows is not seen. The sign, of each phase: its current stands, within noise,
+ * where the voltage that is left for it would have changed it by twice the rated current since,
+ *
+ *   sum of (|u - R i - e| - u_e - 0.6 R |i|) T/L,   e = Km w (-sin N theta, cos N theta)
+ *
+ * with u_e = 0.05 supply, and with an encoder the back-EMF that two counts more in a period make
+ * its observer see; over the periods in which a current law misses its reference by 15 % of the
+ * rated current, or a voltage law acts. A rotor that has pulled out shows a back-EMF that is not
+ * its estimate's, too, but with currents that follow.
+ *
+ * In the background, every fourth period, and by four looks at least; behind fourteen periods that
+ * it does not come to it begins anew.
+ */
+#ifndef STEADYSTEP_PHASE_WATCH_H
+#define STEADYSTEP_PHASE_WATCH_H
+
+#include "firmware/interface/drive_interface.h"
+#include "firmware/motor/park.h"
+#include "firmware/motor/per_unit.h"
+#include "hal/hal.h"
+
+struct phase_watch_params {
+    num_t voltage_error;  /* in which u - R i - e may be wrong */
+    uint16_t noise_codes; /* within which a current stands */
+};
+
+/* Of phase a, then b. */
+struct phase_watch {
+    uint32_t period;  /* looked at last */
+    uint16_t code[2]; /* at which the current stands */
+    uint8_t looks[2]; /* that have found it there */
+    num_t pushed[2];  /* by how much its voltage would have changed it since */
+};
+
+/* What is seen of both in a period. */
+struct phase_look {
+    uint32_t period;
+    uint16_t code[2];
+    num_t push[2]; /* by how much the voltage would change the current in each period, at least */
+    bool flows[2]; /* there is a current worth the name */
+};
+
+struct drive;
+
+__attribute__((cold)) struct phase_watch_params
+phase_watch_design(const struct per_unit *base, const struct hal_facts *facts,
+                   const struct drive_settings *settings);
+
+/* The fault that shows, if one does. */
+enum drive_fault phase_watch_step(struct phase_watch *watch,
+                                  const struct phase_watch_params *params,
+                                  const struct phase_look *look);
+
+/* Background: looks at a drive in operation, every fourth period. */
+void phase_watch_background(struct drive *drive);
+
+#endif

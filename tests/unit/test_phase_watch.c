@@ -1,0 +1,148 @@
+/* A current that stands although its voltage pushes: a broken lead, or a stuck sensor. */
+#include "firmware/drive/phase_watch.h"
+#include "tests/unit/bench.h"
+#include "tests/unit/num_assert.h"
+
+enum { ZERO = 2048, NEVER = 10000 };
+
+static struct phase_watch watch;
+static struct phase_watch_params params;
+static struct phase_look look;
+
+static struct phase_watch_params design(enum drive_feedback feedback)
+{
+    const struct per_unit base = per_unit_base(&bench_params, PERIOD_S);
+    struct hal_facts facts = bench_facts;
+    struct drive_settings settings;
+
+    drive_settings_default(&settings, &bench_params);
+    settings.feedback = feedback;
+    settings.observer_bandwidth_rad_s = 1400.0;
+    facts.encoder_counts_per_turn = 4000;
+    return phase_watch_design(&base, &facts, &settings);
+}
+
+void setUp(void)
+{
+    params = design(DRIVE_FEEDBACK_SENSORLESS);
+    watch = (struct phase_watch){.period = 0};
+    look = (struct phase_look){.code = {ZERO, ZERO}};
+}
+
+void tearDown(void)
+{
+}
+
+/* A period with this much noise; the fault that it ends in. */
+static enum drive_fault period(uint16_t noise)
+{
+    const uint16_t code[2] = {look.code[0], look.code[1]};
+
+    look.period++;
+    look.code[0] = (uint16_t)(look.code[0] + (look.period % 2u == 0u ? noise : 0u));
+    const enum drive_fault fault = phase_watch_step(&watch, &params, &look);
+
+    look.code[0] = code[0];
+    look.code[1] = code[1];
+    return fault;
+}
+
+/* Periods until it is said; NEVER. */
+static int periods_until(enum drive_fault fault, uint16_t noise)
+{
+    for (int n = 1; n < NEVER; n++) {
+        const enum drive_fault now = period(noise);
+
+        if (now != DRIVE_FAULT_NONE) {
+            TEST_ASSERT_EQUAL_STRING(drive_fault_name(fault), drive_fault_name(now));
+            return n;
+        }
+    }
+    return NEVER;
+}
+
+/* 0.1 of twice the rated current a period: the eleventh is more than it, behind one that begins. */
+static void test_a_phase_that_does_not_move_is_named_as_soon_as_it_would_have_had_to(void)
+{
+    static const struct {
+        int phase;
+        bool flows;
+        enum drive_fault fault;
+    } all[] = {
+        {0, false, DRIVE_FAULT_OPEN_PHASE_A},
+        {1, false, DRIVE_FAULT_OPEN_PHASE_B},
+        {0, true, DRIVE_FAULT_CURRENT_SENSOR_A},
+        {1, true, DRIVE_FAULT_CURRENT_SENSOR_B},
+    };
+
+    for (size_t i = 0; i < 4; i++) {
+        setUp();
+        look.push[all[i].phase] = NUM(0.0999);
+        look.flows[all[i].phase] = all[i].flows;
+        (void)period(0);
+        TEST_ASSERT_EQUAL_INT(11, periods_until(all[i].fault, 0));
+    }
+}
+
+static void test_noise_stands_and_more_does_not(void)
+{
+    look.push[0] = NUM(0.1);
+    (void)period(0);
+    TEST_ASSERT_TRUE(periods_until(DRIVE_FAULT_OPEN_PHASE_A, params.noise_codes) < 15);
+    watch.period -= 100u; /* begins anew */
+    TEST_ASSERT_EQUAL_INT(NEVER,
+                          periods_until(DRIVE_FAULT_NONE, (uint16_t)(params.noise_codes + 1u)));
+}
+
+/* Two currents of a moving rotor can be the same, and three. */
+static void test_four_looks_at_least_find_it_standing(void)
+{
+    look.push[0] = NUM(2.0);
+    (void)period(0);
+    TEST_ASSERT_EQUAL_INT(4, periods_until(DRIVE_FAULT_OPEN_PHASE_A, 0));
+}
+
+static void test_without_a_push_a_current_may_stand(void)
+{
+    TEST_ASSERT_EQUAL_INT(NEVER, periods_until(DRIVE_FAULT_NONE, 0));
+}
+
+/* What has not been seen may have moved. */
+static void test_a_background_that_was_busy_begins_anew(void)
+{
+    look.push[0] = NUM(0.0999);
+    (void)period(0);
+    for (int n = 0; n < 100; n++) {
+        for (int i = 0; i < 10; i++) {
+            TEST_ASSERT_EQUAL_INT(DRIVE_FAULT_NONE, period(0));
+        }
+        look.period += 14;
+    }
+    (void)period(0);
+    TEST_ASSERT_EQUAL_INT(11, periods_until(DRIVE_FAULT_OPEN_PHASE_A, 0));
+}
+
+/* 60 mA of 3 A; 5 % of the supply, with 4,000 counts two of them at 1,400 rad/s: 2 x 2.2 rad/s. */
+static void test_what_passes_for_noise(void)
+{
+    const struct per_unit base = per_unit_base(&bench_params, PERIOD_S);
+    const double counts = 2.0 * 6.283185307 / 4000.0 * 1400.0 / base.speed_rad_s;
+
+    TEST_ASSERT_EQUAL_UINT16(
+        (uint16_t)(0.02 * bench_params.rated_current_A / bench_facts.current_A_per_code),
+        params.noise_codes);
+    TEST_ASSERT_NUM_WITHIN(1e-4, 0.05, params.voltage_error);
+    TEST_ASSERT_NUM_WITHIN(1e-4, 0.05 + counts, design(DRIVE_FEEDBACK_ENCODER).voltage_error);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_phase_that_does_not_move_is_named_as_soon_as_it_would_have_had_to);
+    RUN_TEST(test_noise_stands_and_more_does_not);
+    RUN_TEST(test_four_looks_at_least_find_it_standing);
+    RUN_TEST(test_without_a_push_a_current_may_stand);
+    RUN_TEST(test_a_background_that_was_busy_begins_anew);
+    RUN_TEST(test_what_passes_for_noise);
+    return UNITY_END();
+}
