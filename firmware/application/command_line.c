@@ -28,7 +28,7 @@ static const struct line_form forms[] = {
     {"set", LINE_SET, DRIVE_COMMANDS, 0, 0, false,
      "set hold_current_A 1.2, or default; acts at the next enable, or in motion at once"},
     {"defaults", LINE_DEFAULTS, DRIVE_COMMANDS, 0, 0, false,
-     "all settings but the motor's to their defaults"},
+     "all settings but the motor's to defaults"},
 };
 
 #define PARAMETER(index, member, unit, least, most, sentence)                                      \

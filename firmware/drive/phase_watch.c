@@ -134,14 +134,21 @@ static void look_at(struct phase_look *look, const struct drive *drive)
     look->flows[1] = num_abs(current.b) > CURRENT_MIN;
 }
 
+static bool is_watched(const struct drive *drive)
+{
+    const enum position_law law = drive->params.position_law;
+
+    return !has_zero_delay(&drive->params.path) &&
+           (law == POSITION_LAW_FEEDBACK_LINEARISATION || !position_law_gives_voltage(law));
+}
+
 void phase_watch_background(struct drive *drive)
 {
     struct phase_look look = {.period = interrupt_view_period(drive)};
     enum drive_fault fault;
 
     if (look.period - drive->phase_watch.period < LOOK_PERIODS ||
-        interrupt_view_state(drive) != DRIVE_OPERATION_ENABLED ||
-        has_zero_delay(&drive->params.path)) {
+        interrupt_view_state(drive) != DRIVE_OPERATION_ENABLED || !is_watched(drive)) {
         return;
     }
     atomic_signal_fence(memory_order_seq_cst);

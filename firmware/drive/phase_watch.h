@@ -8,8 +8,9 @@
  *
  * with u_e = 0.05 supply, and with an encoder the back-EMF that two counts more in a period make
  * its observer see; over the periods in which a current law misses its reference by 15 % of the
- * rated current, or a voltage law acts. A rotor that has pulled out shows a back-EMF that is not
- * its estimate's, too, but with currents that follow.
+ * rated current, or feedback linearisation acts: the voltage of other voltage laws changes from
+ * period to period, and they are not watched. A rotor that has pulled out shows a back-EMF that is
+ * not its estimate's, too, but with currents that follow.
  *
  * In the background, every fourth period, and by four looks at least; behind fourteen periods that
  * it does not come to it begins anew.
