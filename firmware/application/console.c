@@ -101,11 +101,14 @@ static bool announce_dropped(const struct application *application,
 static bool announce_unheard(const struct application *application,
                              struct console_announced *announced, struct text *text)
 {
-    if (announced->unheard != application->unheard) {
-        announced->unheard = application->unheard;
-        text_put(text, application->unheard ? "warning: stop: no line for command_timeout_s" : "");
+    if (announced->unheard == application->unheard) {
+        return false;
     }
-    return text->length > 0u;
+    announced->unheard = application->unheard;
+    if (announced->unheard) {
+        text_put(text, "warning: stop: no line for command_timeout_s");
+    }
+    return announced->unheard;
 }
 
 static bool announce(struct application *application)

@@ -9,7 +9,7 @@
 /* Six sigma of a noisy board, or 2 % of the rated current. */
 #define NOISE_CODES       8u
 #define NOISE_SHARE       0.02
-#define LOOK_PERIODS      4u /* from look to look: a hundredth of the background's time, then */
+#define LOOK_PERIODS      4u /* from look to look */
 #define LOOKS             4u /* two currents of a moving rotor can be the same */
 #define GAP_PERIODS       14u
 #define PUSHED_MAX        NUM(1.0) /* twice the rated current */

@@ -575,6 +575,8 @@ MUTANTS = [
            "-away <= (int)params->noise_codes", "true"),
     Mutant(DRIVE + "phase_watch.c", "phase_watch", "a_background_that_was_busy_begins_anew",
            "passed > GAP_PERIODS", "false"),
+    Mutant(DRIVE + "phase_watch.c", "phase_watch", "four_looks_at_least_find_it_standing",
+           "watch->looks[phase] >= LOOKS", "true"),
     Mutant(DRIVE + "phase_watch.c", "phase_watch", "what_passes_for_noise",
            "if (settings->feedback == DRIVE_FEEDBACK_ENCODER)", "if (false)"),
     Mutant(DRIVE + "state_machine.c", "state_machine", "a_fault_that_comes_too_late_is_none",
