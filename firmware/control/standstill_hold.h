@@ -67,6 +67,12 @@ void standstill_hold_align(struct standstill_hold *hold, angle_t angle, num_t sp
 void standstill_hold_end_aligning(struct standstill_hold *hold,
                                   const struct standstill_hold_params *params);
 
+/* Background: the current of the hold from now on, to which i_d* ramps. One word. */
+static inline void standstill_hold_put_current(struct standstill_hold *hold, num_t current)
+{
+    hold->current = current;
+}
+
 /* Bumpless transfer: the ramp of i_d* begins here. */
 void standstill_hold_preset(struct standstill_hold *hold, num_t i_d);
 

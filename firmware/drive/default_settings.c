@@ -183,6 +183,7 @@ bool default_settings_step(struct default_settings_search *search, struct drive_
     }
     put(&settings->following_error_rad, following_error(settings));
     put(&settings->hold_current_A, search->hold_current_A);
+    put(&settings->idle_current_A, settings->hold_current_A);
     put(&settings->hold_delay_s,
         smaller(HOLD_DELAY_MAX_S,
                 HOLD_DELAY_SWING / hold_frequency(&settings->motor, settings->hold_current_A)));

@@ -4,6 +4,7 @@
 
 #include "firmware/drive/default_settings.h"
 #include "firmware/drive/encoder_aligning.h"
+#include "firmware/design/text.h"
 
 #define BEGINS_WITH_ITS_ESTIMATE(constant, name)                                                   \
     _Static_assert(offsetof(struct name, estimate) == 0, #name);
@@ -73,13 +74,32 @@ __attribute__((noinline)) static bool design_steady_state_ekf(struct drive *driv
     return true;
 }
 
+/* The gains are those of hold_current_A; less of it makes a softer spring. */
+static bool check_hold(const struct drive_settings *settings, double period_s,
+                       const struct invariant_ekf_hold_gains *gains, char error[DRIVE_ERROR_TEXT])
+{
+    struct text refusal = text_in(error, DRIVE_ERROR_TEXT);
+    struct hold_task hold = hold_task_of(settings, period_s);
+    char limit[DESIGN_ERROR_TEXT];
+
+    if (!hold_estimator_check(&hold, gains, error)) {
+        return false;
+    }
+    hold.hold_current_A = settings->idle_current_A;
+    if (hold_control_check(&hold, limit) && hold_estimator_check(&hold, gains, limit)) {
+        return true;
+    }
+    text_put(&refusal, "idle_current_A: ");
+    text_put(&refusal, limit);
+    return false;
+}
+
 __attribute__((noinline)) static bool design_invariant_ekf(struct drive *drive,
                                                            const struct drive_settings *settings,
                                                            double period_s,
                                                            char error[DRIVE_ERROR_TEXT])
 {
     const struct motor_params *motor = &settings->motor;
-    const struct hold_task hold = hold_task_of(settings, period_s);
     const double current_A = settings->hold_current_A;
     struct estimator_params *params = &drive->params.estimator;
     struct invariant_ekf_gains moving;
@@ -98,7 +118,7 @@ __attribute__((noinline)) static bool design_invariant_ekf(struct drive *drive,
         return false;
     }
     drive_feed_watchdog(drive);
-    if (settings_ask_for_hold(settings) && !hold_estimator_check(&hold, &holding, error)) {
+    if (settings_ask_for_hold(settings) && !check_hold(settings, period_s, &holding, error)) {
         return false;
     }
     if (!settings->resistance_adaptation) {

@@ -66,6 +66,18 @@ static inline uint32_t interrupt_view_epoch(const struct drive *drive)
     return INTERRUPT_VIEW(uint32_t, drive->reference.epoch);
 }
 
+/* Whether the hold has the rotor, and its frame rests. */
+static inline bool interrupt_view_rests(const struct drive *drive)
+{
+    return INTERRUPT_VIEW(bool, drive->hold.active) && !INTERRUPT_VIEW(bool, drive->hold.leads);
+}
+
+/* Estimated load torque. */
+static inline num_t interrupt_view_load(const struct drive *drive)
+{
+    return INTERRUPT_VIEW(num_t, drive->estimator.estimate.rotor.load_torque);
+}
+
 #undef INTERRUPT_VIEW
 
 /* The reference as it is behind one interrupt, whose period is returned. */

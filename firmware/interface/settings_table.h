@@ -116,6 +116,10 @@
          "half of it behind the search for an encoder's zero")                                     \
     REAL(0x2145, hold_current_A, "A", RATED(0.01), RATED(1.0), FOLLOWS, AT_ENABLE,                 \
          "d-axis current at rest: rated (pulses: half), or what of it the hold's check passes")    \
+    REAL(0x214d, idle_current_A, "A", RATED(0.01), RATED(1.0), FOLLOWS, AT_ENABLE,                 \
+         "hold current after idle_delay_s at rest, which bears Km x it: hold_current_A")           \
+    REAL(0x214e, idle_delay_s, "s", FIXED(0.0), FIXED(3600.0), FIXED(1.0), AT_ENABLE,              \
+         "at rest before the hold current falls to idle_current_A")                                \
     REAL(0x2146, motion_current_A, "A", FIXED(0.0), RATED(1.0), FIXED(0.0), IN_MOTION,             \
          "d-axis current in motion")                                                               \
     REAL(0x2147, hold_ramp_s, "s", FIXED(1e-3), FIXED(1.0), FIXED(0.010), AT_ENABLE,               \

@@ -579,6 +579,11 @@ MUTANTS = [
            "watch->looks[phase] >= LOOKS", "true"),
     Mutant(DRIVE + "phase_watch.c", "phase_watch", "what_passes_for_noise",
            "if (settings->feedback == DRIVE_FEEDBACK_ENCODER)", "if (false)"),
+    Mutant(DRIVE + "idle_current.c", "idle_current",
+           "has_all_of_it_at_once_when_the_load_changes_by_more_than_a_fifth_of_the_rated",
+           "!look->holds || num_abs(look->load - idle->load) > LOAD_CHANGE", "!look->holds"),
+    Mutant(DRIVE + "idle_current.c", "idle_current", "idles_again_under_a_load_that_stays",
+           "        idle->load = look->load;\n", ""),
     Mutant(DRIVE + "state_machine.c", "state_machine", "a_fault_that_comes_too_late_is_none",
            "    drive->supervision.asked_for = DRIVE_FAULT_NONE;\n", ""),
 
