@@ -11,6 +11,7 @@
 #define ANY_STATE     "in any state"
 #define OUTSIDE_FAULT "unless in fault"
 #define IN_OPERATION  "when ready"
+#define READY_OR_DISABLED "when ready, at rest, or disabled"
 
 #define PARAMETER_ROW(index, member, unit, least, most, sentence)                                  \
     {least, most, #member, unit, sentence, index, offsetof(struct drive_command, member)},
