@@ -42,7 +42,15 @@ void axis_begin(struct drive *drive)
     drive->axis = (struct axis){.reference = enabling->encoder_zero_known
                                                  ? DRIVE_POSITION_REFERENCED
                                                  : DRIVE_POSITION_ASSUMED};
+    encoder_set(&drive->axis.encoder, enabling->initial_position, 0);
     reference_reset(&drive->reference, enabling->initial_position);
+}
+
+struct position axis_kept_position(const struct drive *drive)
+{
+    const struct encoder *kept = &drive->axis.encoder;
+
+    return (struct position){kept->turns, (angle_t)(kept->fraction >> 32)};
 }
 
 struct position axis_position(const struct drive *drive, struct position encoder_zero)
@@ -80,13 +88,16 @@ static bool rests(const struct drive *drive)
 /* Without an encoder: where the rotor is from now on is assumed. */
 static void leave_rotor(struct drive *drive, bool powered, bool sound)
 {
+    struct position position = drive->reference.next.position;
+
     if (!sound || (powered && !rests(drive))) {
         axis_doubt(drive);
-        if (powered) {
-            reference_reset(&drive->reference, drive->estimator.estimate.rotor.position);
-        }
+        position = drive->estimator.estimate.rotor.position;
     } else if (drive->axis.reference == DRIVE_POSITION_REFERENCED) {
         drive->axis.reference = DRIVE_POSITION_KEPT;
+    }
+    if (powered) {
+        encoder_set(&drive->axis.encoder, position, 0);
     }
 }
 
@@ -94,26 +105,29 @@ static void leave_encoder(struct drive *drive, const struct encoder *encoder, bo
 {
     struct axis *axis = &drive->axis;
 
-    axis->encoder = *encoder;
     axis->counts = !drive->supervision.aligns;
+    axis->encoder = *encoder;
     if (!sound) {
         axis->aligned = false;
         axis_doubt(drive);
     }
-    reference_reset(&drive->reference, drive->reference.next.position);
 }
 
 void axis_note_bridge_off(struct drive *drive, enum drive_fault fault)
 {
     const bool powered = state_machine_powered(drive);
-    const struct encoder *encoder =
-        estimator_encoder(&drive->estimator, &drive->params.estimator);
+    const struct encoder *encoder = estimator_encoder(&drive->estimator, &drive->params.estimator);
 
     if (encoder == NULL) {
         leave_rotor(drive, powered, is_one_of(fault, SAY_NOTHING_OF_ROTOR));
     } else if (powered) {
         leave_encoder(drive, encoder, !is_one_of(fault, DOUBT_ENCODER));
     }
+}
+
+void axis_note_disabled(struct drive *drive)
+{
+    reference_reset(&drive->reference, axis_kept_position(drive));
 }
 
 void axis_follow_encoder(struct drive *drive)
@@ -126,7 +140,9 @@ void axis_follow_encoder(struct drive *drive)
                      drive->encoder_count);
 
     estimator_show_position(&drive->estimator, here);
-    reference_place(&drive->reference, here);
+    if (drive->supervision.state != DRIVE_FAULT) {
+        reference_place(&drive->reference, here);
+    }
 }
 
 void axis_set_position(struct drive *drive, struct position position)

@@ -7,9 +7,9 @@
  * nothing else, so neither currents nor angle know of it. All positions go round at 2^31
  * electrical turns.
  *
- * While the bridge is off the reference is where the rotor is known to be, and enabling begins
- * there: with an encoder that counts, it follows the rotor; without one it stays where the rotor
- * was last held or estimated.
+ * While the drive is switched off the reference is where the rotor is known to be, and enabling
+ * begins there: with an encoder that counts it follows the rotor; without one it stays where the
+ * rotor was last held or estimated.
  */
 #ifndef STEADYSTEP_AXIS_H
 #define STEADYSTEP_AXIS_H
@@ -19,9 +19,10 @@
 
 struct axis {
     struct position offset; /* the user's coordinates less the motor's */
+    struct position origin; /* the motor's zero, a constant: a signal shows it */
     enum drive_position_reference reference;
-    struct encoder encoder; /* while the bridge is off */
-    bool counts;            /* it goes on with the rotor then */
+    struct encoder encoder; /* while the bridge is off: where the rotor was left, or is counted */
+    bool counts;            /* it is */
     bool aligned;           /* its zero has been found, and nothing has doubted it since */
 };
 
@@ -34,7 +35,10 @@ bool axis_begins_anew(const struct drive_settings *in_force, const struct drive_
 /* Start-up, and background with the bridge off: the rotor is where the settings assume it. */
 void axis_begin(struct drive *drive);
 
-/* With the bridge off: where enabling begins. The encoder's zero counts until it has been enabled
+/* With the bridge off: where the rotor was left, or is counted. */
+struct position axis_kept_position(const struct drive *drive);
+
+/* Switched off: where enabling begins. The encoder's zero counts until it has been enabled
    once. */
 struct position axis_position(const struct drive *drive, struct position encoder_zero);
 
@@ -43,6 +47,10 @@ void axis_note_ready(struct drive *drive);
 
 /* Interrupt: the bridge opens, before the state says so. `fault`: why, or none. */
 void axis_note_bridge_off(struct drive *drive, enum drive_fault fault);
+
+/* Interrupt: what stands from then on as the reference is where enabling begins. A fault shows both
+   as they were when it came. */
+void axis_note_disabled(struct drive *drive);
 
 /* Interrupt: the rotor may no longer be where it is said to be. */
 void axis_doubt(struct drive *drive);

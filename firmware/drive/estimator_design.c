@@ -116,7 +116,7 @@ bool estimator_design(struct drive *drive, const struct drive_settings *settings
                       char error[DRIVE_ERROR_TEXT])
 {
     const double period_s = drive->board->facts->control_period_s;
-    const struct position position = drive->reference.next.position;
+    const struct position position = axis_kept_position(drive);
     const struct estimator_start start = {.position = position,
                                           .encoder_position = position,
                                           .resistance = drive->params.model.nominal_resistance};

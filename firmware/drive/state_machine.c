@@ -134,6 +134,7 @@ void state_machine_ask_for_fault(struct drive *drive, enum drive_fault fault)
 static void disable(struct drive *drive)
 {
     axis_note_bridge_off(drive, DRIVE_FAULT_NONE);
+    axis_note_disabled(drive);
     drive->supervision.aligns = false;
     drive->supervision.fault = DRIVE_FAULT_NONE;
     enter(drive, DRIVE_SWITCH_ON_DISABLED);

@@ -67,6 +67,8 @@
     NAMED(0x2307, dropped_kind, commands.dropped_kind, "", UNTRACED, drive_command_kind,           \
           "the last of them, if any")                                                              \
     NAMED(0x2308, position_reference, axis.reference, "position", UNTRACED,                        \
-          drive_position_reference, "whether the axis has been homed, and is where it says")
+          drive_position_reference, "whether the axis has been homed, and is where it says")       \
+    ANGLE(0x2315, motor_zero_rad, axis.origin, "", UNTRACED,                                       \
+          "where the zero is that initial_angle_rad counts from; set-position moves it")
 
 #endif
