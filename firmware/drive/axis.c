@@ -106,7 +106,11 @@ static void leave_encoder(struct drive *drive, const struct encoder *encoder, bo
     struct axis *axis = &drive->axis;
 
     axis->counts = !drive->supervision.aligns;
-    axis->encoder = *encoder;
+    if (axis->counts) {
+        axis->encoder = *encoder;
+    } else { /* of the search nothing is of use */
+        encoder_set(&axis->encoder, drive->reference.next.position, 0);
+    }
     if (!sound) {
         axis->aligned = false;
         axis_doubt(drive);

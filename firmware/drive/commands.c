@@ -35,15 +35,14 @@ static bool plan(struct drive *drive, const struct drive_command *command, struc
         .creep_rad_s = num_to_double(drive->params.reference.creep_speed) * drive->base.speed_rad_s,
     };
 
-    const struct position offset = drive->planned_end.offset;
+    const struct planned_end *end = &drive->planned_end;
 
     if (!planned_end_require_known(drive, error) ||
-        !profile_plan(profile, position_plus(drive->planned_end.position, offset), &move, &limits,
-                      error)) {
+        !profile_plan(profile, position_plus(end->position, end->offset), &move, &limits, error)) {
         return false;
     }
-    profile->start = position_minus(profile->start, offset);
-    profile->target = position_minus(profile->target, offset);
+    profile->start = position_minus(profile->start, end->offset);
+    profile->target = position_minus(profile->target, end->offset);
     return true;
 }
 
