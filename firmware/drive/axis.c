@@ -39,9 +39,9 @@ void axis_begin(struct drive *drive)
 
     drive->axis.counts = false;
     atomic_signal_fence(memory_order_release); /* the interrupt keeps away */
-    drive->axis = (struct axis){.reference = enabling->encoder_zero_known
-                                                 ? DRIVE_POSITION_REFERENCED
-                                                 : DRIVE_POSITION_ASSUMED};
+    drive->axis =
+        (struct axis){.reference = enabling->encoder_zero_known ? DRIVE_POSITION_REFERENCED
+                                                                : DRIVE_POSITION_ASSUMED};
     encoder_set(&drive->axis.encoder, enabling->initial_position, 0);
     reference_reset(&drive->reference, enabling->initial_position);
 }
@@ -158,8 +158,7 @@ void axis_set_position(struct drive *drive, struct position position)
         reference_place(&drive->reference, axis_position(drive, enabling->encoder_zero_assumed));
     }
     axis->offset = position_minus(position, drive->reference.next.position);
-    axis->reference =
-        state_machine_powered(drive) || axis->counts || enabling->encoder_zero_known
-            ? DRIVE_POSITION_REFERENCED
-            : DRIVE_POSITION_KEPT;
+    axis->reference = state_machine_powered(drive) || axis->counts || enabling->encoder_zero_known
+                          ? DRIVE_POSITION_REFERENCED
+                          : DRIVE_POSITION_KEPT;
 }

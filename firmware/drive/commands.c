@@ -51,8 +51,7 @@ static bool set_position(struct drive *drive, const struct drive_command *comman
 {
     const double range = 1e9 * drive->base.rad_per_turn;
 
-    queued->position =
-        position_from_rad(command->position_rad, drive->settings.motor.rotor_teeth);
+    queued->position = position_from_rad(command->position_rad, drive->settings.motor.rotor_teeth);
     return design_require_within(error, "position", command->position_rad, -range, range, "rad",
                                  "range of positions") &&
            (drive_state_by(drive, command->at_period) == DRIVE_SWITCH_ON_DISABLED ||
@@ -70,10 +69,10 @@ static bool put_set_point(struct drive *drive, const struct drive_command *comma
         return design_refuse(error, "set-point refused: the position is out of range");
     }
     planner_address_set_point(&drive->planner, command->at_period);
-    return set_points_put(&drive->planner.set_points,
-                          position_minus(position_from_rad(command->position_rad, teeth),
-                                         drive->planned_end.offset),
-                          error);
+    return set_points_put(
+        &drive->planner.set_points,
+        position_minus(position_from_rad(command->position_rad, teeth), drive->planned_end.offset),
+        error);
 }
 
 /* The first set-point: begins a stream. */
@@ -120,9 +119,8 @@ static bool store(const struct drive *drive, char error[DRIVE_ERROR_TEXT])
 double drive_planned_end_rad(struct drive *drive)
 {
     planned_end_update(drive);
-    return position_to_rad(
-        position_plus(drive->planned_end.position, drive->planned_end.offset),
-        drive->settings.motor.rotor_teeth);
+    return position_to_rad(position_plus(drive->planned_end.position, drive->planned_end.offset),
+                           drive->settings.motor.rotor_teeth);
 }
 
 enum drive_state drive_state_by(const struct drive *drive, uint32_t at_period)

@@ -113,11 +113,10 @@ static bool request_retarget(struct drive *drive, const struct drive_command *co
         !planned_end_require_in_range(drive, here, error)) {
         return false;
     }
-    request->target = position_minus(position_from_rad(command->position_rad, teeth),
-                                     drive->planned_end.offset);
-    distance = magnitude(
-        command->position_rad -
-        position_to_rad(position_plus(here, drive->planned_end.offset), teeth));
+    request->target =
+        position_minus(position_from_rad(command->position_rad, teeth), drive->planned_end.offset);
+    distance = magnitude(command->position_rad -
+                         position_to_rad(position_plus(here, drive->planned_end.offset), teeth));
     if (!design_require_within(error, "speed", command->speed_rad_s,
                                distance / (DURATION_MAX * units.period_s), 1e9, "rad/s",
                                "2^30 periods to go") ||

@@ -103,7 +103,6 @@ void planned_end_note_command(struct drive *drive, const struct queued_command *
     } else if (queued_command_is_planned(queued)) {
         drive->planned_end.known = PLANNED_END_AFTER_MOTION;
     } else if (queued->kind == DRIVE_COMMAND_SET_POSITION) {
-        drive->planned_end.offset =
-            position_minus(queued->position, drive->planned_end.position);
+        drive->planned_end.offset = position_minus(queued->position, drive->planned_end.position);
     }
 }

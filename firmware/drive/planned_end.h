@@ -37,8 +37,8 @@ bool planned_end_require_no_stop(struct drive *drive, char error[DRIVE_ERROR_TEX
 /* An absolute move or the first set-point needs to know where it starts. */
 bool planned_end_require_known(struct drive *drive, char error[DRIVE_ERROR_TEXT]);
 
-/* An absolute motion from a position that is shown within 10^9 electrical turns: no distance is more
-   than half of the range then. */
+/* An absolute motion from a position that is shown within 10^9 electrical turns: no distance is
+   more than half of the range then. */
 bool planned_end_require_in_range(struct drive *drive, struct position position,
                                   char error[DRIVE_ERROR_TEXT]);
 

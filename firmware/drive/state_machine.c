@@ -91,8 +91,7 @@ void state_machine_position_found(struct drive *drive, angle_t angle)
 {
     const struct position assumed = drive->reference.next.position;
 
-    reference_place(&drive->reference,
-                    position_add(assumed, (int32_t)(angle - assumed.fraction)));
+    reference_place(&drive->reference, position_add(assumed, (int32_t)(angle - assumed.fraction)));
     power_up(drive);
 }
 

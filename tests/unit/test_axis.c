@@ -202,8 +202,7 @@ static void the_rotor_is_at(double angle_rad, const struct axle *axle)
 
 static void the_position_is(const char *name, const struct axle *axle)
 {
-    TEST_ASSERT_EQUAL_STRING(name,
-                             drive_position_reference_name(signals(axle).position_reference));
+    TEST_ASSERT_EQUAL_STRING(name, drive_position_reference_name(signals(axle).position_reference));
 }
 
 /* ---- kept ---- */
@@ -485,8 +484,9 @@ static void test_in_motion_in_fault_and_behind_a_command_it_is_refused(void)
     power_up(&one, false);
     enable(&one);
     post(&one, move_to(1.0));
-    must_refuse(&one, set_position(0.0), "set-position refused: the reference moves, or a command "
-                                         "waits; stop, and wait for rest");
+    must_refuse(&one, set_position(0.0),
+                "set-position refused: the reference moves, or a command "
+                "waits; stop, and wait for rest");
     run(&one, 300);
     must_refuse(&one, set_position(0.0), "set-position refused: the reference moves");
     run(&one, 1600);
