@@ -145,17 +145,22 @@ static bool address(const struct application *application, struct command_line *
     const uint32_t lead = drive_command_is(line->command.kind, DRIVE_AHEAD)
                               ? planner_lead_periods(&application->drive)
                               : 0u;
-    const uint32_t earliest = line_period + application_typed_delay(application) + lead;
+    const uint32_t first = line_period + application_typed_delay(application) + lead;
+    const uint32_t range = (uint32_t)(DRIVE_AHEAD_MAX_s / application->facts.control_period_s);
+    const uint32_t earliest = drive_command_is(line->command.kind, DRIVE_URGENT)
+                                  ? first
+                                  : command_queue_earliest(&application->drive.commands, first);
 
     line->command.at_period = line->at_given ? line->at_period : earliest;
-    if ((int32_t)(line->command.at_period - earliest) >= 0) {
+    if (line->command.at_period - earliest <= range) {
         return true;
     }
     text_put(answer, "at=");
     text_unsigned(answer, line->at_period);
     text_put(answer, ": must be at least ");
     text_unsigned(answer, earliest);
-    text_put(answer, ", the first period in which this line can act");
+    text_put(answer, ", the first period in which this line can act, and at most ");
+    text_unsigned(answer, earliest + range);
     return false;
 }
 

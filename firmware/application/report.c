@@ -139,11 +139,15 @@ void report_ready(struct text *text, const struct application *application)
     put_count(text, "period", application->drive.supervision.state_since);
     put_number(text, "reference_rad", signals.theta_ref_rad);
     put_number(text, "resistance_ohm", signals.resistance_est_ohm);
+    put_word(text, "position", drive_position_reference_name(signals.position_reference));
     if (application->drive.params.enabling.detects_position) {
         put_word(text, "found_by",
                  application->drive.enabling.detection.by_impulses ? "impulses" : "alignment");
         put_number(text, "confidence",
                    initial_position_confidence(&application->drive.enabling.detection));
+    }
+    if (signals.position_reference == DRIVE_POSITION_UNCERTAIN) {
+        text_put(text, "; home the axis again");
     }
 }
 

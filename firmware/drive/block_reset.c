@@ -2,17 +2,6 @@
 
 #include "firmware/drive/synchronism.h"
 
-/* The position the drive assumes, has found, or its encoder shows. */
-static struct position initial_position(const struct drive *drive, struct position encoder_zero)
-{
-    const struct drive_params *params = &drive->params;
-
-    return params->enabling.encoder_zero_known
-               ? encoder_position(&params->estimator.encoder_observer.encoder, encoder_zero,
-                                  drive->encoder_count)
-               : drive->enabling.start;
-}
-
 void drive_reset_control(struct drive *drive)
 {
     standstill_hold_reset(&drive->hold, &drive->params.hold);
@@ -27,8 +16,8 @@ void drive_reset_motion(struct drive *drive)
 {
     const struct drive_params *params = &drive->params;
     const struct estimator_start start = {
-        .position = initial_position(drive, params->enabling.encoder_zero_assumed),
-        .encoder_position = initial_position(drive, params->enabling.encoder_zero),
+        .position = axis_position(drive, params->enabling.encoder_zero_assumed),
+        .encoder_position = axis_position(drive, params->enabling.encoder_zero),
         .load_torque = params->enabling.initial_load_torque,
         .resistance = drive->estimator.estimate.winding.resistance,
         .unloaded_periods =

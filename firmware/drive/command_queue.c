@@ -21,11 +21,34 @@ bool command_queue_put(struct command_queue *queue, const struct queued_command 
         entry->profile = command->profile;
     } else if (queued_command_is_planned(command)) {
         entry->request = command->request;
+    } else if (command->kind == DRIVE_COMMAND_SET_POSITION) { /* of a drive at rest */
+        entry->position = command->position;
     }
     atomic_signal_fence(memory_order_release);
     queue->written = queue->written + 1u;
     command_queue_look_next(queue);
     return true;
+}
+
+/* The oldest entry that what is urgent will not flush. */
+static uint32_t first_to_stay(const struct command_queue *queue)
+{
+    const struct urgent_command *const urgent[] = {&queue->disable, &queue->stop};
+    uint32_t entry = queue->read;
+
+    for (int i = 0; i < 2; i++) {
+        if (urgent[i]->posted && (int32_t)(urgent[i]->flush_to - entry) > 0) {
+            entry = urgent[i]->flush_to;
+        }
+    }
+    return entry;
+}
+
+uint32_t command_queue_earliest(const struct command_queue *queue, uint32_t first)
+{
+    const uint32_t last = queue->entry[(queue->written - 1u) % COMMAND_QUEUE_LENGTH].at_period;
+
+    return first_to_stay(queue) != queue->written && !has_come(last, first) ? last : first;
 }
 
 /* false: none waits, or the interrupt has just taken it, or it would come later than `at_period`.

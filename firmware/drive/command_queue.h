@@ -33,6 +33,7 @@ struct queued_command {
     union {
         struct profile profile;        /* of a move */
         struct motion_request request; /* of a command the background plans */
+        struct position position;      /* of set-position, the user's */
     };
 };
 
@@ -98,6 +99,10 @@ void command_queue_put_urgent(struct command_queue *queue, struct urgent_command
 /* Interrupt: true once, when the period of `urgent` has come; flushes the queue. */
 bool command_queue_take_urgent(struct command_queue *queue, struct urgent_command *urgent,
                                uint32_t period, uint32_t *wait);
+
+/* Background: a command that is put now waits for all that wait before it: the first period from
+   `first` on in which it can act. */
+uint32_t command_queue_earliest(const struct command_queue *queue, uint32_t first);
 
 /* Background: an enable waits, for the disable's period or later if one waits, too. */
 bool command_queue_enable_waits(const struct command_queue *queue);

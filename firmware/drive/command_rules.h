@@ -13,7 +13,8 @@
 enum {
     ANY_STATE = (1 << DRIVE_STATES) - 1,
     OUTSIDE_FAULT = ANY_STATE & ~(1 << DRIVE_FAULT),
-    IN_OPERATION = 1 << DRIVE_OPERATION_ENABLED
+    IN_OPERATION = 1 << DRIVE_OPERATION_ENABLED,
+    READY_OR_DISABLED = IN_OPERATION | 1 << DRIVE_SWITCH_ON_DISABLED
 };
 
 /* The states in which a command of each kind is obeyed, a bit for each state. An enable of a drive

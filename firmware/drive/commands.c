@@ -35,8 +35,27 @@ static bool plan(struct drive *drive, const struct drive_command *command, struc
         .creep_rad_s = num_to_double(drive->params.reference.creep_speed) * drive->base.speed_rad_s,
     };
 
-    return planned_end_require_known(drive, error) &&
-           profile_plan(profile, drive->planned_end.position, &move, &limits, error);
+    const struct planned_end *end = &drive->planned_end;
+
+    if (!planned_end_require_known(drive, error) ||
+        !profile_plan(profile, position_plus(end->position, end->offset), &move, &limits, error)) {
+        return false;
+    }
+    profile->start = position_minus(profile->start, end->offset);
+    profile->target = position_minus(profile->target, end->offset);
+    return true;
+}
+
+static bool set_position(struct drive *drive, const struct drive_command *command,
+                         struct queued_command *queued, char error[DRIVE_ERROR_TEXT])
+{
+    const double range = 1e9 * drive->base.rad_per_turn;
+
+    queued->position = position_from_rad(command->position_rad, drive->settings.motor.rotor_teeth);
+    return design_require_within(error, "position", command->position_rad, -range, range, "rad",
+                                 "range of positions") &&
+           (drive_state_by(drive, command->at_period) == DRIVE_SWITCH_ON_DISABLED ||
+            planned_end_require_rest(drive, error));
 }
 
 /* One more set-point of a stream that is open. */
@@ -50,8 +69,10 @@ static bool put_set_point(struct drive *drive, const struct drive_command *comma
         return design_refuse(error, "set-point refused: the position is out of range");
     }
     planner_address_set_point(&drive->planner, command->at_period);
-    return set_points_put(&drive->planner.set_points,
-                          position_from_rad(command->position_rad, teeth), error);
+    return set_points_put(
+        &drive->planner.set_points,
+        position_minus(position_from_rad(command->position_rad, teeth), drive->planned_end.offset),
+        error);
 }
 
 /* The first set-point: begins a stream. */
@@ -98,7 +119,8 @@ static bool store(const struct drive *drive, char error[DRIVE_ERROR_TEXT])
 double drive_planned_end_rad(struct drive *drive)
 {
     planned_end_update(drive);
-    return position_to_rad(drive->planned_end.position, drive->settings.motor.rotor_teeth);
+    return position_to_rad(position_plus(drive->planned_end.position, drive->planned_end.offset),
+                           drive->settings.motor.rotor_teeth);
 }
 
 enum drive_state drive_state_by(const struct drive *drive, uint32_t at_period)
@@ -171,6 +193,10 @@ bool drive_command_asked_in(struct drive *drive, const struct drive_command *com
     if (queued_command_is_move(&queued) && !plan(drive, command, &queued.profile, error)) {
         return false;
     }
+    if (command->kind == DRIVE_COMMAND_SET_POSITION &&
+        !set_position(drive, command, &queued, error)) {
+        return false;
+    }
     if (queued_command_is_planned(&queued)) {
         planner_follow(drive);
         if (command->kind == DRIVE_COMMAND_SET_POINT && drive->planner.set_points_open) {
@@ -189,7 +215,8 @@ bool drive_command_asked_in(struct drive *drive, const struct drive_command *com
 
 #define READ(index, member, path, ...) signals->member = drive->path;
 #define READ_ANGLE(index, member, path, ...)                                                       \
-    signals->member = position_to_rad(drive->path, drive->settings.motor.rotor_teeth);
+    signals->member = position_to_rad(position_plus(drive->path, drive->axis.offset),              \
+                                      drive->settings.motor.rotor_teeth);
 #define READ_REAL(index, member, path, brief, traced, in, ...)                                     \
     signals->member = num_to_double(drive->path) * drive->base.in;
 

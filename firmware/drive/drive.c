@@ -284,23 +284,39 @@ static bool settle_settings(struct drive *drive, const struct drive_settings *gi
     return true;
 }
 
+static void design_positions(struct enabling_params *enabling,
+                             const struct drive_settings *settings)
+{
+    const int32_t teeth = settings->motor.rotor_teeth;
+    const double error_rad = settings->initial_angle_error_rad;
+
+    enabling->initial_position = position_from_rad(settings->initial_angle_rad + error_rad, teeth);
+    enabling->encoder_zero_known =
+        settings->feedback == DRIVE_FEEDBACK_ENCODER && settings->encoder_zero_known;
+    enabling->encoder_zero = position_from_rad(settings->encoder_zero_rad, teeth);
+    enabling->encoder_zero_assumed =
+        position_from_rad(settings->encoder_zero_rad + error_rad, teeth);
+}
+
 bool drive_design(struct drive *drive, const struct drive_settings *given,
                   char error[DRIVE_ERROR_TEXT])
 {
     const struct hal_facts *facts = drive->board->facts;
     const struct drive_settings *settings = &drive->settings;
     const double period_s = facts->control_period_s;
+    const bool begins_anew = axis_begins_anew(settings, given);
     struct drive_params *params = &drive->params;
 
     if (!settle_settings(drive, given, error)) {
         return false;
     }
+    design_positions(&params->enabling, settings);
+    if (begins_anew) { /* before what the encoder counts by changes */
+        axis_begin(drive);
+    }
     params->measurement = measurement_design(facts, &drive->base);
     params->model =
         motor_model_design(&settings->motor, &drive->base, period_s, facts->bridge_resistance_ohm);
-    params->enabling.initial_position =
-        position_from_rad(settings->initial_angle_rad + settings->initial_angle_error_rad,
-                          settings->motor.rotor_teeth);
     params->reference = reference_design(&drive->base, period_s, creep_limits(settings));
     params->current_control = current_control_design(&settings->motor, &drive->base, period_s,
                                                      settings->current_bandwidth_rad_s);
@@ -326,20 +342,12 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
                            !settings->feed_forward ||
                            settings->feedback == DRIVE_FEEDBACK_ENCODER ||
                            settings->estimator != DRIVE_ESTIMATOR_INVARIANT_EKF;
-    params->enabling.encoder_zero_known =
-        settings->feedback == DRIVE_FEEDBACK_ENCODER && settings->encoder_zero_known;
-    params->enabling.encoder_zero =
-        position_from_rad(settings->encoder_zero_rad, settings->motor.rotor_teeth);
-    params->enabling.encoder_zero_assumed =
-        position_from_rad(settings->encoder_zero_rad + settings->initial_angle_error_rad,
-                          settings->motor.rotor_teeth);
     params->enabling.initial_load_torque =
         num_from_double(settings->initial_load_torque_Nm / drive->base.torque_Nm);
     params->enabling.hold_on_enable_periods =
         settings->hold_on_enable ? (uint32_t)(settings->hold_on_enable_s / period_s + 0.5) : 0u;
     params->enabling.balance_periods = phase_balancing_design(drive, settings, period_s);
     modulator_reset(&drive->modulator);
-    reference_reset(&drive->reference, params->enabling.initial_position);
     planned_end_init(drive);
     if (!estimator_design(drive, settings, error)) {
         return false;

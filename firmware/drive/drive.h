@@ -10,6 +10,7 @@
 #include "firmware/control/modulator.h"
 #include "firmware/control/position_law_dispatch.h"
 #include "firmware/control/standstill_hold.h"
+#include "firmware/drive/axis.h"
 #include "firmware/drive/command_queue.h"
 #include "firmware/drive/expectation.h"
 #include "firmware/interface/drive_interface.h"
@@ -122,7 +123,6 @@ struct standstill {
 
 /* The steps between switched off and operation. */
 struct enabling {
-    struct position start; /* rotor, as assumed or as found */
     struct offset_calibration calibration;
     struct offset_calibration_params calibration_params;
     struct initial_position detection;
@@ -164,6 +164,7 @@ struct drive {
     struct detent_compensation detent;
 
     struct supervision supervision;
+    struct axis axis;
     int32_t encoder_count; /* of this S(k) */
     struct {
         uint16_t a, b;

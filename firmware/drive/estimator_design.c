@@ -136,9 +136,9 @@ bool estimator_design(struct drive *drive, const struct drive_settings *settings
                       char error[DRIVE_ERROR_TEXT])
 {
     const double period_s = drive->board->facts->control_period_s;
-    const struct estimator_start start = {.position = drive->params.enabling.initial_position,
-                                          .encoder_position =
-                                              drive->params.enabling.initial_position,
+    const struct position position = axis_kept_position(drive);
+    const struct estimator_start start = {.position = position,
+                                          .encoder_position = position,
                                           .resistance = drive->params.model.nominal_resistance};
     if (settings->feedback == DRIVE_FEEDBACK_ENCODER && !ESTIMATORS_READ_ENCODER) {
         return design_refuse(error, "feedback = encoder: this image is for a board without one");

@@ -90,28 +90,33 @@ static bool request_velocity(const struct drive *drive, const struct drive_comma
 }
 
 /* Of a reference that may be in motion: its position is longer than a word. */
-__attribute__((noinline)) static double reference_rad(const struct drive *drive)
+__attribute__((noinline)) static struct position reference_position(const struct drive *drive)
 {
     struct reference now;
 
     (void)interrupt_view_reference(drive, &now);
-    return position_to_rad(now.next.position, drive->settings.motor.rotor_teeth);
+    return now.next.position;
 }
 
-static bool request_retarget(const struct drive *drive, const struct drive_command *command,
+static bool request_retarget(struct drive *drive, const struct drive_command *command,
                              struct motion_request *request, char error[DRIVE_ERROR_TEXT])
 {
     const struct units units = units_of(drive);
     const struct speed_limit limit = speed_limit(drive, &units);
     const double range = TURNS_MAX * units.turn_rad;
+    const int32_t teeth = drive->settings.motor.rotor_teeth;
+    const struct position here = reference_position(drive);
     double distance;
 
     if (!design_require_within(error, "position", command->position_rad, -range, range, "rad",
-                               "range of positions")) {
+                               "range of positions") ||
+        !planned_end_require_in_range(drive, here, error)) {
         return false;
     }
-    request->target = position_from_rad(command->position_rad, drive->settings.motor.rotor_teeth);
-    distance = magnitude(command->position_rad - reference_rad(drive));
+    request->target =
+        position_minus(position_from_rad(command->position_rad, teeth), drive->planned_end.offset);
+    distance = magnitude(command->position_rad -
+                         position_to_rad(position_plus(here, drive->planned_end.offset), teeth));
     if (!design_require_within(error, "speed", command->speed_rad_s,
                                distance / (DURATION_MAX * units.period_s), 1e9, "rad/s",
                                "2^30 periods to go") ||
@@ -197,7 +202,7 @@ static bool request_sine(const struct drive *drive, const struct drive_command *
     return true;
 }
 
-bool planner_request(const struct drive *drive, const struct drive_command *command,
+bool planner_request(struct drive *drive, const struct drive_command *command,
                      struct motion_request *request, char error[DRIVE_ERROR_TEXT])
 {
     switch (command->kind) {

@@ -16,7 +16,8 @@ enum planned_end_known {
 };
 
 struct planned_end {
-    struct position position; /* the last one that was known */
+    struct position position; /* the last one that was known, the motor's */
+    struct position offset;   /* from there to the user's coordinates: drive/axis.h */
     enum planned_end_known known;
 };
 
@@ -35,6 +36,14 @@ bool planned_end_require_no_stop(struct drive *drive, char error[DRIVE_ERROR_TEX
 
 /* An absolute move or the first set-point needs to know where it starts. */
 bool planned_end_require_known(struct drive *drive, char error[DRIVE_ERROR_TEXT]);
+
+/* An absolute motion from a position that is shown within 10^9 electrical turns: no distance is
+   more than half of the range then. */
+bool planned_end_require_in_range(struct drive *drive, struct position position,
+                                  char error[DRIVE_ERROR_TEXT]);
+
+/* set-position: the reference rests, and nothing waits that could move it. */
+bool planned_end_require_rest(struct drive *drive, char error[DRIVE_ERROR_TEXT]);
 
 /* What has been posted changes it: an enable, a stop, any other command. */
 void planned_end_note_enable(struct drive *drive);

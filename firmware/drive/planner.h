@@ -68,7 +68,7 @@ struct drive;
  * Checks a command that is to be planned and states it in the units of the reference. false, with
  * the quantity, its value and the bound it breaks in `error`.
  */
-bool planner_request(const struct drive *drive, const struct drive_command *command,
+bool planner_request(struct drive *drive, const struct drive_command *command,
                      struct motion_request *request, char error[DRIVE_ERROR_TEXT]);
 
 /* DRIVE_LEAD_s in control periods. */

@@ -85,6 +85,17 @@ const char *drive_synchronism_name(enum drive_synchronism synchronism)
     return names[synchronism];
 }
 
+const char *drive_position_reference_name(enum drive_position_reference reference)
+{
+    static const char *const names[DRIVE_POSITION_REFERENCES] = {
+        [DRIVE_POSITION_ASSUMED] = "assumed",
+        [DRIVE_POSITION_REFERENCED] = "referenced",
+        [DRIVE_POSITION_KEPT] = "kept",
+        [DRIVE_POSITION_UNCERTAIN] = "uncertain",
+    };
+    return names[reference];
+}
+
 /* The texts are those of the setting. */
 #define NAME_OF(name, type, member)                                                                \
     const char *drive_##name##_name(enum type member)                                              \

@@ -15,6 +15,13 @@ static void enter(struct drive *drive, enum drive_state state)
     drive->supervision.state_since = drive->supervision.period;
 }
 
+static void begin_operation(struct drive *drive)
+{
+    axis_note_ready(drive);
+    synchronism_start(drive);
+    enter(drive, DRIVE_OPERATION_ENABLED);
+}
+
 static void end_aligning(struct drive *drive)
 {
     const struct drive_params *params = &drive->params;
@@ -22,8 +29,7 @@ static void end_aligning(struct drive *drive)
     drive->supervision.aligns = false;
     estimator_expect_load(&drive->estimator, &drive->params.estimator);
     standstill_hold_end_aligning(&drive->hold, &params->hold);
-    synchronism_start(drive);
-    enter(drive, DRIVE_OPERATION_ENABLED);
+    begin_operation(drive);
 }
 
 static void align_encoder(struct drive *drive)
@@ -70,35 +76,34 @@ static void power_up(struct drive *drive)
     drive_reset_motion(drive);
     if (drive->params.enabling.hold_on_enable_periods > 0u) {
         drive->supervision.aligns = estimator_has_encoder(&drive->params.estimator) &&
-                                    !drive->params.enabling.encoder_zero_known;
+                                    !drive->params.enabling.encoder_zero_known &&
+                                    !drive->axis.aligned;
         encoder_aligning_start(drive);
         standstill_hold_enter(&drive->hold, drive->reference.next.position.fraction);
         enter(drive, DRIVE_ALIGNING);
     } else {
-        synchronism_start(drive);
-        enter(drive, DRIVE_OPERATION_ENABLED);
+        begin_operation(drive);
     }
 }
 
 /* The turn is the one that is assumed; nearest, if that is wrong by less than half. */
 void state_machine_position_found(struct drive *drive, angle_t angle)
 {
-    const struct position assumed = drive->params.enabling.initial_position;
+    const struct position assumed = drive->reference.next.position;
 
-    drive->enabling.start = position_add(assumed, (int32_t)(angle - assumed.fraction));
+    reference_place(&drive->reference, position_add(assumed, (int32_t)(angle - assumed.fraction)));
     power_up(drive);
 }
 
 static void find_position_or_power_up(struct drive *drive)
 {
-    drive->enabling.start = drive->params.enabling.initial_position;
     /* the bridge is off; a position that is found by alignment leaves it on, with current */
     actuation_reset(&drive->actuation);
     prepared_input_reset(drive);
-    if (drive->params.enabling.detects_position) {
+    if (drive->params.enabling.detects_position && !drive->axis.aligned) {
         drive_reset_motion(drive);
         initial_position_start(&drive->enabling.detection, &drive->enabling.detection_params,
-                               drive->enabling.start.fraction);
+                               drive->reference.next.position.fraction);
         enter(drive, DRIVE_DETECTING_POSITION);
     } else {
         power_up(drive);
@@ -127,6 +132,8 @@ void state_machine_ask_for_fault(struct drive *drive, enum drive_fault fault)
 
 static void disable(struct drive *drive)
 {
+    axis_note_bridge_off(drive, DRIVE_FAULT_NONE);
+    axis_note_disabled(drive);
     drive->supervision.aligns = false;
     drive->supervision.fault = DRIVE_FAULT_NONE;
     enter(drive, DRIVE_SWITCH_ON_DISABLED);
@@ -135,6 +142,7 @@ static void disable(struct drive *drive)
 /* Apart: rare. */
 __attribute__((noinline)) static void enter_fault(struct drive *drive, enum drive_fault fault)
 {
+    axis_note_bridge_off(drive, fault);
     drive->supervision.fault = fault;
     command_queue_look_next(&drive->commands); /* nothing waits for a rest any more */
     enter(drive, DRIVE_FAULT);
@@ -150,6 +158,17 @@ __attribute__((cold, noinline)) static void enter_fault_asked_for(struct drive *
     }
 }
 
+/* Posted for a drive at rest, and nothing can have come before it. */
+static void set_position(struct drive *drive, const struct queued_command *command)
+{
+    if (command_rules_obeyed(command->kind, drive->supervision.state) &&
+        !reference_busy(&drive->reference)) {
+        axis_set_position(drive, command->position);
+    } else {
+        command_queue_count_dropped(&drive->commands, command);
+    }
+}
+
 /* true: done with the command; false: it waits for its period or for the reference to rest. */
 static bool obey(struct drive *drive, struct queued_command *command)
 {
@@ -162,6 +181,10 @@ static bool obey(struct drive *drive, struct queued_command *command)
     if (drive->supervision.state == DRIVE_SWITCH_ON_DISABLED &&
         command->kind == DRIVE_COMMAND_ENABLE) {
         start_enabling(drive);
+        return true;
+    }
+    if (command->kind == DRIVE_COMMAND_SET_POSITION) {
+        set_position(drive, command);
         return true;
     }
     if (drive->supervision.state != DRIVE_OPERATION_ENABLED) {
@@ -315,6 +338,9 @@ bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
     const bool was_powered = state_machine_powered(drive);
 
     drive->encoder_count = samples->encoder_count;
+    if (!was_powered) {
+        axis_follow_encoder(drive);
+    }
     if (command_queue_is_due(&drive->commands, drive->supervision.period)) {
         take_commands(drive);
     }

@@ -165,6 +165,9 @@ static enum drive_fault act(struct drive *drive, enum synchronism verdict)
     if (shown[verdict] > drive->synchronism.shown) {
         drive->synchronism.shown = shown[verdict];
     }
+    if (verdict > SYNCHRONISM_DOUBTFUL) {
+        axis_doubt(drive);
+    }
     if (verdict == SYNCHRONISM_DOUBTFUL || drive->synchronism.policy != DRIVE_SYNCHRONISM_FAULT) {
         return DRIVE_FAULT_NONE;
     }

@@ -5,6 +5,8 @@
 #ifndef STEADYSTEP_ESTIMATOR_H
 #define STEADYSTEP_ESTIMATOR_H
 
+#include <stddef.h>
+
 #include "firmware/estimator/encoder_observer.h"
 #include "firmware/estimator/estimators.h"
 #include "firmware/estimator/high_gain_observer.h"
@@ -137,6 +139,25 @@ static inline void estimator_place(struct estimator *estimator,
     {
     }
 #undef ESTIMATOR_PLACE
+}
+
+/* As it counts in the estimator; NULL: there is none. */
+static inline const struct encoder *estimator_encoder(const struct estimator *estimator,
+                                                      const struct estimator_params *params)
+{
+#define ESTIMATOR_ENCODER(constant, name)                                                          \
+    if (estimator_is(params, ESTIMATOR_##constant)) {                                              \
+        return &estimator->name.encoder;                                                           \
+    }
+    ENCODER_ESTIMATORS(ESTIMATOR_ENCODER)
+#undef ESTIMATOR_ENCODER
+    return NULL;
+}
+
+/* While the bridge is off: the rotor is at `position`, whatever moves it. */
+static inline void estimator_show_position(struct estimator *estimator, struct position position)
+{
+    estimator->estimate.rotor.position = position;
 }
 
 #endif

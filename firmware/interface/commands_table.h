@@ -11,7 +11,7 @@
  *   command. Neither ever changes or is used again.
  * - least, most: keep out what is absurd; the drive knows its own limits and says them.
  * - required, optional: sets of parameters, WITH(member).
- * - states: in which it is obeyed, ANY_STATE, OUTSIDE_FAULT, IN_OPERATION.
+ * - states: in which it is obeyed, ANY_STATE, OUTSIDE_FAULT, IN_OPERATION, READY_OR_DISABLED.
  * - planning: enum drive_planning without DRIVE_; with it stands where its act belongs.
  */
 #ifndef STEADYSTEP_COMMANDS_TABLE_H
@@ -65,6 +65,8 @@
             0, IN_OPERATION, AHEAD, "to a position from whatever motion")                          \
     COMMAND(12, STORE, "store", 0, 0, ANY_STATE, AT_ONCE,                                          \
             "keeps settings and what was learned; not while a sine or "                            \
-            "set-points go on")
+            "set-points go on")                                                                    \
+    COMMAND(13, SET_POSITION, "set-position", WITH(position_rad), 0, READY_OR_DISABLED, IN_TURN,   \
+            "the axis is at this position from now on, nothing moves; not in motion")
 
 #endif

@@ -63,6 +63,8 @@ const char *signal_word(const struct signal_row *signal, double value)
         return drive_fault_name((enum drive_fault)place);
     case SIGNAL_IS_drive_synchronism:
         return drive_synchronism_name((enum drive_synchronism)place);
+    case SIGNAL_IS_drive_position_reference:
+        return drive_position_reference_name((enum drive_position_reference)place);
     case SIGNAL_IS_drive_command_kind:
         return drive_command_name((enum drive_command_kind)place);
     default:

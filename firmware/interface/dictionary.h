@@ -18,6 +18,7 @@ enum signal_type {
     SIGNAL_IS_drive_state, /* of an enumeration, from here on */
     SIGNAL_IS_drive_fault,
     SIGNAL_IS_drive_synchronism,
+    SIGNAL_IS_drive_position_reference,
     SIGNAL_IS_drive_command_kind
 };
 

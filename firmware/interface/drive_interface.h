@@ -62,6 +62,16 @@ enum drive_synchronism {
     DRIVE_SYNCHRONISMS
 };
 
+/* What is known of the position that is shown, and of where a motion goes. */
+enum drive_position_reference {
+    DRIVE_POSITION_ASSUMED,    /* it began at initial_angle_rad; the axis has not been homed */
+    DRIVE_POSITION_REFERENCED, /* by set-position or an absolute encoder */
+    DRIVE_POSITION_KEPT,       /* it was referenced before the bridge was off; without an encoder
+                                  nobody saw what moved the rotor meanwhile */
+    DRIVE_POSITION_UNCERTAIN,  /* the rotor may be elsewhere: home the axis again */
+    DRIVE_POSITION_REFERENCES
+};
+
 /* Room for the gains that a law can be given by name. */
 enum { DRIVE_LAW_GAINS = 12 };
 
@@ -164,6 +174,9 @@ static inline uint32_t drive_typed_delay_periods(double control_period_s)
     return (uint32_t)(DRIVE_TYPED_DELAY_s / control_period_s + 0.5);
 }
 
+/* How far ahead a typed line may ask for its period with at=. */
+#define DRIVE_AHEAD_MAX_s 600.0
+
 /* How far ahead of its begin a motion is planned; at least 3 periods. Doubled each time the
    background has been too late, up to DRIVE_LEAD_MAX_s, and back to DRIVE_LEAD_s once a plan has
    been in time or the drive is enabled anew. */
@@ -249,6 +262,7 @@ const char *drive_observer_name(enum drive_observer observer);
 const char *drive_voltage_source_name(enum drive_voltage_source source);
 const char *drive_initial_position_name(enum drive_initial_position position);
 const char *drive_synchronism_name(enum drive_synchronism synchronism);
+const char *drive_position_reference_name(enum drive_position_reference reference);
 const char *drive_synchronism_policy_name(enum drive_synchronism_policy policy);
 
 #ifdef __cplusplus

@@ -6,7 +6,7 @@
  *
  *   FLAG(index, member, path, brief, traced, sentence)
  *   COUNT(index, member, path, brief, traced, sentence)          a whole number
- *   ANGLE(index, member, path, brief, traced, sentence)          a position, in rad
+ *   ANGLE(index, member, path, brief, traced, sentence)          a position, in rad: the user's
  *   NAMED(index, member, path, brief, traced, type, sentence)    of an enumeration
  *   REAL(index, member, path, brief, traced, base, unit, sentence)
  *
@@ -65,6 +65,10 @@
         "rule, or a move would not have begun where the reference was; what a disable or a stop "  \
         "has flushed does not count")                                                              \
     NAMED(0x2307, dropped_kind, commands.dropped_kind, "", UNTRACED, drive_command_kind,           \
-          "the last of them, if any")
+          "the last of them, if any")                                                              \
+    NAMED(0x2308, position_reference, axis.reference, "position", UNTRACED,                        \
+          drive_position_reference, "whether the axis has been homed, and is where it says")       \
+    ANGLE(0x2315, motor_zero_rad, axis.origin, "", UNTRACED,                                       \
+          "where the zero is that initial_angle_rad counts from; set-position moves it")
 
 #endif

@@ -49,6 +49,12 @@ void reference_reset(struct reference *r, struct position position)
     place(r, position);
 }
 
+void reference_place(struct reference *r, struct position position)
+{
+    place(r, position);
+    r->now.position = position;
+}
+
 bool reference_load(struct reference *r, struct profile *profile)
 {
     if (r->phase != REFERENCE_REST || r->next.position.turns != profile->start.turns ||

@@ -116,6 +116,9 @@ static inline num_t reference_jerk(const struct reference *reference,
 /* At rest at a position. */
 void reference_reset(struct reference *reference, struct position position);
 
+/* Of a reference at rest while nothing follows it: the position is now this one. */
+void reference_place(struct reference *reference, struct position position);
+
 /* A profile is loaded or runs: another one would be refused. */
 static inline bool reference_busy(const struct reference *reference)
 {

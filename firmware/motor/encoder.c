@@ -33,5 +33,6 @@ struct position encoder_position(const struct encoder_params *params, struct pos
         encoder_product(count, high) + (encoder_product(count, low) >> 32) + (int64_t)(high >> 1);
     const int64_t position = travel + zero.fraction;
 
-    return (struct position){zero.turns + (int32_t)(position >> 32), (angle_t)position};
+    return (struct position){(int32_t)((uint32_t)zero.turns + (uint32_t)(position >> 32)),
+                             (angle_t)position};
 }

@@ -66,7 +66,10 @@ static inline struct position encoder_step(struct encoder *encoder,
     const uint64_t travel = encoder_travel(params, counts);
     const uint64_t fraction = encoder->fraction + travel;
 
-    encoder->turns += (int32_t)((int64_t)travel >> 63) + (fraction < encoder->fraction ? 1 : 0);
+    const uint32_t carry =
+        (uint32_t)((int64_t)travel >> 63) + (fraction < encoder->fraction ? 1u : 0u);
+
+    encoder->turns = (int32_t)((uint32_t)encoder->turns + carry); /* 2^31 goes round */
     encoder->fraction = fraction;
     encoder->count = count;
     return (struct position){encoder->turns, (angle_t)(fraction >> 32)};

@@ -28,13 +28,26 @@ static inline uint64_t angle_of_position(struct position p)
     return ((uint64_t)(uint32_t)p.turns << 32) | p.fraction;
 }
 
+static inline struct position position_of_angle(uint64_t angle)
+{
+    return (struct position){(int32_t)(uint32_t)(angle >> 32), (angle_t)angle};
+}
+
+/* Between coordinates whose zeros are `offset` apart; goes round as the turns do. */
+static inline struct position position_plus(struct position p, struct position offset)
+{
+    return position_of_angle(angle_of_position(p) + angle_of_position(offset));
+}
+
+static inline struct position position_minus(struct position p, struct position offset)
+{
+    return position_of_angle(angle_of_position(p) - angle_of_position(offset));
+}
+
 /* Adds a signed angle of less than half a turn, in 2^-32 turn. */
 static inline struct position position_add(struct position p, int32_t angle)
 {
-    const uint64_t sum = angle_of_position(p) + (uint64_t)(int64_t)angle;
-    const struct position moved = {(int32_t)(uint32_t)(sum >> 32), (angle_t)sum};
-
-    return moved;
+    return position_of_angle(angle_of_position(p) + (uint64_t)(int64_t)angle);
 }
 
 /* Of a way in 2^-32 turn, exact; the shorter one around 2^32 turns, where positions go round. */

@@ -362,6 +362,13 @@ class Runner
                        courses_.end());
     }
 
+    /* Behind a set-position as well; without one the same bits. */
+    double in_coordinates_of_drive(double theta_rad) const
+    {
+        const double zero_rad = board_.signals().motor_zero_rad;
+        return zero_rad != 0 ? theta_rad + zero_rad : theta_rad;
+    }
+
     void record(std::uint32_t period)
     {
         if (period % scenario_.record_every != 0) {
@@ -370,7 +377,7 @@ class Runner
         const plant::State &state = board_.plant().state();
         Row row;
         put_signals(row, board_.signals());
-        row[THETA] = state.theta_rad;
+        row[THETA] = in_coordinates_of_drive(state.theta_rad);
         row[OMEGA] = state.omega_rad_s;
         row[LOAD_TORQUE] = state.load_torque_Nm;
         row[I_A] = state.i_a_A;
@@ -438,7 +445,8 @@ void post_commands(sil::Board &board, const Scenario &scenario)
             continue;
         }
         const drive_command_kind kind = event.command->kind;
-        if (kind == DRIVE_COMMAND_STOP || kind == DRIVE_COMMAND_DISABLE) {
+        if (kind == DRIVE_COMMAND_STOP || kind == DRIVE_COMMAND_DISABLE ||
+            kind == DRIVE_COMMAND_SET_POSITION) {
             return;
         }
         try {

@@ -75,6 +75,7 @@ DriveMemory::DriveMemory(Machine &machine, const ImageMap &map)
     }
     bridge_on_ = whole("outputs.bridge_on");
     teeth_ = whole("drive.settings.motor.rotor_teeth");
+    offset_ = angle("drive.axis.offset");
 #define PLACE(index, member, path, ...)       signals_[SIGNAL_##member] = {whole("drive." #path), {}};
 #define ANGLE_PLACE(index, member, path, ...) signals_[SIGNAL_##member] = angle("drive." #path);
 #define REAL_PLACE(index, member, path, brief, traced, base, ...)                                  \
@@ -82,12 +83,18 @@ DriveMemory::DriveMemory(Machine &machine, const ImageMap &map)
     DRIVE_SIGNALS_TABLE(PLACE, PLACE, ANGLE_PLACE, PLACE, REAL_PLACE)
 }
 
-/* As position_to_rad of numeric/angle.h. */
+/* Turns and fraction as one number, as angle_of_position of numeric/angle.h. */
+std::uint64_t DriveMemory::position(const Signal &angle)
+{
+    return angle.place.bits() << 32 | angle.with.bits();
+}
+
+/* As position_plus and position_to_rad of numeric/angle.h. */
 double DriveMemory::angle_rad(const Signal &angle) const
 {
-    const double all =
-        angle.place.number() +
-        static_cast<double>(static_cast<std::uint32_t>(angle.with.bits())) / fraction_per_turn;
+    const std::uint64_t sum = position(angle) + position(offset_);
+    const double all = static_cast<double>(static_cast<std::int32_t>(sum >> 32)) +
+                       static_cast<double>(static_cast<std::uint32_t>(sum)) / fraction_per_turn;
     return all * two_pi / teeth_.number();
 }
 

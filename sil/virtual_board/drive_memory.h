@@ -43,9 +43,11 @@ class DriveMemory
 
     Place place(Machine &machine, const ImageMap &map, const std::string &name, bool is_num) const;
     double angle_rad(const Signal &angle) const;
+    static std::uint64_t position(const Signal &angle);
 
     Place gains_, high_counts_[4], bridge_on_;
     Place teeth_;
+    Signal offset_; /* of the user's coordinates */
     Signal signals_[SIGNALS];
 };
 

@@ -139,6 +139,84 @@ static void test_a_later_period_can_be_asked_for_and_an_earlier_one_not(void)
     answers("stop at=", "error: \"\": expected a control period");
 }
 
+/* 600 s of 0.1 ms; what is 2^31 periods ahead or more looks like the past. */
+static void test_a_period_too_far_ahead_is_refused_with_the_range(void)
+{
+    static const char *const too_far[] = {"6000027", "1000000000", "2147483673", "2147483674",
+                                          "4294967295"};
+    char line[40];
+    char refusal[120];
+
+    enable();
+    for (size_t i = 0; i < 5; i++) {
+        (void)snprintf(refusal, sizeof refusal,
+                       "error: at=%s: must be at least 26, the first period in which this line can "
+                       "act, and at most 6000026\n",
+                       too_far[i]);
+        (void)snprintf(line, sizeof line, "stop at=%s", too_far[i]);
+        answers(line, refusal);
+        (void)snprintf(line, sizeof line, "move 1 at=%s", too_far[i]);
+        answers(line, refusal);
+    }
+    answers("move 0.1", "ok move at=26 ");
+    answers("stop at=6000026", "ok stop at=6000026\n");
+    answers("move 0.2",
+            "error: move refused: a stop waits for period 6000026, and where it ends is "
+            "not known\n");
+    answers("stop", "ok stop at=26\n");
+}
+
+/* Commands act in the order in which they came: one answer tells when, no line says less. */
+static void test_a_line_behind_one_that_waits_answers_when_it_will_act(void)
+{
+    enable();
+    answers("move 0.1 at=5000", "ok move at=5000 ");
+    answers("move 0.2", "ok move at=5000 ");
+    answers("hold at=4999", "error: at=4999: must be at least 5000, the first period");
+    answers("stop", "ok stop at=26\n");
+    bench_periods(20);
+    answers("move 0.1", "ok move at=46 ");
+    answers("disable", "ok disable at=46\n"); /* flushes what waits */
+    answers("enable", "ok enable at=46\n");
+}
+
+static void test_the_zero_of_the_position_is_set_and_shown(void)
+{
+    enable();
+    answers("set-position", "error: set-position: missing position_rad=\n");
+    answers("set-position 12.5", "ok set-position at=26\n");
+    answers("move 13", "ok move at=26 duration_s=0.0");
+    bench_periods(2000);
+    TEST_ASSERT_NOT_NULL(strstr(bench_ask("state"), " reference_rad=13 "));
+    TEST_ASSERT_NOT_NULL(strstr(bench_ask("state"), " position=referenced "));
+    TEST_ASSERT_NOT_NULL(strstr(bench_ask("signals"), " motor_zero_rad=12.5"));
+    answers("velocity 5 acceleration_rad_s2=500 jerk_rad_s3=1e5", "ok velocity at=");
+    bench_periods(100);
+    answers("set-position 0",
+            "error: set-position refused: the reference moves, or a command waits; "
+            "stop, and wait for rest\n");
+}
+
+static void test_readiness_says_what_is_known_of_the_position(void)
+{
+    enable();
+    answers("set-position 12.5", "ok set-position at=26\n");
+    bench_periods(12);
+    answers("disable", "ok disable at=38\n");
+    answers("enable", "ok enable at=38\n");
+    bench_periods(14);
+    TEST_ASSERT_NOT_NULL(
+        strstr(bench_heard(), " reference_rad=12.5 resistance_ohm=0.37 position=kept\n"));
+    answers("velocity 5 acceleration_rad_s2=500 jerk_rad_s3=1e5", "ok velocity at=");
+    bench_periods(100);
+    answers("disable", "ok disable at=");
+    bench_periods(12);
+    TEST_ASSERT_NOT_NULL(strstr(bench_ask("state"), " position=uncertain "));
+    answers("enable", "ok enable at=");
+    bench_periods(14);
+    TEST_ASSERT_NOT_NULL(strstr(bench_heard(), " position=uncertain; home the axis again\n"));
+}
+
 static void test_a_late_line_says_so(void)
 {
     enable();
@@ -537,6 +615,10 @@ int main(void)
     RUN_TEST(test_a_later_period_can_be_asked_for_and_an_earlier_one_not);
     RUN_TEST(test_a_late_line_says_so);
     RUN_TEST(test_a_move_without_times_is_one_the_motor_can_follow);
+    RUN_TEST(test_a_period_too_far_ahead_is_refused_with_the_range);
+    RUN_TEST(test_a_line_behind_one_that_waits_answers_when_it_will_act);
+    RUN_TEST(test_the_zero_of_the_position_is_set_and_shown);
+    RUN_TEST(test_readiness_says_what_is_known_of_the_position);
     RUN_TEST(test_every_command_reaches_the_drive);
     RUN_TEST(test_set_points_are_a_stream);
     RUN_TEST(test_what_is_not_understood_is_refused_with_what_was_expected);
