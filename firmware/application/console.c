@@ -111,6 +111,22 @@ static bool announce_unheard(const struct application *application,
     return announced->unheard;
 }
 
+/* That heat takes from the current, or does not any more. */
+static bool announce_heat(const struct application *application,
+                          struct console_announced *announced, struct text *text)
+{
+    const uint8_t now = application->drive.thermal.shown;
+    const uint8_t before = announced->heat;
+
+    announced->heat = now;
+    if ((now & ~before) != 0) {
+        report_heat(text, now & ~before);
+    } else if (now != before && now == 0u) {
+        text_put(text, "heat: the current limit is as set");
+    }
+    return text->length > 0u;
+}
+
 static bool announce(struct application *application)
 {
     struct console *console = &application->console;
@@ -129,6 +145,7 @@ static bool announce(struct application *application)
     } else if (!announce_unheard(application, announced, &text) &&
                !announce_state(application, announced, &text) &&
                !announce_dropped(application, announced, &text) &&
+               !announce_heat(application, announced, &text) &&
                !announce_synchronism(application, announced, &text)) {
         return false;
     }

@@ -130,6 +130,20 @@ void report_synchronism(struct text *text, enum drive_synchronism synchronism)
     }
 }
 
+void report_heat(struct text *text, int begun)
+{
+    text_put(text, "warning: heat:");
+    if ((begun & THERMAL_MOTOR_DERATES) != 0) {
+        text_put(text, " the motor's takes from the current limit;");
+    }
+    if ((begun & THERMAL_BRIDGE_DERATES) != 0) {
+        text_put(text, " the bridge's takes from the current limit;");
+    }
+    if ((begun & THERMAL_NO_SENSOR) != 0) {
+        text_put(text, " the bridge's sensor is shorted or open;");
+    }
+}
+
 void report_ready(struct text *text, const struct application *application)
 {
     struct drive_signals signals;

@@ -21,6 +21,7 @@
 #include "firmware/drive/planned_end.h"
 #include "firmware/drive/planner.h"
 #include "firmware/drive/protection.h"
+#include "firmware/drive/thermal_watch.h"
 #include "firmware/estimator/encoder_alignment.h"
 #include "firmware/drive/phase_watch.h"
 #include "firmware/estimator/estimator.h"
@@ -176,6 +177,7 @@ struct drive {
     /* background */
     struct phase_watch phase_watch;
     struct phase_watch_params phase_watch_params;
+    struct thermal_watch thermal;
     const struct hal *board;
     uint32_t fed_in; /* period in which the watchdog was fed */
     struct drive_settings settings;

@@ -45,15 +45,17 @@ static void put_range(volatile struct code_range *range, struct code_range next)
 }
 
 /* What cannot change without a kink, or without a design of what it shapes. */
-static bool check(const struct drive_settings *now, const struct drive_settings *next,
+static bool check(const struct drive *drive, const struct drive_settings *next,
                   char error[DRIVE_ERROR_TEXT])
 {
+    const struct drive_settings *now = &drive->settings;
     const bool watched = now->synchronism_policy != DRIVE_SYNCHRONISM_OFF;
 
     if (watched != (next->synchronism_policy != DRIVE_SYNCHRONISM_OFF)) {
         return design_refuse(error, "synchronism_policy: to and from off while disabled");
     }
-    if (next->law == POSITION_LAW_MICROSTEPPING && next->current_limit_A != now->current_limit_A) {
+    if (next->law == POSITION_LAW_MICROSTEPPING &&
+        next->current_limit_A != drive->thermal.limit_A) {
         return design_refuse(error, "current_limit_A: it is microstepping's current, set it while "
                                     "disabled");
     }
@@ -78,12 +80,21 @@ bool settings_in_motion_change(struct drive *drive, const struct drive_settings 
             setting_put(&next, setting_number(i), 0, setting_get(wanted, setting_number(i), 0));
         }
     }
-    if (!board_limits_apply(&next, facts, error) || !check(&drive->settings, &next, error) ||
-        !law_design(drive, &next, &law, error)) {
+    if (!board_limits_apply(&next, facts, error) || !check(drive, &next, error)) {
         return false;
     }
+    const double limit_A = next.current_limit_A;
+
+    if (next.law != POSITION_LAW_MICROSTEPPING) {
+        next.current_limit_A = thermal_watch_limit_A(drive, limit_A, next.motion_current_A);
+    }
+    if (!law_design(drive, &next, &law, error)) {
+        return false;
+    }
+    drive->thermal.limit_A = limit_A;
     put_words(&params->law, &law, sizeof law);
-    put_number(&params->hold.current_limit, next.current_limit_A, drive->base.current_A);
+    put_number(&params->hold.current_limit,
+               thermal_watch_limit_A(drive, limit_A, next.hold_current_A), drive->base.current_A);
     put_number(&params->hold.motion_current, next.motion_current_A, drive->base.current_A);
     put_range(&params->protection.current_codes,
               protection_design(&drive->base, facts, &next).current_codes);

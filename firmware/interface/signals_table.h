@@ -65,6 +65,11 @@
         "rule, or a move would not have begun where the reference was; what a disable or a stop "  \
         "has flushed does not count")                                                              \
     NAMED(0x2307, dropped_kind, commands.dropped_kind, "", UNTRACED, drive_command_kind,           \
-          "the last of them, if any")
+          "the last of them, if any")                                                              \
+    REAL(0x2330, motor_heat, thermal.heat, "", UNTRACED, ratio, "",                                \
+         "of the hotter phase's winding, 1 as the rated current makes it for ever; derating "      \
+         "begins at 1.02")                                                                         \
+    COUNT(0x2331, bridge_temperature_C, thermal.bridge_C, "", UNTRACED,                            \
+          "in degrees Celsius; 0: below, or the board has no sensor, or none that works")
 
 #endif

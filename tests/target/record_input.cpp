@@ -60,7 +60,7 @@ replay_samples packed(const hal_samples &samples, std::int32_t encoder_count_bef
 {
     const std::int32_t step = samples.encoder_count - encoder_count_before;
 
-    if (samples.temperature || samples.flags || step != std::int16_t(step))
+    if (samples.flags || step != std::int16_t(step))
         throw std::runtime_error("a sample that replay_samples does not hold");
     return {samples.current_a,       samples.current_b,       samples.bus_voltage,
             samples.phase_voltage_a, samples.phase_voltage_b, std::int16_t(step)};
