@@ -116,15 +116,13 @@ static bool announce_heat(const struct application *application,
                           struct console_announced *announced, struct text *text)
 {
     const uint8_t now = application->drive.thermal.shown;
-    const uint8_t before = announced->heat;
 
-    announced->heat = now;
-    if ((now & ~before) != 0) {
-        report_heat(text, now & ~before);
-    } else if (now != before && now == 0u) {
-        text_put(text, "heat: the current limit is as set");
+    if (now == announced->heat) {
+        return false;
     }
-    return text->length > 0u;
+    announced->heat = now;
+    report_heat(text, now);
+    return true;
 }
 
 static bool announce(struct application *application)

@@ -130,17 +130,13 @@ void report_synchronism(struct text *text, enum drive_synchronism synchronism)
     }
 }
 
-void report_heat(struct text *text, int begun)
+void report_heat(struct text *text, uint8_t shown)
 {
-    text_put(text, "warning: heat:");
-    if ((begun & THERMAL_MOTOR_DERATES) != 0) {
-        text_put(text, " the motor's takes from the current limit;");
-    }
-    if ((begun & THERMAL_BRIDGE_DERATES) != 0) {
-        text_put(text, " the bridge's takes from the current limit;");
-    }
-    if ((begun & THERMAL_NO_SENSOR) != 0) {
-        text_put(text, " the bridge's sensor is shorted or open;");
+    static const char *const texts[] = {" motor derated", " bridge derated", " no bridge sensor"};
+
+    text_put(text, shown == 0u ? "thermal: all well" : "warning: thermal:");
+    for (int i = 0; i < 3; i++) {
+        text_put(text, (shown >> i & 1) != 0 ? texts[i] : "");
     }
 }
 

@@ -3,7 +3,6 @@
 #include "firmware/control/modulation_limit.h"
 #include "firmware/design/elementary.h"
 #include "firmware/design/mechanical_control_design.h"
-#include "firmware/design/refusal.h"
 #include "firmware/design/text.h"
 #include "firmware/drive/board_limits.h"
 #include "firmware/drive/default_settings.h"
@@ -200,13 +199,6 @@ bool drive_carries_law(enum position_law law)
     return position_law_is_carried(law);
 }
 
-static bool check_derating(const struct drive_settings *settings, char error[DRIVE_ERROR_TEXT])
-{
-    return settings->bridge_fault_C <= 0.0 ||
-           settings->bridge_derate_C < settings->bridge_fault_C ||
-           design_refuse(error, "bridge_derate_C: must be below bridge_fault_C");
-}
-
 static bool check_law(const struct drive_settings *settings, char error[DRIVE_ERROR_TEXT])
 {
     struct text refusal = text_in(error, DRIVE_ERROR_TEXT);
@@ -257,7 +249,7 @@ static bool settle_settings(struct drive *drive, const struct drive_settings *gi
     struct default_settings_search search = {.refused = 0};
 
     if (!drive_settings_check(given, error) || !check_simulation(given, facts, error) ||
-        !check_law(given, error) || !check_derating(given, error)) {
+        !check_law(given, error)) {
         return false;
     }
     *settings = *given;
@@ -300,8 +292,7 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
                                          modulation_max(facts->low_state_s, period_s));
     params->protection = protection_design(&drive->base, facts, &drive->settings);
     params->following = design_following_error(drive, period_s);
-    drive->thermal.limit_A = settings->current_limit_A;
-    drive->thermal.motor_in_force = drive->thermal.bridge_in_force = 0u;
+    thermal_watch_design(drive);
     drive->phase_watch_params = phase_watch_design(&drive->base, facts, settings);
     params->enabling.calibrates_offsets = settings->calibrate_offsets;
     drive->enabling.calibration_params =

@@ -80,21 +80,27 @@ bool settings_in_motion_change(struct drive *drive, const struct drive_settings 
             setting_put(&next, setting_number(i), 0, setting_get(wanted, setting_number(i), 0));
         }
     }
+    if (wanted == &drive->settings) { /* derating changes */
+        next.current_limit_A = drive->thermal.limit_A;
+    }
     if (!board_limits_apply(&next, facts, error) || !check(drive, &next, error)) {
         return false;
     }
     const double limit_A = next.current_limit_A;
+    const num_t limit = num_from_double(limit_A / drive->base.current_A);
+    const num_t left = thermal_watch_limit(&drive->thermal, limit, params->hold.motion_current);
 
-    if (next.law != POSITION_LAW_MICROSTEPPING) {
-        next.current_limit_A = thermal_watch_limit_A(drive, limit_A, next.motion_current_A);
+    if (left < limit && next.law != POSITION_LAW_MICROSTEPPING) {
+        next.current_limit_A = num_to_double(left) * drive->base.current_A;
     }
     if (!law_design(drive, &next, &law, error)) {
         return false;
     }
     drive->thermal.limit_A = limit_A;
+    drive->thermal.motor_in_force = UINT8_MAX; /* beside the motion current as it is then */
     put_words(&params->law, &law, sizeof law);
-    put_number(&params->hold.current_limit,
-               thermal_watch_limit_A(drive, limit_A, next.hold_current_A), drive->base.current_A);
+    *(volatile num_t *)&params->hold.current_limit =
+        thermal_watch_limit(&drive->thermal, limit, params->hold.current);
     put_number(&params->hold.motion_current, next.motion_current_A, drive->base.current_A);
     put_range(&params->protection.current_codes,
               protection_design(&drive->base, facts, &next).current_codes);

@@ -7,12 +7,13 @@
  *
  * A data sheet's rated current flows in both phases at once and for ever. So each phase bears it
  * whatever the other does, and at standstill one of them may carry all there is. From cold an
- * overload of k x I_rated reaches h after tau ln(k^2 / (k^2 - h)).
+ * overload of k x I_rated comes to h after tau ln(k^2 / (k^2 - h)).
  *
- * Resistance is no factor of the heat: rated, the winding is hot already, and what R is off by (30
- * % are nothing unusual) would derate a motor at its rated current. But against the same winding's
- * cold resistance, measured by the same drive, it is a thermometer: copper, 0.393 %/K, and a rise
- * of 80 K at the rated current, as data sheets have it. That is where the model may begin.
+ * The resistance is no factor of the heat: rated, the winding is hot already, and what a drive is
+ * wrong about R (30 % are nothing unusual) would derate a motor at its rated current. But against
+ * the same winding's cold resistance, as measured by the same drive, it is a thermometer: copper,
+ * 0.393 %/K, and a rise of 80 K at the rated current, as data sheets have it. That is where the
+ * model may begin.
  *
  * Bridge: an NTC resistor to ground, with its own value at 25 degrees Celsius to the converter's
  * supply,
@@ -24,37 +25,38 @@
 
 #include "firmware/motor/park.h"
 
+#define WINDING_LOOKS 32 /* at most, of a span */
+
 struct winding_heat {
-    float heat[2]; /* h of phases a and b */
-    num_t sum[2];  /* of squares in per-unit, a 32nd of each */
-    uint32_t looks;
+    num_t phase[2]; /* h of a and b */
+    num_t sum[2];   /* of squares in per-unit, 1/WINDING_LOOKS of each */
+    uint8_t looks;
 };
 
-/* Looks of which winding_heat_pass makes a mean: 64 at most. */
+/* One of a span's looks at the currents. */
 void winding_heat_look(struct winding_heat *winding, struct phases current);
 
-/* A span of time passes; `rated_square`: of the rated current in per-unit. Without a look since the
-   last nothing is known of it. */
-void winding_heat_pass(struct winding_heat *winding, double span_s, double time_constant_s,
-                       double rated_square);
+/* A span passes, as much of it as was looked at. */
+void winding_heat_pass(struct winding_heat *winding, float span_s, float time_constant_s);
 
 /* At least what a resistance says that has risen to `ratio` of the cold one; 1 at most. */
-void winding_heat_begin(struct winding_heat *winding, double ratio);
+void winding_heat_begin(struct winding_heat *winding, float ratio);
 
 /* Of the hotter phase. */
-static inline double winding_heat_most(const struct winding_heat *winding)
+static inline num_t winding_heat_most(const struct winding_heat *winding)
 {
-    return (double)(winding->heat[0] > winding->heat[1] ? winding->heat[0] : winding->heat[1]);
+    return winding->phase[0] > winding->phase[1] ? winding->phase[0] : winding->phase[1];
 }
 
-struct bridge_thermometer {
-    float log_ratio; /* ln r, found by a step of Newton's method at each reading */
-};
+/* Of the bridge at this temperature: the hotter, the less. */
+uint32_t bridge_temperature_code(float bridge_C, float beta_K, uint32_t codes);
 
-/* A reading; false: no NTC gives this code, it is shorted or open. */
-bool bridge_thermometer_read(struct bridge_thermometer *thermometer, uint32_t code, uint32_t codes);
+/* An NTC that is shorted or open: beyond 200 or below -55 degrees Celsius. */
+static inline bool bridge_temperature_is_implausible(uint32_t code, uint32_t codes)
+{
+    const uint32_t margin = codes / 128u;
 
-/* Degrees Celsius, within 0.1 K some ten readings behind a change. */
-double bridge_thermometer_C(const struct bridge_thermometer *thermometer, double beta_K);
+    return code - margin > codes - 2u * margin;
+}
 
 #endif

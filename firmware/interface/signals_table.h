@@ -69,7 +69,7 @@
     REAL(0x2330, motor_heat, thermal.heat, "", UNTRACED, ratio, "",                                \
          "of the hotter phase's winding, 1 as the rated current makes it for ever; derating "      \
          "begins at 1.02")                                                                         \
-    COUNT(0x2331, bridge_temperature_C, thermal.bridge_C, "", UNTRACED,                            \
-          "in degrees Celsius; 0: below, or the board has no sensor, or none that works")
+    COUNT(0x2331, bridge_derating, thermal.bridge_derated, "", UNTRACED,                           \
+          "of 64 steps of current_limit_A those that the bridge's temperature takes")
 
 #endif
