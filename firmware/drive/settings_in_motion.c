@@ -45,17 +45,15 @@ static void put_range(volatile struct code_range *range, struct code_range next)
 }
 
 /* What cannot change without a kink, or without a design of what it shapes. */
-static bool check(const struct drive *drive, const struct drive_settings *next,
+static bool check(const struct drive_settings *now, const struct drive_settings *next,
                   char error[DRIVE_ERROR_TEXT])
 {
-    const struct drive_settings *now = &drive->settings;
     const bool watched = now->synchronism_policy != DRIVE_SYNCHRONISM_OFF;
 
     if (watched != (next->synchronism_policy != DRIVE_SYNCHRONISM_OFF)) {
         return design_refuse(error, "synchronism_policy: to and from off while disabled");
     }
-    if (next->law == POSITION_LAW_MICROSTEPPING &&
-        next->current_limit_A != drive->thermal.limit_A) {
+    if (next->law == POSITION_LAW_MICROSTEPPING && next->current_limit_A != now->current_limit_A) {
         return design_refuse(error, "current_limit_A: it is microstepping's current, set it while "
                                     "disabled");
     }
@@ -80,27 +78,12 @@ bool settings_in_motion_change(struct drive *drive, const struct drive_settings 
             setting_put(&next, setting_number(i), 0, setting_get(wanted, setting_number(i), 0));
         }
     }
-    if (wanted == &drive->settings) { /* derating changes */
-        next.current_limit_A = drive->thermal.limit_A;
-    }
-    if (!board_limits_apply(&next, facts, error) || !check(drive, &next, error)) {
+    if (!board_limits_apply(&next, facts, error) || !check(&drive->settings, &next, error) ||
+        !law_design(drive, &next, &law, error)) {
         return false;
     }
-    const double limit_A = next.current_limit_A;
-    const num_t limit = num_from_double(limit_A / drive->base.current_A);
-    const num_t left = thermal_watch_limit(&drive->thermal, limit, params->hold.motion_current);
-
-    if (left < limit && next.law != POSITION_LAW_MICROSTEPPING) {
-        next.current_limit_A = num_to_double(left) * drive->base.current_A;
-    }
-    if (!law_design(drive, &next, &law, error)) {
-        return false;
-    }
-    drive->thermal.limit_A = limit_A;
-    drive->thermal.motor_in_force = UINT8_MAX; /* beside the motion current as it is then */
     put_words(&params->law, &law, sizeof law);
-    *(volatile num_t *)&params->hold.current_limit =
-        thermal_watch_limit(&drive->thermal, limit, params->hold.current);
+    put_number(&params->hold.current_limit, next.current_limit_A, drive->base.current_A);
     put_number(&params->hold.motion_current, next.motion_current_A, drive->base.current_A);
     put_range(&params->protection.current_codes,
               protection_design(&drive->base, facts, &next).current_codes);
@@ -111,5 +94,9 @@ bool settings_in_motion_change(struct drive *drive, const struct drive_settings 
         synchronism->policy = next.synchronism_policy;
     }
     drive->settings = next;
+    drive->thermal.limit_A = next.current_limit_A;
+    if (drive->thermal.motor_in_force + drive->thermal.bridge_in_force > 0) {
+        thermal_watch_derate(drive);
+    }
     return true;
 }

@@ -14,8 +14,7 @@
 #include "firmware/drive/drive.h"
 
 /*
- * Background, of a drive in operation: puts these of `wanted` in force, or, of the drive's own
- * settings, what thermal_watch.h takes of them. false: refused, reason in
+ * Background, of a drive in operation: puts these of `wanted` in force. false: refused, reason in
  * error, and nothing has changed. What the steps of enabling make of them, a design follows.
  */
 bool settings_in_motion_change(struct drive *drive, const struct drive_settings *wanted,

@@ -47,8 +47,8 @@ struct drive;
 /* With the drive's design. The heat is as it is. */
 __attribute__((cold)) void thermal_watch_design(struct drive *drive);
 
-/* What is left of a limit of the q current beside this one along d, in per-unit. */
-num_t thermal_watch_limit(const struct thermal_watch *watch, num_t limit, num_t along);
+/* Background: the limits in force, of what was set in motion. */
+void thermal_watch_derate(struct drive *drive);
 
 /* Background: looks at a drive in any state. */
 void thermal_watch_background(struct drive *drive);
