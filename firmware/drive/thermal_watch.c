@@ -157,7 +157,8 @@ static void judge(struct drive *drive)
     if (!ready) {
         return;
     }
-    if (interrupt_view_period(drive) - interrupt_view_state_since(drive) <= SPAN_PERIODS) {
+    if (interrupt_view_period(drive) - interrupt_view_state_since(drive) <=
+        SPAN_PERIODS + SLOT_PERIODS) {
         begin(drive);
     }
     if (watch->motor_derated != watch->motor_in_force ||
