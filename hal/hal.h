@@ -38,7 +38,6 @@ struct hal_samples {
     uint16_t bus_voltage;    /* ADC code, 0 V at code 0 */
     int16_t phase_voltage_a; /* signed code, mean over the period that ends at S(k) */
     int16_t phase_voltage_b; /* signed code */
-    uint16_t temperature;    /* ADC code of the bridge temperature; 0 if not fitted */
     int32_t encoder_count;   /* quadrature count, wraps; 0 if not fitted */
     uint32_t flags;          /* HAL_FLAG_... */
 };
@@ -75,6 +74,8 @@ struct hal_facts {
     bool zero_delay; /* only in a simulation: the duties of S(k) act S(k)...S(k+1), without the
                         period of delay of the diagram */
     double bridge_resistance_ohm; /* both conducting switches in series with a phase */
+    double bridge_ntc_beta_K;     /* of the NTC resistor that measures the bridge's temperature:
+                                     drive/thermal_model.h; 0: none is fitted */
     uint32_t cycle_counter_Hz;
     uint32_t parameter_page_bytes; /* unit of erase of the parameter store */
     uint32_t parameter_word_bytes; /* unit of programming */
@@ -94,6 +95,9 @@ struct hal {
     bool (*bridge_enable)(void *context);
     /* All gates off at once, safe from anywhere; clears a latched trip. < 1 us. */
     void (*bridge_disable)(void *context);
+    /* ADC code of the bridge's temperature, of the last S(k); asked for if facts.bridge_ntc_beta_K
+       is above 0. < 1 us. */
+    uint16_t (*bridge_temperature)(void *context);
     /* Free-running, wraps at 2^32, facts.cycle_counter_Hz. < 1 us. */
     uint32_t (*cycle_count)(void *context);
     /* Time since start-up, never runs backwards. < 1 us. */

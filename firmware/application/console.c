@@ -111,6 +111,20 @@ static bool announce_unheard(const struct application *application,
     return announced->unheard;
 }
 
+/* That heat takes from the current, or does not any more. */
+static bool announce_heat(const struct application *application,
+                          struct console_announced *announced, struct text *text)
+{
+    const uint8_t now = application->drive.thermal.shown;
+
+    if (now == announced->heat) {
+        return false;
+    }
+    announced->heat = now;
+    report_heat(text, now);
+    return true;
+}
+
 static bool announce(struct application *application)
 {
     struct console *console = &application->console;
@@ -129,6 +143,7 @@ static bool announce(struct application *application)
     } else if (!announce_unheard(application, announced, &text) &&
                !announce_state(application, announced, &text) &&
                !announce_dropped(application, announced, &text) &&
+               !announce_heat(application, announced, &text) &&
                !announce_synchronism(application, announced, &text)) {
         return false;
     }

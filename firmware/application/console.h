@@ -35,6 +35,7 @@ struct console_announced {
     bool start;
     bool refused_settings;
     bool unheard;
+    uint8_t heat; /* THERMAL_... of drive/thermal_watch.h */
     enum drive_state state;
     uint32_t state_since;
     uint32_t underruns;

@@ -130,6 +130,16 @@ void report_synchronism(struct text *text, enum drive_synchronism synchronism)
     }
 }
 
+void report_heat(struct text *text, uint8_t shown)
+{
+    static const char *const texts[] = {" motor derated", " bridge derated", " no bridge sensor"};
+
+    text_put(text, shown == 0u ? "thermal: all well" : "warning: thermal:");
+    for (int i = 0; i < 3; i++) {
+        text_put(text, (shown >> i & 1) != 0 ? texts[i] : "");
+    }
+}
+
 void report_ready(struct text *text, const struct application *application)
 {
     struct drive_signals signals;

@@ -24,6 +24,10 @@ void report_dropped(struct text *text, uint32_t more);
    "synchronism: sure again" */
 void report_synchronism(struct text *text, enum drive_synchronism synchronism);
 
+/* "warning: thermal: motor hot, derated; bridge ...", or that all is well; `shown` THERMAL_... of
+   drive/thermal_watch.h. */
+void report_heat(struct text *text, uint8_t shown);
+
 /* "ready: ..." */
 void report_ready(struct text *text, const struct application *application);
 

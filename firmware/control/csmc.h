@@ -20,6 +20,11 @@ struct csmc_law_params {
     coef_t voltage; /* M */
 };
 
+static inline num_t *csmc_law_current_limit(struct csmc_law_params *params)
+{
+    return &params->mode.surface.current_limit;
+}
+
 struct csmc_law_state {
     struct conditional_integrator d;
     struct conditional_integrator q;

@@ -40,6 +40,11 @@ struct csmc_equivalent_law_params {
     num_t least_q;
 };
 
+static inline num_t *csmc_equivalent_law_current_limit(struct csmc_equivalent_law_params *params)
+{
+    return &params->mode.surface.current_limit;
+}
+
 struct csmc_equivalent_law_state {
     struct conditional_integrator d;
     struct conditional_integrator q;

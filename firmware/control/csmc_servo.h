@@ -35,6 +35,11 @@ struct csmc_servo_law_params {
     struct servo_mode_params first_q;
 };
 
+static inline num_t *csmc_servo_law_current_limit(struct csmc_servo_law_params *params)
+{
+    return &params->mode.surface.current_limit;
+}
+
 /* Shares of a level, times SERVO_STATE_SCALE. */
 struct csmc_servo_law_state {
     num_t constant_d;

@@ -45,6 +45,12 @@ struct feedback_linearisation_law_params {
     num_t current_limit;
 };
 
+static inline num_t *
+feedback_linearisation_law_current_limit(struct feedback_linearisation_law_params *params)
+{
+    return &params->current_limit;
+}
+
 struct feedback_linearisation_law_state {
     struct voltage_disturbance disturbance;
 };

@@ -23,6 +23,11 @@ struct foc_law_params {
     num_t current_error_limit;
 };
 
+static inline num_t *foc_law_current_limit(struct foc_law_params *params)
+{
+    return &params->demand.feedback.current_limit;
+}
+
 struct foc_law_state {
     struct torque_demand_state demand;
     num_t current; /* i_q* of the last period */

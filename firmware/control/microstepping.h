@@ -21,6 +21,12 @@ struct microstepping_law_params {
     num_t voltage; /* 0: current-controlled */
 };
 
+static inline num_t *microstepping_law_current_limit(struct microstepping_law_params *params)
+{
+    (void)params;
+    return NULL; /* its current holds the rotor */
+}
+
 struct microstepping_law_state {
     struct current_control current_control; /* in the frame of the reference */
 };

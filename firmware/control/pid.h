@@ -15,6 +15,11 @@ struct pid_law_params {
     coef_t integral; /* per period */
 };
 
+static inline num_t *pid_law_current_limit(struct pid_law_params *params)
+{
+    return &params->feedback.current_limit;
+}
+
 struct pid_law_state {
     num_t integral; /* z */
 };

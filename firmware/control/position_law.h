@@ -13,6 +13,7 @@
  *   <law>_law_gains           the gains that may be given instead of bandwidths
  *   <law>_law_design          at start-up, from motor, period and bandwidths
  *   <law>_law_step            in the interrupt
+ *   <law>_law_current_limit   where its constants have the limit that may fall in motion, or NULL
  */
 #ifndef STEADYSTEP_POSITION_LAW_H
 #define STEADYSTEP_POSITION_LAW_H

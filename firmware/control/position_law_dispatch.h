@@ -63,6 +63,19 @@ static inline bool position_law_design(enum position_law law, union position_law
     return design_refuse(error, "no such position law");
 }
 
+/* Where it may fall in motion; NULL: the law has none. */
+static inline num_t *position_law_current_limit(enum position_law law,
+                                                union position_law_params *params)
+{
+#define POSITION_LAW_LIMIT(constant, function, text)                                               \
+    if (position_law_is_carried(POSITION_LAW_##constant) && law == POSITION_LAW_##constant) {      \
+        return function##_law_current_limit(&params->function);                                    \
+    }
+    POSITION_LAWS(POSITION_LAW_LIMIT)
+#undef POSITION_LAW_LIMIT
+    return NULL;
+}
+
 /* At rest: all zero. In one piece: the interrupt copies nothing of a size that varies. */
 static inline void position_law_reset(union position_law_state *state)
 {

@@ -18,6 +18,11 @@ struct smc_law_params {
     num_t voltage_q; /* M */
 };
 
+static inline num_t *smc_law_current_limit(struct smc_law_params *params)
+{
+    return &params->surface.current_limit;
+}
+
 struct smc_law_state {
     num_t none; /* C knows no empty struct */
 };

@@ -15,6 +15,11 @@ struct state_feedback_law_params {
     struct error_feedback_params feedback;
 };
 
+static inline num_t *state_feedback_law_current_limit(struct state_feedback_law_params *params)
+{
+    return &params->feedback.current_limit;
+}
+
 struct state_feedback_law_state {
     num_t none; /* C knows no empty struct */
 };

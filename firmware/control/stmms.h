@@ -22,6 +22,11 @@ struct stmms_law_params {
     struct torque_demand_params demand;
 };
 
+static inline num_t *stmms_law_current_limit(struct stmms_law_params *params)
+{
+    return &params->demand.feedback.current_limit;
+}
+
 struct stmms_law_state {
     struct torque_demand_state demand;
 };

@@ -21,6 +21,11 @@ struct stmms_plus_law_params {
     struct inductive_voltage_params inductive;
 };
 
+static inline num_t *stmms_plus_law_current_limit(struct stmms_plus_law_params *params)
+{
+    return &params->demand.feedback.current_limit;
+}
+
 struct stmms_plus_law_state {
     struct torque_demand_state demand;
     num_t current; /* i_q* of the last period */

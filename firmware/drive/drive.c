@@ -324,6 +324,7 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
                                          modulation_max(facts->low_state_s, period_s));
     params->protection = protection_design(&drive->base, facts, &drive->settings);
     params->following = design_following_error(drive, period_s);
+    thermal_watch_design(drive);
     drive->phase_watch_params = phase_watch_design(&drive->base, facts, settings);
     params->enabling.calibrates_offsets = settings->calibrate_offsets;
     drive->enabling.calibration_params =

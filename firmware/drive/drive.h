@@ -23,6 +23,7 @@
 #include "firmware/drive/planned_end.h"
 #include "firmware/drive/planner.h"
 #include "firmware/drive/protection.h"
+#include "firmware/drive/thermal_watch.h"
 #include "firmware/estimator/encoder_alignment.h"
 #include "firmware/drive/phase_watch.h"
 #include "firmware/estimator/estimator.h"
@@ -180,6 +181,7 @@ struct drive {
     struct phase_watch_params phase_watch_params;
     struct idle_current idle;
     struct idle_current_params idle_params;
+    struct thermal_watch thermal;
     const struct hal *board;
     uint32_t fed_in; /* period in which the watchdog was fed */
     struct drive_settings settings;

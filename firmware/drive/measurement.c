@@ -33,3 +33,14 @@ void measurement_balance(struct measurement *measurement, num_t imbalance)
     measurement->offset.current.a += num_mul(measurement->offset.current.a, more);
     measurement->offset.current.b += num_mul(measurement->offset.current.b, less);
 }
+
+struct phases measurement_current(const struct measurement *measurement,
+                                  const struct measurement_params *params, uint16_t code_a,
+                                  uint16_t code_b)
+{
+    const struct phases offset = measurement->offset.current;
+
+    return (struct phases){
+        num_from_code(code_a - params->current_zero_code, measurement->current_a) - offset.a,
+        num_from_code(code_b - params->current_zero_code, measurement->current_b) - offset.b};
+}

@@ -53,6 +53,11 @@ static inline num_t measurement_bus(const struct measurement_params *params,
     return num_from_code(samples->bus_voltage, params->bus_voltage);
 }
 
+/* Of the same two currents alone; for the background. */
+__attribute__((noinline)) struct phases measurement_current(const struct measurement *measurement,
+                                                            const struct measurement_params *params,
+                                                            uint16_t code_a, uint16_t code_b);
+
 static inline __attribute__((always_inline)) struct sample_set
 measurement_step(const struct measurement *measurement, const struct measurement_params *params,
                  const struct hal_samples *samples)

@@ -116,16 +116,16 @@ static struct phases back_emf(const struct drive *drive)
 
 static void look_at(struct phase_look *look, const struct drive *drive)
 {
-    const struct hal_samples samples = {.current_a = drive->current_codes.a,
-                                        .current_b = drive->current_codes.b};
+    const uint16_t code_a = drive->current_codes.a;
+    const uint16_t code_b = drive->current_codes.b;
     const struct phases current =
-        measurement_step(&drive->measurement, &drive->params.measurement, &samples).winding.current;
+        measurement_current(&drive->measurement, &drive->params.measurement, code_a, code_b);
     const struct phases emf = back_emf(drive);
     const struct actuation *actuation = &drive->actuation;
     const bool follow = follows(drive, current);
 
-    look->code[0] = samples.current_a;
-    look->code[1] = samples.current_b;
+    look->code[0] = code_a;
+    look->code[1] = code_b;
     look->push[0] =
         follow ? NUM(0.0) : push(drive, current.a, actuation->command.a + actuation->loss.a, emf.a);
     look->push[1] =

@@ -94,5 +94,9 @@ bool settings_in_motion_change(struct drive *drive, const struct drive_settings 
         synchronism->policy = next.synchronism_policy;
     }
     drive->settings = next;
+    drive->thermal.limit_A = next.current_limit_A;
+    if (drive->thermal.motor_in_force + drive->thermal.bridge_in_force > 0) {
+        thermal_watch_derate(drive);
+    }
     return true;
 }

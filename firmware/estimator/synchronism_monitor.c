@@ -117,7 +117,7 @@ synchronism_monitor_design(const struct synchronism_monitor_task *task)
         .standing_speed_at_first =
             num_from_double((standing_rad_s + feigned_rad_s) / base->speed_rad_s),
         .standing_speed = num_from_double(standing_rad_s / base->speed_rad_s),
-        .full_current = num_from_double(0.99 * task->current_limit_A / base->current_A),
+        .full_current = num_from_double(FULL_CURRENT * task->current_limit_A / base->current_A),
         .load_limit = num_from_double(pull_out_load * rated_torque_Nm / base->torque_Nm),
         .standing_blocks = blocks(standing_s, block_s),
         .behind_blocks = blocks(behind_s, block_s),

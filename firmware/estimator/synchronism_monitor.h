@@ -50,6 +50,9 @@
 #define SYNCHRONISM_BLOCK_S 1.6e-3
 #define SYNCHRONISM_STEPS   8u
 
+/* Of the limit: what counts as all of the current. */
+#define FULL_CURRENT 0.99
+
 struct synchronism_monitor_task {
     const struct motor_params *motor;
     const struct per_unit *base;

@@ -61,6 +61,12 @@
     FAULT(CURRENT_SENSOR_A, 0xff05, "current-sensor-a", "it is stuck", NO_LIMIT,                   \
           "check shunt, amplifier and converter of phase a")                                       \
     FAULT(CURRENT_SENSOR_B, 0xff06, "current-sensor-b", "it is stuck", NO_LIMIT,                   \
-          "check shunt, amplifier and converter of phase b")
+          "check shunt, amplifier and converter of phase b")                                       \
+    FAULT(MOTOR_OVERHEATED, 0x2350, "motor-overheated", "its winding is too hot, for more than",   \
+          LIMIT(motor.rated_current_A),                                                            \
+          "let it cool; move or hold with less current, or, if it bears more, correct "            \
+          "rated_current_A and motor_time_constant_s")                                             \
+    FAULT(BRIDGE_OVERHEATED, 0x4210, "bridge-overheated", "it has reached", LIMIT(bridge_fault_C), \
+          "let it cool; give it more air, or the motor less current")
 
 #endif

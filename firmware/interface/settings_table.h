@@ -87,6 +87,16 @@
          "the bridge: 1 electrical turn, with microstepping 0, which is not watched; cut to 14")   \
     REAL(0x2124, command_timeout_s, "s", FIXED(0.0), FIXED(3600.0), FIXED(0.0), AT_ENABLE,         \
          "a motion stops when no line or command has come for so long; 0: it goes on")             \
+    REAL(0x2150, motor_time_constant_s, "s", FIXED(0.0), FIXED(1e4), FIXED(60.0), AT_ENABLE,       \
+         "of the winding's heat: at that of the rated current the limit falls towards it, at "     \
+         "1.15 of it the bridge opens; 0: not watched")                                            \
+    REAL(0x2151, cold_resistance_ohm, "ohm", FIXED(0.0), FIXED(1e3), FIXED(0.0), AT_ENABLE,        \
+         "resistance_ohm of `ready` with a cold motor: by what it has risen, by as much the "      \
+         "winding is hot already; asks for resistance_adaptation; 0: not known")                   \
+    REAL(0x2152, bridge_derate_C, "degC", FIXED(0.0), FIXED(150.0), FIXED(80.0), AT_ENABLE,        \
+         "temperature of the bridge from which the current limit falls")                           \
+    REAL(0x2153, bridge_fault_C, "degC", FIXED(0.0), FIXED(150.0), FIXED(100.0), AT_ENABLE,        \
+         "to which it has fallen to nothing, and the bridge opens; 0: not watched")                \
     REAL(0x2130, observer_bandwidth_rad_s, "rad/s", FIXED(1.0), FIXED(1e6), FOLLOWS, AT_ENABLE,    \
          "triple pole of the model observer: 1000, of the default law with an encoder 1400, of a " \
          "light rotor what its swings ask for, or what period and counts bear")                    \

@@ -18,6 +18,12 @@ static void bridge_disable(void *context)
     port_bridge_disable();
 }
 
+static uint16_t bridge_temperature(void *context)
+{
+    (void)context;
+    return port_bridge_temperature();
+}
+
 static uint32_t cycle_count(void *context)
 {
     (void)context;
@@ -77,6 +83,7 @@ const struct hal board_hal = {
     .version = image_version,
     .bridge_enable = bridge_enable,
     .bridge_disable = bridge_disable,
+    .bridge_temperature = bridge_temperature,
     .cycle_count = cycle_count,
     .time_us = time_us,
     .watchdog_feed = watchdog_feed,

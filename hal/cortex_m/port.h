@@ -16,6 +16,7 @@ extern const struct hal_facts port_facts;
 /* As the functions of hal.h that have these names. */
 bool port_bridge_enable(void);
 void port_bridge_disable(void);
+uint16_t port_bridge_temperature(void);
 uint32_t port_cycle_count(void);
 uint64_t port_time_us(void);
 void port_watchdog_feed(void);

@@ -17,6 +17,11 @@ static void bridge_disable(void *context)
 }
 
 /* The timer counts up and down once per period. */
+static uint16_t bridge_temperature(void *context)
+{
+    return ((const struct hal_sil *)context)->bridge_temperature;
+}
+
 static uint32_t cycle_count(void *context)
 {
     const struct hal_sil *sil = context;
@@ -146,6 +151,7 @@ void hal_sil_init(struct hal_sil *sil, const struct hal_facts *facts)
     sil->board.version = "steadystep " STEADYSTEP_VERSION " simulated";
     sil->board.bridge_enable = bridge_enable;
     sil->board.bridge_disable = bridge_disable;
+    sil->board.bridge_temperature = bridge_temperature;
     sil->board.cycle_count = cycle_count;
     sil->board.time_us = time_us;
     sil->board.watchdog_feed = watchdog_feed;

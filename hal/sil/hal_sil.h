@@ -38,7 +38,8 @@ struct hal_sil {
                                 UINT32_MAX: none has */
     bool bridge_allowed;     /* between bridge_enable and bridge_disable */
     bool trip_latched;       /* by hal_sil_trip, until bridge_disable */
-    bool restarted;          /* by hal_sil_restart */
+    uint16_t bridge_temperature; /* what the drive is told of it: a code */
+    bool restarted;              /* by hal_sil_restart */
     bool watchdog_running;
     uint64_t watchdog_fed_us;
     struct hal_sil_stream to_drive, to_host;

@@ -38,7 +38,6 @@ IN_RAM(control_interrupt) void control_interrupt(void)
     samples.current_a = peak->current_a;
     samples.current_b = peak->current_b;
     samples.bus_voltage = peak->bus;
-    samples.temperature = peak->temperature;
     samples.phase_voltage_a = voltage.a;
     samples.phase_voltage_b = voltage.b;
     samples.encoder_count = 0;

@@ -5,6 +5,7 @@
 #include "hal/stm32g071/board.h"
 #include "hal/stm32g071/bridge.h"
 #include "hal/stm32g071/clock.h"
+#include "hal/stm32g071/converter.h"
 #include "hal/stm32g071/registers.h"
 #include "hal/stm32g071/watchdog.h"
 
@@ -23,6 +24,7 @@ const struct hal_facts port_facts = {
     .phase_voltage_V_per_code = PHASE_VOLTAGE_V_PER_CODE,
     .has_phase_voltages = true,
     .bridge_resistance_ohm = BRIDGE_RESISTANCE_OHM,
+    .bridge_ntc_beta_K = BRIDGE_NTC_BETA_K,
     .cycle_counter_Hz = CORE_CLOCK_Hz,
     .parameter_page_bytes = FLASH_PAGE_BYTES,
     .parameter_word_bytes = PARAMETER_WORD_BYTES,
@@ -36,6 +38,12 @@ bool port_bridge_enable(void)
 void port_bridge_disable(void)
 {
     bridge_disable();
+}
+
+/* Of the last group: DMA writes a half-word at once. */
+uint16_t port_bridge_temperature(void)
+{
+    return *(const volatile uint16_t *)&converter_groups[LEG_VOLTAGE_SAMPLES - 1].temperature;
 }
 
 uint32_t port_cycle_count(void)

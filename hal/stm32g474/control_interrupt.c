@@ -14,12 +14,18 @@ static struct {
     volatile bool allowed; /* between bridge_enable and bridge_disable */
     bool wanted;           /* by the outputs of the last control interrupt */
     struct hal_samples samples;
+    volatile uint16_t bridge_temperature; /* code of the last S(k) */
 } control = {.period = PORT_NOT_STARTED};
 
 IN_CCM(port_control_period)
 uint32_t port_control_period(void)
 {
     return control.period;
+}
+
+uint16_t control_bridge_temperature(void)
+{
+    return control.bridge_temperature;
 }
 
 bool control_allow_bridge(void)
@@ -53,7 +59,7 @@ static inline void take_samples(struct hal_samples *samples)
     }
     samples->flags = flags;
     samples->encoder_count = encoder_count(samples->encoder_count);
-    if (!current_sampling_read(samples)) {
+    if (!current_sampling_read(samples, &control.bridge_temperature)) {
         board_fault(BOARD_FAULT_CURRENT_SAMPLES);
     }
 }

@@ -9,6 +9,9 @@
 /* The one of this image; linked by name, which costs the interrupt no load of a pointer. */
 extern struct application application;
 
+/* hal.h's, code of the last S(k). */
+uint16_t control_bridge_temperature(void);
+
 /* Whether the gates may follow the outputs; hal.h. */
 bool control_allow_bridge(void);
 void control_forbid_bridge(void);

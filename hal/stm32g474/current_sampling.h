@@ -19,7 +19,8 @@ void current_sampling_start(void);
 
 /* Results of this S(k); false: a converter has none. Reading the last of a converter clears JEOC.
  */
-static inline bool current_sampling_read(struct hal_samples *samples)
+static inline bool current_sampling_read(struct hal_samples *samples,
+                                         volatile uint16_t *bridge_temperature)
 {
     const uint32_t both = ADC_CSR_JEOC_MST | ADC_CSR_JEOC_SLV;
     const bool done = (~ADC12_COMMON->csr & both) == 0;
@@ -27,7 +28,7 @@ static inline bool current_sampling_read(struct hal_samples *samples)
     samples->current_a = (uint16_t)ADC1->jdr[0];
     samples->current_b = (uint16_t)ADC2->jdr[0];
     samples->bus_voltage = (uint16_t)ADC1->jdr[1];
-    samples->temperature = (uint16_t)ADC2->jdr[1];
+    *bridge_temperature = (uint16_t)ADC2->jdr[1];
     return done;
 }
 

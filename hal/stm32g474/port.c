@@ -26,6 +26,7 @@ const struct hal_facts port_facts = {
     .phase_voltage_V_per_code = PHASE_VOLTAGE_V_PER_CODE,
     .has_phase_voltages = true,
     .bridge_resistance_ohm = BRIDGE_RESISTANCE_OHM,
+    .bridge_ntc_beta_K = BRIDGE_NTC_BETA_K,
     .encoder_counts_per_turn = ENCODER_COUNTS_PER_TURN, /* by the build; 0: settings may say */
     .cycle_counter_Hz = CORE_Hz,
     .parameter_page_bytes = FLASH_PAGE_BYTES,
@@ -40,6 +41,11 @@ bool port_bridge_enable(void)
 void port_bridge_disable(void)
 {
     control_forbid_bridge();
+}
+
+uint16_t port_bridge_temperature(void)
+{
+    return control_bridge_temperature();
 }
 
 uint32_t port_cycle_count(void)

@@ -30,6 +30,7 @@ hal_facts facts_of(const plant::Config &config)
     facts.current_zero_code = static_cast<std::uint16_t>(plant::current_zero_code(config.sensors));
     facts.current_offset_codes = 1.0; /* as the reference board */
     facts.bus_V_per_code = plant::bus_V_per_code(config.sensors);
+    facts.bridge_ntc_beta_K = config.sensors.bridge_ntc_beta_K;
     facts.phase_voltage_V_per_code = plant::phase_voltage_V_per_code(config.sensors);
     facts.has_phase_voltages = true;
     facts.zero_delay = config.bridge.delay_periods == 0;
@@ -120,6 +121,7 @@ void Board::sample()
     board.samples.bus_voltage = codes.bus_voltage;
     board.samples.phase_voltage_a = codes.phase_voltage_a;
     board.samples.phase_voltage_b = codes.phase_voltage_b;
+    board.hal.bridge_temperature = codes.bridge_temperature;
     board.samples.encoder_count =
         static_cast<std::int32_t>(static_cast<std::uint32_t>(codes.encoder_count) -
                                   static_cast<std::uint32_t>(board.encoder_origin)); /* may wrap */

@@ -266,6 +266,11 @@ void Plant::set_sensors(const SensorConfig &sensors)
     parts_->sensors.set(sensors);
 }
 
+void Plant::set_bridge_temperature(double bridge_C)
+{
+    parts_->sensors.set_bridge_temperature(bridge_C);
+}
+
 void Plant::jam(double torque_Nm)
 {
     change_real_motor([torque_Nm](RealMotor &motor) { motor.jam(torque_Nm); });

@@ -80,6 +80,7 @@ struct SensorConfig {
     double phase_voltage_offset_on_a_V = 0.0; /* only while the bridge is on */
     double phase_voltage_offset_on_b_V = 0.0;
     double bus_range_V = 31.2;             /* full scale */
+    double bridge_ntc_beta_K = 3435.0;     /* hal.h */
     int encoder_counts_per_turn = 0;       /* quadrature counts; 0: no encoder */
     double encoder_eccentricity_rad = 0.0; /* amplitude of an error that repeats every turn, */
     double encoder_phase_rad = 0.0;        /* sin(theta + phase) less its value at angle 0 */
@@ -98,7 +99,14 @@ struct Config {
 };
 
 /* A converter of the samples. */
-enum class Channel { current_a, current_b, phase_voltage_a, phase_voltage_b, bus_voltage };
+enum class Channel {
+    current_a,
+    current_b,
+    phase_voltage_a,
+    phase_voltage_b,
+    bus_voltage,
+    bridge_temperature
+};
 
 /* Times high per half period of the four half-bridges: A+, A-, B+, B-; as in hal_outputs. */
 struct Duties {
@@ -106,9 +114,10 @@ struct Duties {
     bool bridge_on = false;
 };
 
-/* Raw codes at S(k); the fields and scales are those of hal_samples. */
+/* Raw codes at S(k); the fields and scales are those of hal_samples, and of hal's
+   bridge_temperature. */
 struct Samples {
-    std::uint16_t current_a = 0, current_b = 0, bus_voltage = 0;
+    std::uint16_t current_a = 0, current_b = 0, bus_voltage = 0, bridge_temperature = 0;
     std::int16_t phase_voltage_a = 0, phase_voltage_b = 0;
     std::int32_t encoder_count = 0; /* 0 at angle 0, wraps at 2^31 */
 };
@@ -176,6 +185,7 @@ class Plant
     void set_motor(const MotorConfig &motor);                 /* currents, angle and speed go on */
     void set_coulomb_friction(double share);                  /* as in ImperfectionConfig */
     void set_bus(double bus_V);                    /* the source's; a capacitor follows */
+    void set_bridge_temperature(double bridge_C);  /* 25 degrees Celsius until then */
     void set_sensors(const SensorConfig &sensors); /* offsets, gains and noise may differ */
     /* Friction beside the motor's own; 0 frees the rotor, held_Nm stops it within this S(k). */
     static constexpr double held_Nm = 1e9;

@@ -14,8 +14,8 @@ namespace
 enum Stream : std::uint64_t {
     current_stream = 1,
     phase_voltage_stream = 2,
-    fault_stream = 3, /* and behind it, one a channel */
-    crosstalk_stream = fault_stream + channels
+    fault_stream = 3,     /* and behind it, one a channel of the first five */
+    crosstalk_stream = 8, /* and of the sixth, behind this one */
 };
 
 /* A code 0...highest; the clamp first, so that no conversion is out of range. */
@@ -73,6 +73,8 @@ int code_of(const Samples &samples, Channel channel)
         return samples.phase_voltage_a;
     case Channel::phase_voltage_b:
         return samples.phase_voltage_b;
+    case Channel::bridge_temperature:
+        return samples.bridge_temperature;
     case Channel::bus_voltage:
         break;
     }
@@ -99,6 +101,20 @@ Sensors::Sensors(const SensorConfig &config, std::uint64_t seed)
       phase_voltage_noise_(gaussian_key(seed, phase_voltage_stream))
 {
     set(config);
+    set_bridge_temperature(25.0);
+}
+
+/* An NTC resistor to ground, its value at 25 degrees Celsius to the converter's supply. */
+void Sensors::set_bridge_temperature(double bridge_C)
+{
+    constexpr double zero_C_K = 273.15, at_25_C_K = 298.15;
+    require(bridge_C >= -50.0 && bridge_C <= 180.0, "bridge_temperature_C", bridge_C, "-50...180");
+    const double exponent =
+        config_.bridge_ntc_beta_K * (1.0 / (zero_C_K + bridge_C) - 1.0 / at_25_C_K);
+    const double share = falling_exponential(-magnitude(exponent)); /* the smaller of the two */
+    const double of_supply = (exponent < 0.0 ? share : 1.0) / (1.0 + share);
+    bridge_temperature_code_ =
+        static_cast<std::uint16_t>(converted(of_supply * converter_codes(config_), highest_code_));
 }
 
 void Sensors::set(const SensorConfig &config)
@@ -223,6 +239,7 @@ Samples Sensors::sample(std::uint64_t period, const True &now) const
         static_cast<std::int16_t>(converted(voltage[0], highest_code_) - zero_V_code);
     samples.phase_voltage_b =
         static_cast<std::int16_t>(converted(voltage[1], highest_code_) - zero_V_code);
+    samples.bridge_temperature = bridge_temperature_code_;
     if (config_.encoder_counts_per_turn > 0) {
         samples.encoder_count = encoder_count(now.theta_rad);
     }
@@ -255,6 +272,9 @@ void Sensors::write(Samples &samples, Channel channel, int code) const
     case Channel::bus_voltage:
         samples.bus_voltage = static_cast<std::uint16_t>(written);
         break;
+    case Channel::bridge_temperature:
+        samples.bridge_temperature = static_cast<std::uint16_t>(written);
+        break;
     }
 }
 
@@ -266,7 +286,9 @@ void Sensors::apply_faults(Samples &samples, std::uint64_t period) const
         if (fault.stuck) {
             write(samples, channel, fault.code);
         } else if (fault.noise_rms > 0.0) {
-            const std::uint64_t stream = fault_stream + static_cast<std::uint64_t>(n);
+            const std::uint64_t stream = channel == Channel::bridge_temperature
+                                             ? crosstalk_stream + std::uint64_t{1}
+                                             : fault_stream + static_cast<std::uint64_t>(n);
             const double noise =
                 fault.noise_rms * gaussian_pair(gaussian_key(seed_, stream), period)[0];
             write(samples, channel,

@@ -23,7 +23,7 @@ double current_A_per_code(const SensorConfig &config);
 double phase_voltage_V_per_code(const SensorConfig &config);
 double bus_V_per_code(const SensorConfig &config);
 
-constexpr int channels = 5;
+constexpr int channels = 6;
 int code_of(const Samples &samples, Channel channel);
 
 /* The quantities that are sensed, as they are. */
@@ -41,6 +41,7 @@ class Sensors
     /* The same converters with other offsets, gains and noise; their faults stay. */
     void set(const SensorConfig &config);
 
+    void set_bridge_temperature(double bridge_C);
     void stick(Channel channel, int code);
     void release(Channel channel);
     void add_noise(Channel channel, double rms_codes);
@@ -76,6 +77,7 @@ class Sensors
     };
     Encoder encoder_;
     bool faulty_ = false;
+    std::uint16_t bridge_temperature_code_ = 0;
 };
 
 } // namespace plant

@@ -35,6 +35,8 @@ const std::vector<DriftField> &drift_fields()
         {"inertia_scale", motor, scale_of<&PlantScales::inertia>, 0.01, 1000},
         {"viscous_friction_scale", motor, scale_of<&PlantScales::viscous_friction>, 0.01, 100},
         {"coulomb_friction", PlantPart::friction, value_of<&PlantValues::coulomb_friction>, 0, 10},
+        {"bridge_temperature_C", PlantPart::bridge_temperature,
+         value_of<&PlantValues::bridge_temperature_C>, -50, 180},
         {"bus_V", PlantPart::bus, value_of<&PlantValues::bus_V>, 1, 1000},
         {"current_offset_a_A", sensors, sensing_of<&Sensing::current_offset_a_A>, -10, 10},
         {"current_offset_b_A", sensors, sensing_of<&Sensing::current_offset_b_A>, -10, 10},
@@ -53,8 +55,9 @@ const std::vector<DriftField> &drift_fields()
 
 const std::vector<std::string> &channel_names()
 {
-    static const std::vector<std::string> names = {"current_a", "current_b", "phase_voltage_a",
-                                                   "phase_voltage_b", "bus"};
+    static const std::vector<std::string> names = {
+        "current_a",       "current_b", "phase_voltage_a",
+        "phase_voltage_b", "bus",       "bridge_temperature"};
     return names;
 }
 

@@ -46,6 +46,9 @@ void set_part(const Scenario &scenario, const PlantValues &values, PlantPart par
     case PlantPart::friction:
         plant.set_coulomb_friction(values.coulomb_friction);
         break;
+    case PlantPart::bridge_temperature:
+        plant.set_bridge_temperature(values.bridge_temperature_C);
+        break;
     }
 }
 

@@ -52,6 +52,7 @@ hal_facts board_facts()
     facts.phase_voltage_V_per_code = 62.4 / 4096.0;
     facts.has_phase_voltages = true;
     facts.bridge_resistance_ohm = 0.18;
+    facts.bridge_ntc_beta_K = 3435.0;
     return facts;
 }
 
@@ -89,8 +90,8 @@ class Reference
         samples.bus_voltage = codes.bus_voltage;
         samples.phase_voltage_a = codes.phase_voltage_a;
         samples.phase_voltage_b = codes.phase_voltage_b;
-        samples.temperature = 2048;
         samples.flags = flags;
+        hal_.bridge_temperature = codes.bridge_temperature;
         hal_sil_control_begins(&hal_);
         (void)image_.control_cycle(drive_.data(), &samples);
         image_.background(drive_.data());

@@ -64,6 +64,7 @@
 #define BUS_CHANNEL              10
 #define BUS_V_PER_CODE           (31.2 / 4096.0)
 #define TEMPERATURE_CHANNEL      11
+#define BRIDGE_NTC_BETA_K        3435.0 /* 10 kOhm to ground, 10 kOhm to the supply; 0: none */
 
 /*
  * 115200 and not more: in double precision without FPU the background plans for some 10 ms, in

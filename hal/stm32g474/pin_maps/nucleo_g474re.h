@@ -87,6 +87,7 @@
 #define BUS_CHANNEL              14
 #define BUS_V_PER_CODE           (31.2 / 4096.0)
 #define TEMPERATURE_CHANNEL      5
+#define BRIDGE_NTC_BETA_K        3435.0 /* 10 kOhm to ground, 10 kOhm to the supply; 0: none */
 
 #define ENCODER_TIMER 4
 

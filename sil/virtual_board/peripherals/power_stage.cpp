@@ -221,7 +221,7 @@ std::uint32_t PowerStage::code(const Conversion &conversion)
     }
     if (adc == 2 && channel == 5) {
         require_analog({'C', 4});
-        return config_.temperature_code;
+        return plant_.samples().bridge_temperature;
     }
     const int leg = leg_of(adc, channel);
     if (leg < 0) {

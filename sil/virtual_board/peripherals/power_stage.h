@@ -26,7 +26,6 @@ struct PowerStageConfig {
     double current_A_per_code = 12.0 / 4096; /* behind the amplifier */
     std::uint16_t current_zero_code = 2048;
     std::uint16_t leg_bias_code = 256;
-    std::uint16_t temperature_code = 2048; /* 25 degrees Celsius */
     double dead_time_tolerance = 0.05;
 };
 

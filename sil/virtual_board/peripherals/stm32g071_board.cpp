@@ -23,7 +23,7 @@ constexpr Wire bus_in = {10, {'B', 2}}, temperature_in = {11, {'B', 10}};
 constexpr Pin gates[4] = {{'C', 8}, {'C', 9}, {'C', 10}, {'C', 11}}, fault = {'A', 6};
 constexpr unsigned reset_pin = 13; /* of port B */
 
-constexpr std::uint32_t temperature_code = 2048, zero_code = 2048;
+constexpr std::uint32_t zero_code = 2048;
 constexpr int middle = 2048;
 constexpr Ticks sequence = ticks_per_s / 1000000 * 5; /* a little more than it takes */
 
@@ -260,7 +260,7 @@ std::uint32_t G071Board::code(unsigned channel)
         return plant_.samples().bus_voltage;
     }
     if (wired(temperature_in)) {
-        return temperature_code;
+        return plant_.samples().bridge_temperature;
     }
     for (int leg = 0; leg < legs; leg++) {
         if (wired(legs_in[leg])) {

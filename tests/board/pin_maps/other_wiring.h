@@ -68,6 +68,7 @@
 #define BUS_CHANNEL              8
 #define BUS_V_PER_CODE           (60.0 / 4096.0)
 #define TEMPERATURE_CHANNEL      5
+#define BRIDGE_NTC_BETA_K        3950.0 /* 10 kOhm to ground, 10 kOhm to the supply; 0: none */
 
 #define ENCODER_TIMER 8
 
