@@ -24,6 +24,7 @@ static struct {
     struct bench_vector mean_V; /* over the past period */
     double bus_V;
     double gain_a; /* of a current sensor */
+    double loss_V; /* against the current, of its dead time */
 } bridge;
 
 static inline void drive_bench_reset(void)
@@ -36,6 +37,7 @@ static inline void drive_bench_reset(void)
     memset(&bridge, 0, sizeof bridge);
     bridge.bus_V = 24.0;
     bridge.gain_a = 1.0;
+    bridge.loss_V = DEAD_TIME_LOSS_V;
     board = fake_hal;
     encoder_facts = bench_facts;
 }
@@ -73,7 +75,7 @@ static inline struct hal_samples sample(void)
 static inline double phase_voltage(const uint16_t high_counts[2], double current_A)
 {
     const double modulation = ((double)high_counts[0] - (double)high_counts[1]) / 8500.0;
-    const double loss = fmin(fmax(current_A / 0.05, -1.0), 1.0) * DEAD_TIME_LOSS_V;
+    const double loss = fmin(fmax(current_A / 0.05, -1.0), 1.0) * bridge.loss_V;
 
     return modulation * bridge.bus_V - loss;
 }
@@ -84,7 +86,9 @@ static inline void period(void)
     struct hal_outputs next;
 
     drive_control_cycle(&drive, &samples, &next);
-
+    if (board.facts->zero_delay) {
+        bridge.in_force = next;
+    }
     if (bridge.in_force.bridge_on) {
         bridge.mean_V.a = phase_voltage(&bridge.in_force.high_counts[HAL_LEG_A_PLUS], motor.i_a);
         bridge.mean_V.b = phase_voltage(&bridge.in_force.high_counts[HAL_LEG_B_PLUS], motor.i_b);
