@@ -25,6 +25,7 @@ static struct {
     double bus_V;
     double gain_a; /* of a current sensor */
     double loss_V; /* against the current, of its dead time */
+    void (*run_motor)(struct bench_motor *motor, double u_a, double u_b); /* over a period */
 } bridge;
 
 static inline void drive_bench_reset(void)
@@ -38,6 +39,7 @@ static inline void drive_bench_reset(void)
     bridge.bus_V = 24.0;
     bridge.gain_a = 1.0;
     bridge.loss_V = DEAD_TIME_LOSS_V;
+    bridge.run_motor = bench_run;
     board = fake_hal;
     encoder_facts = bench_facts;
 }
@@ -92,7 +94,7 @@ static inline void period(void)
     if (bridge.in_force.bridge_on) {
         bridge.mean_V.a = phase_voltage(&bridge.in_force.high_counts[HAL_LEG_A_PLUS], motor.i_a);
         bridge.mean_V.b = phase_voltage(&bridge.in_force.high_counts[HAL_LEG_B_PLUS], motor.i_b);
-        bench_run(&motor, bridge.mean_V.a, bridge.mean_V.b);
+        bridge.run_motor(&motor, bridge.mean_V.a, bridge.mean_V.b);
     } else {
         bridge.mean_V = (struct bench_vector){0.0, 0.0};
         motor.i_a = 0.0;
