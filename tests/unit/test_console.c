@@ -525,6 +525,109 @@ static void test_the_longest_answers_are_not_cut(void)
     }
 }
 
+/* Every word of it: nothing that another setting or board would change is left out. */
+static void test_the_start_names_settings_board_and_what_the_hold_bears(void)
+{
+    char expected[500];
+
+    (void)snprintf(expected, sizeof expected,
+                   "version, %s, on bench; settings: given resistance_ohm=0.37 inductance_H=0.0009 "
+                   "torque_constant_Nm_A=0.157 viscous_friction_Nms_rad=0.000307 "
+                   "inertia_kgm2=0.0001562 rated_current_A=3 supply_V=24 rotor_teeth=50 "
+                   "law=state-feedback feedback=sensorless blind_below_rad_s=0.00690436 "
+                   "hold_torque_Nm=0.471 hold_load_step_Nm=0.341287 hold_heat_W=3.33; "
+                   "started by: crash: hard fault at 0x08001234\n",
+                   STEADYSTEP_NUM == NUM_FLOAT   ? "float"
+                   : STEADYSTEP_NUM == NUM_FIXED ? "fixed"
+                                                 : "double");
+    application_background(&bench.application);
+    TEST_ASSERT_EQUAL_STRING(expected, bench_heard());
+}
+
+static const char *announced_with(enum drive_synchronism synchronism)
+{
+    drive->synchronism.shown = synchronism;
+    bench_periods(3);
+    return bench_heard();
+}
+
+static void test_what_becomes_of_synchronism_is_announced_once_and_in_operation_only(void)
+{
+    application_background(&bench.application);
+    (void)bench_heard();
+    TEST_ASSERT_EQUAL_STRING("", announced_with(DRIVE_SYNCHRONISM_DOUBTFUL));
+    drive->synchronism.shown = DRIVE_SYNCHRONISM_SURE;
+    enable();
+    TEST_ASSERT_EQUAL_STRING("warning: synchronism doubtful: near the end of the torque, or the "
+                             "rotor beside its estimate\n",
+                             announced_with(DRIVE_SYNCHRONISM_DOUBTFUL));
+    TEST_ASSERT_EQUAL_STRING("", announced_with(DRIVE_SYNCHRONISM_DOUBTFUL));
+    TEST_ASSERT_EQUAL_STRING("warning: stalled: the rotor does not follow, although the estimate "
+                             "is sound\n",
+                             announced_with(DRIVE_SYNCHRONISM_STALLED));
+    TEST_ASSERT_EQUAL_STRING("synchronism: sure again\n", announced_with(DRIVE_SYNCHRONISM_SURE));
+    TEST_ASSERT_EQUAL_STRING("warning: synchronism lost: the rotor is not where the estimate has "
+                             "it\n",
+                             announced_with(DRIVE_SYNCHRONISM_LOST));
+    answers("disable", "ok disable at=");
+    TEST_ASSERT_EQUAL_STRING("", announced_with(DRIVE_SYNCHRONISM_LOST));
+}
+
+static void test_a_reference_that_ran_dry_is_announced(void)
+{
+    enable();
+    drive->planner.underruns++;
+    bench_periods(3);
+    TEST_ASSERT_EQUAL_STRING(
+        "warning: the reference rests: what continues it came too late\n", bench_heard());
+}
+
+static void test_two_commands_dropped_at_once_are_counted_together(void)
+{
+    enable();
+    drive->commands.dropped += 2u;
+    bench_periods(3);
+    TEST_ASSERT_EQUAL_STRING(
+        "warning: 2 commands dropped: accepted, but not possible when the time to act came\n",
+        bench_heard());
+}
+
+static void test_a_position_that_was_found_says_how_and_how_sure(void)
+{
+    static const char *const by[] = {" found_by=alignment confidence=2.5\n",
+                                     " found_by=impulses confidence=2.5\n"};
+
+    for (int impulses = 0; impulses < 2; impulses++) {
+        setUp();
+        enable();
+        drive->params.enabling.detects_position = true;
+        drive->enabling.detection.by_impulses = impulses == 1;
+        drive->enabling.detection.asymmetry = NUM(0.5);
+        drive->enabling.detection.uncertainty = NUM(0.2);
+        bench.application.console.announced.state_since++;
+        bench_periods(3);
+        const char *heard = bench_heard();
+
+        assert_begins(heard, "ready: period=11 reference_rad=0 resistance_ohm=0.37");
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(heard, by[impulses]), heard);
+    }
+}
+
+static void test_cycles_show_mean_and_most_of_what_was_counted_beside_the_budget(void)
+{
+    static const char none[] = "ok cycles periods=0: none counted yet, or this board does not "
+                               "count\n";
+    static const char some[] = "ok cycles periods=4 mean=1250 most=1700 budget=15300\n";
+
+    application_background(&bench.application);
+    (void)bench_heard();
+    TEST_ASSERT_EQUAL_STRING(none, bench_ask("cycles"));
+    bench.application.cycles = (struct control_cycles){.periods = 4, .sum = 5000, .most = 1700};
+    TEST_ASSERT_EQUAL_STRING(some, bench_ask("cycles"));
+    TEST_ASSERT_EQUAL_STRING(some, bench_ask("cycles reset"));
+    TEST_ASSERT_EQUAL_STRING(none, bench_ask("cycles"));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -558,5 +661,11 @@ int main(void)
     RUN_TEST(test_silence_at_rest_is_no_timeout);
     RUN_TEST(test_long_and_damaged_lines_are_refused_as_a_whole);
     RUN_TEST(test_the_longest_answers_are_not_cut);
+    RUN_TEST(test_the_start_names_settings_board_and_what_the_hold_bears);
+    RUN_TEST(test_what_becomes_of_synchronism_is_announced_once_and_in_operation_only);
+    RUN_TEST(test_a_reference_that_ran_dry_is_announced);
+    RUN_TEST(test_two_commands_dropped_at_once_are_counted_together);
+    RUN_TEST(test_a_position_that_was_found_says_how_and_how_sure);
+    RUN_TEST(test_cycles_show_mean_and_most_of_what_was_counted_beside_the_budget);
     return UNITY_END();
 }
