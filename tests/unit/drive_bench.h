@@ -3,8 +3,10 @@
 #ifndef STEADYSTEP_DRIVE_BENCH_H
 #define STEADYSTEP_DRIVE_BENCH_H
 
+#include <stddef.h>
 #include <string.h>
 
+#include "firmware/drive/phase_watch.h"
 #include "tests/unit/fake_board.h"
 #include "tests/unit/num_assert.h"
 
@@ -25,8 +27,16 @@ static struct {
     double bus_V;
     double gain_a; /* of a current sensor */
     double loss_V; /* against the current, of its dead time */
+    bool open_a, open_b; /* broken leads */
     void (*run_motor)(struct bench_motor *motor, double u_a, double u_b); /* over a period */
+    void (*disturb)(struct hal_samples *samples);
+    bool background; /* runs, once in a period */
 } bridge;
+
+static inline void feed_no_watchdog(void *context)
+{
+    (void)context;
+}
 
 static inline void drive_bench_reset(void)
 {
@@ -41,6 +51,7 @@ static inline void drive_bench_reset(void)
     bridge.loss_V = DEAD_TIME_LOSS_V;
     bridge.run_motor = bench_run;
     board = fake_hal;
+    board.watchdog_feed = feed_no_watchdog;
     encoder_facts = bench_facts;
 }
 
@@ -84,8 +95,12 @@ static inline double phase_voltage(const uint16_t high_counts[2], double current
 
 static inline void period(void)
 {
-    const struct hal_samples samples = sample();
+    struct hal_samples samples = sample();
     struct hal_outputs next;
+
+    if (bridge.disturb != NULL) {
+        bridge.disturb(&samples);
+    }
 
     drive_control_cycle(&drive, &samples, &next);
     if (board.facts->zero_delay) {
@@ -100,7 +115,13 @@ static inline void period(void)
         motor.i_a = 0.0;
         motor.i_b = 0.0;
     }
+    motor.i_a = bridge.open_a ? 0.0 : motor.i_a;
+    motor.i_b = bridge.open_b ? 0.0 : motor.i_b;
     bridge.in_force = next;
+    if (bridge.background) {
+        drive_background(&drive);
+        phase_watch_background(&drive);
+    }
 }
 
 static inline void run(int periods)

@@ -4,6 +4,7 @@
 void setUp(void)
 {
     drive_bench_reset();
+    bridge.background = true;
     encoder_facts.encoder_counts_per_turn = 40000;
     board.facts = &encoder_facts;
 }
