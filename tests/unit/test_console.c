@@ -544,6 +544,62 @@ static void test_the_start_names_settings_board_and_what_the_hold_bears(void)
     TEST_ASSERT_EQUAL_STRING(expected, bench_heard());
 }
 
+/* The contract of the line, once more from outside. */
+static void test_every_command_says_what_it_takes(void)
+{
+    static const char *const usage[][2] = {
+        {"help help", "help: lists commands; help <command> explains one"},
+        {"help state", "state: what it does and measures"},
+        {"help cycles", "cycles: cycles of the control interrupt, mean and most; cycles reset"},
+        {"help move", "move position_rad= [ duration_s= ramp_s= jerk_s= at= ]: jerk-limited move;"},
+        {"help get", "get: a setting: value, unit, range, default; get hold* lists those"},
+        {"help set", "set: set hold_current_A 1.2, or default; acts at the next enable"},
+        {"help enable", "enable [ at= ]: offset calibration, then the hold"},
+        {"help disable", "disable [ at= ]: opens the bridge; clears a fault"},
+        {"help move-smooth",
+         "move-smooth position_rad= duration_s= ramp_s= jerk_s= [ at= ]: jerk-limited"},
+        {"help move-trapezoid", "move-trapezoid position_rad= duration_s= ramp_s= [ at= ]: "},
+        {"help step", "step position_rad= [ at= ]: the reference jumps to a position"},
+        {"help sine", "sine amplitude_rad= frequency_Hz= [ ramp_s= cycles= at= ]: about where"},
+        {"help set-point", "set-point position_rad= [ interval_s= acceleration_rad_s2= "
+                           "jerk_rad_s3= at= ]: the first begins a stream"},
+        {"help velocity", "velocity speed_rad_s= acceleration_rad_s2= jerk_rad_s3= [ at= ]: "},
+        {"help retarget",
+         "retarget position_rad= speed_rad_s= acceleration_rad_s2= jerk_rad_s3= [ at= ]: "},
+        {"help store", "store: keeps settings and what was learned;"},
+        {"help", "help, state, cycles, signals, move, enable, disable, hold, move-trapezoid, "
+                 "move-smooth, step, stop, sine, set-point, velocity, retarget, store, get, set, "
+                 "defaults; help <command> explains one\n"},
+    };
+    char expected[300];
+
+    application_background(&bench.application);
+    (void)bench_heard();
+    for (size_t i = 0; i < sizeof usage / sizeof usage[0]; i++) {
+        (void)snprintf(expected, sizeof expected, "ok %s", usage[i][1]);
+        answers(usage[i][0], expected);
+    }
+}
+
+static void test_state_and_signals_name_all_that_they_show(void)
+{
+    application_background(&bench.application);
+    (void)bench_heard();
+    TEST_ASSERT_EQUAL_STRING(
+        "ok signals state=switch-on-disabled fault=none period=4294967295 theta_est_rad=0 "
+        "omega_est_rad_s=0 load_torque_est_Nm=0 theta_ref_rad=0 omega_ref_rad_s=0 "
+        "reference_moving=no holding=no synchronism=sure i_d_A=0 i_q_A=0 i_d_ref_A=0 i_q_ref_A=0 "
+        "u_d_V=0 u_q_V=0 resistance_est_ohm=0.37 bus_V=24 phase_imbalance=0 "
+        "reference_underruns=0 commands_dropped=0 dropped_kind=enable\n",
+        bench_ask("signals"));
+    TEST_ASSERT_EQUAL_STRING(
+        "ok switch-on-disabled fault=none period=4294967295 position_rad=0 speed_rad_s=0 load_torque_Nm=0 "
+        "reference_rad=0 reference_rad_s=0 moving=no holding=no synchronism=sure i_d_A=0 i_q_A=0 "
+        "resistance_ohm=0.37 bus_V=24 underruns=0 dropped=0 law=state-feedback "
+        "feedback=sensorless; version\n",
+        bench_ask("state"));
+}
+
 static const char *announced_with(enum drive_synchronism synchronism)
 {
     drive->synchronism.shown = synchronism;
@@ -662,6 +718,8 @@ int main(void)
     RUN_TEST(test_long_and_damaged_lines_are_refused_as_a_whole);
     RUN_TEST(test_the_longest_answers_are_not_cut);
     RUN_TEST(test_the_start_names_settings_board_and_what_the_hold_bears);
+    RUN_TEST(test_every_command_says_what_it_takes);
+    RUN_TEST(test_state_and_signals_name_all_that_they_show);
     RUN_TEST(test_what_becomes_of_synchronism_is_announced_once_and_in_operation_only);
     RUN_TEST(test_a_reference_that_ran_dry_is_announced);
     RUN_TEST(test_two_commands_dropped_at_once_are_counted_together);

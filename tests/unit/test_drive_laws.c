@@ -1,10 +1,13 @@
 /* Every position law in the whole drive, in closed loop: how closely the rotor follows. */
 #include "tests/unit/drive_bench.h"
 
+static double load_share; /* of 0.1 N m that the estimate of the load may be off */
+
 void setUp(void)
 {
     drive_bench_reset();
     bridge.background = true;
+    load_share = 0.06;
     encoder_facts.encoder_counts_per_turn = 40000;
     board.facts = &encoder_facts;
 }
@@ -41,14 +44,16 @@ static double largest_error_mrad(int periods)
 static void follows(const struct errors *expected, double direction)
 {
     enable();
-    move(direction * 1.5, 0.12);
+    const double start_rad = signals().theta_ref_rad;
+
+    move(start_rad + direction * 1.5, 0.12);
     TEST_ASSERT_TRUE(largest_error_mrad(2000) < 1.25 * expected->moving);
     TEST_ASSERT_DOUBLE_WITHIN(8e-3, 0.0, signals().load_torque_est_Nm);
-    move(direction * 3.0, 0.12);
+    move(start_rad + direction * 3.0, 0.12);
     TEST_ASSERT_TRUE(largest_error_mrad(400) < 1.25 * expected->moving);
     motor.load_torque_Nm = direction * 0.1;
     TEST_ASSERT_DOUBLE_WITHIN(0.1 * expected->loaded, expected->loaded, largest_error_mrad(300));
-    TEST_ASSERT_DOUBLE_WITHIN(6e-3, direction * 0.1, signals().load_torque_est_Nm);
+    TEST_ASSERT_DOUBLE_WITHIN(load_share * 0.1, direction * 0.1, signals().load_torque_est_Nm);
     TEST_ASSERT_DOUBLE_WITHIN(expected->carried, 0.0, 1e3 * following_error_rad());
 }
 
@@ -105,11 +110,52 @@ static void test_the_voltage_that_was_commanded_serves_where_none_is_measured(vo
     follows(&of_sensorless, 1.0);
 }
 
+/* The paper's observer sees a load sooner. It is for encoders that nobody has: 4 million counts. */
+static void test_the_high_gain_observer_serves_an_ideal_encoder(void)
+{
+    static const struct expected laws[] = {
+        {POSITION_LAW_STATE_FEEDBACK, {0.46, 0.95, 0.12}, {0.31, 0.86, 0.06}},
+        {POSITION_LAW_CSMC_EQUIVALENT, {0.60, 1.36, 0.10}, {0.58, 1.18, 0.15}},
+    };
+
+    for (int i = 0; i < 4; i++) {
+        const struct expected *law = &laws[i / 2];
+        const bool zero_delay = i % 2 == 1;
+
+        with_encoder(law->law, zero_delay);
+        encoder_facts.encoder_counts_per_turn = 4000000;
+        settings.observer = DRIVE_OBSERVER_HIGH_GAIN;
+        settings.initial_angle_rad = 0.2;
+        motor.angle_rad = 0.2;
+        load_share = 0.3; /* what it shows of the load swings with the current */
+        follows(zero_delay ? &law->at_once : &law->delayed, 1.0);
+    }
+}
+
+static void test_the_high_gain_observer_begins_where_an_alignment_ends(void)
+{
+    with_encoder(POSITION_LAW_STATE_FEEDBACK, false);
+    encoder_facts.encoder_counts_per_turn = 400000;
+    settings.observer = DRIVE_OBSERVER_HIGH_GAIN;
+    settings.encoder_zero_known = false;
+    power_up();
+    motor.angle_rad = 0.01;
+    post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE});
+    do {
+        run(1);
+    } while (drive.supervision.state != DRIVE_OPERATION_ENABLED);
+    TEST_ASSERT_DOUBLE_WITHIN(3e-5, motor.angle_rad, signals().theta_est_rad);
+    TEST_ASSERT_DOUBLE_WITHIN(1.0, 0.0, signals().omega_est_rad_s);
+    TEST_ASSERT_TRUE(largest_error_mrad(500) < 0.6);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_every_law_follows_an_encoder_in_both_directions_and_carries_a_load);
     RUN_TEST(test_without_delay_and_without_an_encoder_the_rotor_follows);
     RUN_TEST(test_the_voltage_that_was_commanded_serves_where_none_is_measured);
+    RUN_TEST(test_the_high_gain_observer_serves_an_ideal_encoder);
+    RUN_TEST(test_the_high_gain_observer_begins_where_an_alignment_ends);
     return UNITY_END();
 }
