@@ -153,8 +153,12 @@ static void test_what_runs_between_switched_off_and_operation(void)
                 PADDING(struct initial_position, angle, asymmetry));
     /* found anew before they are asked for */
     BEGINS_ANEW(struct encoder_alignment, encoder_alignment_start(block, 5),
-                LEAVES_UP_TO(struct encoder_alignment, lowest, mean));
+                LEAVES_UP_TO(struct encoder_alignment, lowest, mean),
+                PADDING(struct encoder_alignment, held, looked),
+                PADDING(struct encoder_alignment, deviation, deviation_on_way),
+                PADDING_BEHIND(struct encoder_alignment, rotor));
     BEGINS_ANEW(struct phase_balance, phase_balance_start(block, 5u),
+                PADDING(struct phase_balance, periods, mean),
                 LEAVES_UP_TO(struct phase_balance, difference, reciprocal));
     BEGINS_ANEW(struct standstill_pulses,
                 standstill_pulses_reset(block, &drive.standstill.params, NUM(0.1)),
