@@ -600,6 +600,41 @@ static void test_state_and_signals_name_all_that_they_show(void)
         bench_ask("state"));
 }
 
+static const char *const parameters[] = {
+    "position_rad", "duration_s",  "ramp_s",
+    "jerk_s",       "amplitude_rad", "frequency_Hz",
+    "cycles",       "interval_s",  "speed_rad_s",
+    "acceleration_rad_s2", "jerk_rad_s3", "at",
+};
+
+/* None of those that its usage does not name. */
+static void test_a_command_refuses_what_it_does_not_take(void)
+{
+    static const char *const commands[] = {
+        "state", "signals",   "enable", "disable", "hold",     "move", "move-trapezoid", "move-smooth",
+        "step",  "stop",      "sine",   "store",   "set-point", "velocity", "retarget"};
+    char usage[BENCH_STREAM];
+    char line[60];
+    char words[60];
+
+    application_background(&bench.application);
+    (void)bench_heard();
+    for (size_t c = 0; c < sizeof commands / sizeof commands[0]; c++) {
+        (void)snprintf(line, sizeof line, "help %s", commands[c]);
+        (void)snprintf(usage, sizeof usage, "%s", bench_ask(line));
+        *strchr(usage, ':') = '\0';
+        for (size_t p = 0; p < sizeof parameters / sizeof parameters[0]; p++) {
+            (void)snprintf(words, sizeof words, " %s=", parameters[p]);
+            if (strstr(usage, words) == NULL) {
+                (void)snprintf(line, sizeof line, "%s %s=1", commands[c], parameters[p]);
+                (void)snprintf(words, sizeof words, "error: \"%s\": expected %s", parameters[p],
+                               commands[c]);
+                answers(line, words);
+            }
+        }
+    }
+}
+
 static const char *announced_with(enum drive_synchronism synchronism)
 {
     drive->synchronism.shown = synchronism;
@@ -719,6 +754,7 @@ int main(void)
     RUN_TEST(test_the_longest_answers_are_not_cut);
     RUN_TEST(test_the_start_names_settings_board_and_what_the_hold_bears);
     RUN_TEST(test_every_command_says_what_it_takes);
+    RUN_TEST(test_a_command_refuses_what_it_does_not_take);
     RUN_TEST(test_state_and_signals_name_all_that_they_show);
     RUN_TEST(test_what_becomes_of_synchronism_is_announced_once_and_in_operation_only);
     RUN_TEST(test_a_reference_that_ran_dry_is_announced);
