@@ -25,8 +25,8 @@ static struct {
     struct hal_outputs in_force;
     struct bench_vector mean_V; /* over the past period */
     double bus_V;
-    double gain_a; /* of a current sensor */
-    double loss_V; /* against the current, of its dead time */
+    double gain_a;       /* of a current sensor */
+    double loss_V;       /* against the current, of its dead time */
     bool open_a, open_b; /* broken leads */
     void (*run_motor)(struct bench_motor *motor, double u_a, double u_b); /* over a period */
     void (*disturb)(struct hal_samples *samples);

@@ -593,7 +593,8 @@ static void test_state_and_signals_name_all_that_they_show(void)
         "reference_underruns=0 commands_dropped=0 dropped_kind=enable\n",
         bench_ask("signals"));
     TEST_ASSERT_EQUAL_STRING(
-        "ok switch-on-disabled fault=none period=4294967295 position_rad=0 speed_rad_s=0 load_torque_Nm=0 "
+        "ok switch-on-disabled fault=none period=4294967295 position_rad=0 speed_rad_s=0 "
+        "load_torque_Nm=0 "
         "reference_rad=0 reference_rad_s=0 moving=no holding=no synchronism=sure i_d_A=0 i_q_A=0 "
         "resistance_ohm=0.37 bus_V=24 underruns=0 dropped=0 law=state-feedback "
         "feedback=sensorless; version\n",
@@ -601,18 +602,18 @@ static void test_state_and_signals_name_all_that_they_show(void)
 }
 
 static const char *const parameters[] = {
-    "position_rad", "duration_s",  "ramp_s",
-    "jerk_s",       "amplitude_rad", "frequency_Hz",
-    "cycles",       "interval_s",  "speed_rad_s",
-    "acceleration_rad_s2", "jerk_rad_s3", "at",
+    "position_rad",  "duration_s",          "ramp_s",      "jerk_s",
+    "amplitude_rad", "frequency_Hz",        "cycles",      "interval_s",
+    "speed_rad_s",   "acceleration_rad_s2", "jerk_rad_s3", "at",
 };
 
 /* None of those that its usage does not name. */
 static void test_a_command_refuses_what_it_does_not_take(void)
 {
-    static const char *const commands[] = {
-        "state", "signals",   "enable", "disable", "hold",     "move", "move-trapezoid", "move-smooth",
-        "step",  "stop",      "sine",   "store",   "set-point", "velocity", "retarget"};
+    static const char *const commands[] = {"state",     "signals",  "enable",         "disable",
+                                           "hold",      "move",     "move-trapezoid", "move-smooth",
+                                           "step",      "stop",     "sine",           "store",
+                                           "set-point", "velocity", "retarget"};
     char usage[BENCH_STREAM];
     char line[60];
     char words[60];
@@ -669,8 +670,8 @@ static void test_a_reference_that_ran_dry_is_announced(void)
     enable();
     drive->planner.underruns++;
     bench_periods(3);
-    TEST_ASSERT_EQUAL_STRING(
-        "warning: the reference rests: what continues it came too late\n", bench_heard());
+    TEST_ASSERT_EQUAL_STRING("warning: the reference rests: what continues it came too late\n",
+                             bench_heard());
 }
 
 static void test_two_commands_dropped_at_once_are_counted_together(void)

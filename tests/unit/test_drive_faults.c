@@ -123,12 +123,9 @@ static void shows(const struct row *row)
 static void test_without_an_encoder(void)
 {
     static const struct row rows[] = {
-        {LEAD_A, true, "open-phase-a", 150, 260},
-        {LEAD_B, true, "open-phase-b", 150, 260},
-        {SENSOR_B, true, "current-sensor-b", 200, 350},
-        {HELD_ROTOR, false, "stalled", 205, 245},
-        {HELD_ROTOR, true, "stalled", 25, 55},
-        {OVERLOAD, false, "stalled", 1000, 1110},
+        {LEAD_A, true, "open-phase-a", 150, 260},       {LEAD_B, true, "open-phase-b", 150, 260},
+        {SENSOR_B, true, "current-sensor-b", 200, 350}, {HELD_ROTOR, false, "stalled", 205, 245},
+        {HELD_ROTOR, true, "stalled", 25, 55},          {OVERLOAD, false, "stalled", 1000, 1110},
         {OVERLOAD, true, "stalled", 1000, 1110},
     };
 

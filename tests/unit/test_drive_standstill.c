@@ -1,8 +1,8 @@
 /* The whole drive on a motor whose phases saturate: where the rotor stands shows in the current. */
 #include "tests/unit/drive_bench.h"
 
-#define MAGNET_A   3.488   /* Km / (N L): flux of the magnet, as a current */
-#define SATURATION 0.00095 /* 1/A^2, a depth of 10 % */
+#define MAGNET_A   3.488                   /* Km / (N L): flux of the magnet, as a current */
+#define SATURATION 0.00095                 /* 1/A^2, a depth of 10 % */
 #define DEGREE     (TWO_PI / 360.0 / 50.0) /* electrical, of the rotor */
 
 /* Of each phase: flux linkage over L, A; the magnet's is part of it. */

@@ -144,8 +144,7 @@ static void test_it_goes_on_from_where_the_rotor_is_placed(void)
     reset(0.0);
     high_gain_observer_place(&observer, position_from_rad(from_rad, 50), 1000);
     for (int k = 1; k <= 50; k++) {
-        (void)high_gain_observer_step(&observer, &params, no_current, no_current,
-                                      1000 + 100 * k);
+        (void)high_gain_observer_step(&observer, &params, no_current, no_current, 1000 + 100 * k);
     }
     TEST_ASSERT_DOUBLE_WITHIN(100.0 * count_rad, from_rad + 5000.0 * count_rad,
                               position_to_rad(observer.estimate.rotor.position, 50));

@@ -349,7 +349,8 @@ static void test_products_to_nearest_do_not_lean_to_either_side(void)
 
         for (int i = -50; i < 50; i++) {
             const num_t a = num_from_double(0.01234567 * i + 0.0005);
-            const double error = num_to_double(num_mul_coef_nearest(a, gain)) - k * num_to_double(a);
+            const double error =
+                num_to_double(num_mul_coef_nearest(a, gain)) - k * num_to_double(a);
             const double limit = STEADYSTEP_NUM == NUM_FIXED ? 0.6 / 67108864.0 : 1e-7;
 
             TEST_ASSERT_DOUBLE_WITHIN(limit, 0.0, error);

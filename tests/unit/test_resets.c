@@ -15,12 +15,27 @@ struct left {
     size_t from, to;
 };
 
-#define END_OF(type, member)        (offsetof(type, member) + sizeof(((type *)NULL)->member))
-#define LEAVES(type, member)        {offsetof(type, member), END_OF(type, member)}
-#define LEAVES_UP_TO(type, a, b)    {offsetof(type, a), END_OF(type, b)}
-#define PADDING(type, behind, next) {END_OF(type, behind), offsetof(type, next)}
-#define PADDING_BEHIND(type, last)  {END_OF(type, last), sizeof(type)}
-#define NOTHING                     {0, 0}
+#define END_OF(type, member) (offsetof(type, member) + sizeof(((type *)NULL)->member))
+#define LEAVES(type, member)                                                                       \
+    {                                                                                              \
+        offsetof(type, member), END_OF(type, member)                                               \
+    }
+#define LEAVES_UP_TO(type, a, b)                                                                   \
+    {                                                                                              \
+        offsetof(type, a), END_OF(type, b)                                                         \
+    }
+#define PADDING(type, behind, next)                                                                \
+    {                                                                                              \
+        END_OF(type, behind), offsetof(type, next)                                                 \
+    }
+#define PADDING_BEHIND(type, last)                                                                 \
+    {                                                                                              \
+        END_OF(type, last), sizeof(type)                                                           \
+    }
+#define NOTHING                                                                                    \
+    {                                                                                              \
+        0, 0                                                                                       \
+    }
 
 static bool may_differ(size_t byte, const struct left *left, size_t count)
 {
@@ -96,16 +111,15 @@ static void test_the_blocks_of_the_control(void)
 static void test_the_reference(void)
 {
     /* at rest there is neither profile nor plan */
-    BEGINS_ANEW(struct reference, reference_reset(block, at),
-                PADDING(struct reference, course, now), PADDING(struct reference, now.moving, next),
-                PADDING(struct reference, next.moving, slow_periods),
-                PADDING(struct reference, slow_periods, profile),
-                LEAVES(struct reference, profile), LEAVES(struct reference, creeps),
-                LEAVES(struct reference, stopped), PADDING(struct reference, jerks, at),
-                PADDING(struct reference, at.turns, at.fraction),
-                LEAVES_UP_TO(struct reference, plan, segment), LEAVES(struct reference, epoch),
-                PADDING(struct reference, epoch, continuation),
-                LEAVES(struct reference, continuation));
+    BEGINS_ANEW(
+        struct reference, reference_reset(block, at), PADDING(struct reference, course, now),
+        PADDING(struct reference, now.moving, next),
+        PADDING(struct reference, next.moving, slow_periods),
+        PADDING(struct reference, slow_periods, profile), LEAVES(struct reference, profile),
+        LEAVES(struct reference, creeps), LEAVES(struct reference, stopped),
+        PADDING(struct reference, jerks, at), PADDING(struct reference, at.turns, at.fraction),
+        LEAVES_UP_TO(struct reference, plan, segment), LEAVES(struct reference, epoch),
+        PADDING(struct reference, epoch, continuation), LEAVES(struct reference, continuation));
     TEST_ASSERT_EQUAL_UINT32(drive.reference.epoch, 1u); /* plans of before are void */
     reference_reset(&drive.reference, at);
     TEST_ASSERT_EQUAL_UINT32(drive.reference.epoch, 2u);
@@ -123,15 +137,16 @@ static void test_the_estimators(void)
 
     BEGINS_ANEW(struct invariant_ekf, invariant_ekf_begin(block, &p->invariant_ekf, &start),
                 PADDING(struct invariant_ekf, swung_up, following_periods));
-    BEGINS_ANEW(struct steady_state_ekf, steady_state_ekf_begin(block, &p->steady_state_ekf, &start),
-                NOTHING);
-    BEGINS_ANEW(struct encoder_observer, encoder_observer_begin(block, &p->encoder_observer, &start),
+    BEGINS_ANEW(struct steady_state_ekf,
+                steady_state_ekf_begin(block, &p->steady_state_ekf, &start), NOTHING);
+    BEGINS_ANEW(struct encoder_observer,
+                encoder_observer_begin(block, &p->encoder_observer, &start),
                 PADDING(struct encoder_observer, estimate, encoder),
                 PADDING(struct encoder_observer, encoder.turns, encoder.fraction),
                 PADDING(struct encoder_observer, encoder.count, known_torque),
                 PADDING_BEHIND(struct encoder_observer, known_torque));
     BEGINS_ANEW(struct high_gain_observer,
-                high_gain_observer_begin(block, &p->high_gain_observer, &start), 
+                high_gain_observer_begin(block, &p->high_gain_observer, &start),
                 PADDING(struct high_gain_observer, estimate, encoder),
                 PADDING(struct high_gain_observer, encoder.turns, encoder.fraction),
                 PADDING(struct high_gain_observer, encoder.count, measured),
@@ -163,8 +178,7 @@ static void test_what_runs_between_switched_off_and_operation(void)
     BEGINS_ANEW(struct standstill_pulses,
                 standstill_pulses_reset(block, &drive.standstill.params, NUM(0.1)),
                 PADDING(struct standstill_pulses, at_rest, command),
-                LEAVES(struct standstill_pulses, command),
-                LEAVES(struct standstill_pulses, start));
+                LEAVES(struct standstill_pulses, command), LEAVES(struct standstill_pulses, start));
 }
 
 int main(void)
