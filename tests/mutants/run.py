@@ -10,126 +10,31 @@ compile, or whose text is no longer found exactly once.
 import argparse
 import concurrent.futures
 import pathlib
-import shutil
-import subprocess
 import sys
 import tempfile
 
+from build import Build, Failure, overlay_of
 from mutants import MUTANTS
 
-FLAGS = ["-std=c11", "-O1", "-ffp-contract=off", "-fno-math-errno", "-w",
-         "-DUNITY_INCLUDE_DOUBLE", "-DUNITY_SUPPORT_64"]
-RUN_TIMEOUT_S = 60
 
-
-class Failure(Exception):
-    """Why a mutant proves nothing."""
-
-
-class Build:
-    """Objects of the unbroken firmware and tests; a mutant recompiles what its test links and what
-    depends on its file."""
-
-    def __init__(self, root, unity, compiler, scratch):
-        self.root = root
-        self.unity = unity
-        self.compiler = compiler
-        self.scratch = scratch
-        self.dependencies = {}  # (numeric, source): files
-        self.linked = {}        # (numeric, test): sources
-
-    def compile(self, tree, source, numeric, target):
-        """Compiles `source` of `tree`; returns the project's files it depends on."""
-        target.parent.mkdir(parents=True, exist_ok=True)
-        command = [self.compiler, *FLAGS, f"-DSTEADYSTEP_NUM=NUM_{numeric.upper()}",
-                   f"-I{tree}", f"-I{self.unity}", "-MMD", "-MF", f"{target}.d",
-                   "-c", str(source), "-o", str(target)]
-        result = subprocess.run(command, check=False, capture_output=True, text=True)
-        if result.returncode:
-            raise Failure(f"{source.name} does not compile:\n{result.stderr}")
-        words = pathlib.Path(f"{target}.d").read_text(encoding="utf-8").split()
-        prefix = f"{tree}/"
-        return {word[len(prefix):] for word in words if word.startswith(prefix)}
-
-    def objects_of(self, numeric):
-        return self.scratch / "unbroken" / numeric
-
-    def prepare(self, pool, wanted):
-        """Compiles everything once for each (numeric, test) wanted."""
-        firmware = sorted(path.relative_to(self.root)
-                          for path in (self.root / "firmware").rglob("*.c"))
-        jobs = []
-        for numeric in {numeric for numeric, _ in wanted}:
-            sources = firmware + [pathlib.Path(f"tests/unit/test_{test}.c")
-                                  for other, test in wanted if other == numeric]
-            for source in sources:
-                target = (self.objects_of(numeric) / source).with_suffix(".o")
-                jobs.append((numeric, source,
-                             pool.submit(self.compile, self.root, self.root / source, numeric,
-                                         target)))
-        unity = self.scratch / "unity.o"
-        self.compile(self.unity, self.unity / "unity.c", "double", unity)
-        self.dependencies = {(numeric, source): job.result() for numeric, source, job in jobs}
-        for numeric in {numeric for numeric, _ in wanted}:
-            subprocess.run(["ar", "rcsT", self.archive_of(numeric),
-                            *(self.object_of(numeric, source) for source in firmware)], check=True)
-        for numeric, test in wanted:
-            self.linked[numeric, test] = self.sources_of(numeric, test)
-
-    def archive_of(self, numeric):
-        return self.objects_of(numeric) / "firmware.a"
-
-    def object_of(self, numeric, source):
-        return (self.objects_of(numeric) / source).with_suffix(".o")
-
-    def link(self, arguments, program):
-        return subprocess.run([self.compiler, *map(str, arguments), str(self.scratch / "unity.o"),
-                               "-lm", "-o", str(program)],
-                              check=True, capture_output=True, text=True).stdout
-
-    def sources_of(self, numeric, test):
-        """The test's own, and those of the firmware's that the linker takes for it."""
-        source = pathlib.Path(f"tests/unit/test_{test}.c")
-        taken = self.link([self.object_of(numeric, source), self.archive_of(numeric), "-Wl,-t"],
-                          self.scratch / "taken")
-        return [other for of, other in self.dependencies
-                if of == numeric and (other == source or
-                                      str(self.object_of(numeric, other).relative_to(
-                                          self.objects_of(numeric))) in taken)]
-
-    def run(self, numeric, test, replaced, folder):
-        """Links the test with the objects in `replaced`, runs it, returns what it prints."""
-        program = folder / "program"
-        self.link([replaced.get(source, self.object_of(numeric, source))
-                   for source in self.linked[numeric, test]], program)
-        try:
-            return subprocess.run([str(program)], check=False, capture_output=True, text=True,
-                                  timeout=RUN_TIMEOUT_S).stdout
-        except subprocess.TimeoutExpired as expired:
-            raise Failure(f"runs for more than {RUN_TIMEOUT_S} s") from expired
-
-    def broken(self, number, mutant):
-        """What the test prints with the mutant in place."""
-        tree = self.scratch / f"mutant-{number}"
-        shutil.copytree(self.root / "firmware", tree / "firmware")
-        shutil.copytree(self.root / "hal", tree / "hal")
-        shutil.copytree(self.root / "tests" / "unit", tree / "tests" / "unit")
-        path = tree / mutant.file
-        if not path.is_file():
-            raise Failure(f"no such file: {mutant.file}")
-        text = path.read_text(encoding="utf-8")
-        if text.count(mutant.old) != 1:
-            raise Failure(f"found {text.count(mutant.old)} times in {mutant.file}, "
-                          f"not once: {mutant.old!r}")
-        path.write_text(text.replace(mutant.old, mutant.new), encoding="utf-8")
-        replaced = {}
-        for source in self.linked[mutant.numeric, mutant.test]:
-            if mutant.file in self.dependencies[mutant.numeric, source]:
-                replaced[source] = (tree / "objects" / source).with_suffix(".o")
-                self.compile(tree, tree / source, mutant.numeric, replaced[source])
-        if not replaced:
-            raise Failure(f"{mutant.file} is not part of test_{mutant.test}")
-        return self.run(mutant.numeric, mutant.test, replaced, tree)
+def broken(build, number, mutant):
+    """What the test prints with the mutant in place."""
+    path = build.root / mutant.file
+    if not path.is_file():
+        raise Failure(f"no such file: {mutant.file}")
+    text = path.read_text(encoding="utf-8")
+    if text.count(mutant.old) != 1:
+        raise Failure(f"found {text.count(mutant.old)} times in {mutant.file}, "
+                      f"not once: {mutant.old!r}")
+    folder = build.scratch / f"mutant-{number}"
+    overlay = overlay_of(folder / "tree", mutant.file, text.replace(mutant.old, mutant.new))
+    replaced = {}
+    for source in build.affected(mutant.numeric, mutant.test, mutant.file):
+        replaced[source] = (folder / "objects" / source).with_suffix(".o")
+        build.compile(source, mutant.numeric, replaced[source], overlay)
+    if not replaced:
+        raise Failure(f"{mutant.file} is not part of test_{mutant.test}")
+    return build.run(mutant.numeric, mutant.test, replaced, folder).output
 
 
 def verdict(output, name):
@@ -145,7 +50,7 @@ def check(build, number, mutant, unbroken):
     try:
         if not verdict(unbroken[mutant.numeric, mutant.test], mutant.fails):
             raise Failure(f"test_{mutant.fails} fails without it")
-        if verdict(build.broken(number, mutant), mutant.fails):
+        if verdict(broken(build, number, mutant), mutant.fails):
             raise Failure(f"survives test_{mutant.fails}")
     except Failure as failure:
         return f"{mutant.file}: {mutant.old!r} -> {mutant.new!r}: {failure}"
@@ -156,8 +61,7 @@ def unbroken_outputs(build, wanted):
     outputs = {}
     for numeric, test in wanted:
         folder = build.scratch / "programs" / f"{test}-{numeric}"
-        folder.mkdir(parents=True)
-        outputs[numeric, test] = build.run(numeric, test, {}, folder)
+        outputs[numeric, test] = build.run(numeric, test, {}, folder).output
     return outputs
 
 

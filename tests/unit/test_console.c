@@ -603,6 +603,201 @@ static void test_the_longest_answers_are_not_cut(void)
     }
 }
 
+/* Every word of it: nothing that another setting or board would change is left out. */
+static void test_the_start_names_settings_board_and_what_the_hold_bears(void)
+{
+    char expected[500];
+
+    (void)snprintf(expected, sizeof expected,
+                   "version, %s, on bench; settings: given resistance_ohm=0.37 inductance_H=0.0009 "
+                   "torque_constant_Nm_A=0.157 viscous_friction_Nms_rad=0.000307 "
+                   "inertia_kgm2=0.0001562 rated_current_A=3 supply_V=24 rotor_teeth=50 "
+                   "law=state-feedback feedback=sensorless blind_below_rad_s=0.00690436 "
+                   "hold_torque_Nm=0.471 hold_load_step_Nm=0.341287 hold_heat_W=3.33; "
+                   "started by: crash: hard fault at 0x08001234\n",
+                   STEADYSTEP_NUM == NUM_FLOAT   ? "float"
+                   : STEADYSTEP_NUM == NUM_FIXED ? "fixed"
+                                                 : "double");
+    application_background(&bench.application);
+    TEST_ASSERT_EQUAL_STRING(expected, bench_heard());
+}
+
+/* The contract of the line, once more from outside. */
+static void test_every_command_says_what_it_takes(void)
+{
+    static const char *const usage[][2] = {
+        {"help help", "help: lists commands; help <command> explains one"},
+        {"help state", "state: what it does and measures"},
+        {"help cycles", "cycles: cycles of the control interrupt, mean and most; cycles reset"},
+        {"help move", "move position_rad= [ duration_s= ramp_s= jerk_s= at= ]: jerk-limited move;"},
+        {"help get", "get: a setting: value, unit, range, default; get hold* lists those"},
+        {"help set", "set: set hold_current_A 1.2, or default; acts at the next enable"},
+        {"help enable", "enable [ at= ]: offset calibration, then the hold"},
+        {"help disable", "disable [ at= ]: opens the bridge; clears a fault"},
+        {"help move-smooth",
+         "move-smooth position_rad= duration_s= ramp_s= jerk_s= [ at= ]: jerk-limited"},
+        {"help move-trapezoid", "move-trapezoid position_rad= duration_s= ramp_s= [ at= ]: "},
+        {"help step", "step position_rad= [ at= ]: the reference jumps to a position"},
+        {"help sine", "sine amplitude_rad= frequency_Hz= [ ramp_s= cycles= at= ]: about where"},
+        {"help set-point", "set-point position_rad= [ interval_s= acceleration_rad_s2= "
+                           "jerk_rad_s3= at= ]: the first begins a stream"},
+        {"help velocity", "velocity speed_rad_s= acceleration_rad_s2= jerk_rad_s3= [ at= ]: "},
+        {"help retarget",
+         "retarget position_rad= speed_rad_s= acceleration_rad_s2= jerk_rad_s3= [ at= ]: "},
+        {"help store", "store: keeps settings and what was learned;"},
+        {"help", "help, state, cycles, signals, move, enable, disable, hold, move-trapezoid, "
+                 "move-smooth, step, stop, sine, set-point, velocity, retarget, store, get, set, "
+                 "defaults; help <command> explains one\n"},
+    };
+    char expected[300];
+
+    application_background(&bench.application);
+    (void)bench_heard();
+    for (size_t i = 0; i < sizeof usage / sizeof usage[0]; i++) {
+        (void)snprintf(expected, sizeof expected, "ok %s", usage[i][1]);
+        answers(usage[i][0], expected);
+    }
+}
+
+static void test_state_and_signals_name_all_that_they_show(void)
+{
+    application_background(&bench.application);
+    (void)bench_heard();
+    TEST_ASSERT_EQUAL_STRING(
+        "ok signals state=switch-on-disabled fault=none period=4294967295 theta_est_rad=0 "
+        "omega_est_rad_s=0 load_torque_est_Nm=0 theta_ref_rad=0 omega_ref_rad_s=0 "
+        "reference_moving=no holding=no synchronism=sure i_d_A=0 i_q_A=0 i_d_ref_A=0 i_q_ref_A=0 "
+        "u_d_V=0 u_q_V=0 resistance_est_ohm=0.37 bus_V=24 phase_imbalance=0 "
+        "reference_underruns=0 commands_dropped=0 dropped_kind=enable\n",
+        bench_ask("signals"));
+    TEST_ASSERT_EQUAL_STRING(
+        "ok switch-on-disabled fault=none period=4294967295 position_rad=0 speed_rad_s=0 "
+        "load_torque_Nm=0 "
+        "reference_rad=0 reference_rad_s=0 moving=no holding=no synchronism=sure i_d_A=0 i_q_A=0 "
+        "resistance_ohm=0.37 bus_V=24 underruns=0 dropped=0 law=state-feedback "
+        "feedback=sensorless; version\n",
+        bench_ask("state"));
+}
+
+static const char *const parameters[] = {
+    "position_rad",  "duration_s",          "ramp_s",      "jerk_s",
+    "amplitude_rad", "frequency_Hz",        "cycles",      "interval_s",
+    "speed_rad_s",   "acceleration_rad_s2", "jerk_rad_s3", "at",
+};
+
+/* None of those that its usage does not name. */
+static void test_a_command_refuses_what_it_does_not_take(void)
+{
+    static const char *const commands[] = {"state",     "signals",  "enable",         "disable",
+                                           "hold",      "move",     "move-trapezoid", "move-smooth",
+                                           "step",      "stop",     "sine",           "store",
+                                           "set-point", "velocity", "retarget"};
+    char usage[BENCH_STREAM];
+    char line[60];
+    char words[60];
+
+    application_background(&bench.application);
+    (void)bench_heard();
+    for (size_t c = 0; c < sizeof commands / sizeof commands[0]; c++) {
+        (void)snprintf(line, sizeof line, "help %s", commands[c]);
+        (void)snprintf(usage, sizeof usage, "%s", bench_ask(line));
+        *strchr(usage, ':') = '\0';
+        for (size_t p = 0; p < sizeof parameters / sizeof parameters[0]; p++) {
+            (void)snprintf(words, sizeof words, " %s=", parameters[p]);
+            if (strstr(usage, words) == NULL) {
+                (void)snprintf(line, sizeof line, "%s %s=1", commands[c], parameters[p]);
+                (void)snprintf(words, sizeof words, "error: \"%s\": expected %s", parameters[p],
+                               commands[c]);
+                answers(line, words);
+            }
+        }
+    }
+}
+
+static const char *announced_with(enum drive_synchronism synchronism)
+{
+    drive->synchronism.shown = synchronism;
+    bench_periods(3);
+    return bench_heard();
+}
+
+static void test_what_becomes_of_synchronism_is_announced_once_and_in_operation_only(void)
+{
+    application_background(&bench.application);
+    (void)bench_heard();
+    TEST_ASSERT_EQUAL_STRING("", announced_with(DRIVE_SYNCHRONISM_DOUBTFUL));
+    drive->synchronism.shown = DRIVE_SYNCHRONISM_SURE;
+    enable();
+    TEST_ASSERT_EQUAL_STRING("warning: synchronism doubtful: near the end of the torque, or the "
+                             "rotor beside its estimate\n",
+                             announced_with(DRIVE_SYNCHRONISM_DOUBTFUL));
+    TEST_ASSERT_EQUAL_STRING("", announced_with(DRIVE_SYNCHRONISM_DOUBTFUL));
+    TEST_ASSERT_EQUAL_STRING("warning: stalled: the rotor does not follow, although the estimate "
+                             "is sound\n",
+                             announced_with(DRIVE_SYNCHRONISM_STALLED));
+    TEST_ASSERT_EQUAL_STRING("synchronism: sure again\n", announced_with(DRIVE_SYNCHRONISM_SURE));
+    TEST_ASSERT_EQUAL_STRING("warning: synchronism lost: the rotor is not where the estimate has "
+                             "it\n",
+                             announced_with(DRIVE_SYNCHRONISM_LOST));
+    answers("disable", "ok disable at=");
+    TEST_ASSERT_EQUAL_STRING("", announced_with(DRIVE_SYNCHRONISM_LOST));
+}
+
+static void test_a_reference_that_ran_dry_is_announced(void)
+{
+    enable();
+    drive->planner.underruns++;
+    bench_periods(3);
+    TEST_ASSERT_EQUAL_STRING("warning: the reference rests: what continues it came too late\n",
+                             bench_heard());
+}
+
+static void test_two_commands_dropped_at_once_are_counted_together(void)
+{
+    enable();
+    drive->commands.dropped += 2u;
+    bench_periods(3);
+    TEST_ASSERT_EQUAL_STRING(
+        "warning: 2 commands dropped: accepted, but not possible when the time to act came\n",
+        bench_heard());
+}
+
+static void test_a_position_that_was_found_says_how_and_how_sure(void)
+{
+    static const char *const by[] = {" found_by=alignment confidence=2.5\n",
+                                     " found_by=impulses confidence=2.5\n"};
+
+    for (int impulses = 0; impulses < 2; impulses++) {
+        setUp();
+        enable();
+        drive->params.enabling.detects_position = true;
+        drive->enabling.detection.by_impulses = impulses == 1;
+        drive->enabling.detection.asymmetry = NUM(0.5);
+        drive->enabling.detection.uncertainty = NUM(0.2);
+        bench.application.console.announced.state_since++;
+        bench_periods(3);
+        const char *heard = bench_heard();
+
+        assert_begins(heard, "ready: period=11 reference_rad=0 resistance_ohm=0.37");
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(heard, by[impulses]), heard);
+    }
+}
+
+static void test_cycles_show_mean_and_most_of_what_was_counted_beside_the_budget(void)
+{
+    static const char none[] = "ok cycles periods=0: none counted yet, or this board does not "
+                               "count\n";
+    static const char some[] = "ok cycles periods=4 mean=1250 most=1700 budget=15300\n";
+
+    application_background(&bench.application);
+    (void)bench_heard();
+    TEST_ASSERT_EQUAL_STRING(none, bench_ask("cycles"));
+    bench.application.cycles = (struct control_cycles){.periods = 4, .sum = 5000, .most = 1700};
+    TEST_ASSERT_EQUAL_STRING(some, bench_ask("cycles"));
+    TEST_ASSERT_EQUAL_STRING(some, bench_ask("cycles reset"));
+    TEST_ASSERT_EQUAL_STRING(none, bench_ask("cycles"));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -640,5 +835,14 @@ int main(void)
     RUN_TEST(test_silence_at_rest_is_no_timeout);
     RUN_TEST(test_long_and_damaged_lines_are_refused_as_a_whole);
     RUN_TEST(test_the_longest_answers_are_not_cut);
+    RUN_TEST(test_the_start_names_settings_board_and_what_the_hold_bears);
+    RUN_TEST(test_every_command_says_what_it_takes);
+    RUN_TEST(test_a_command_refuses_what_it_does_not_take);
+    RUN_TEST(test_state_and_signals_name_all_that_they_show);
+    RUN_TEST(test_what_becomes_of_synchronism_is_announced_once_and_in_operation_only);
+    RUN_TEST(test_a_reference_that_ran_dry_is_announced);
+    RUN_TEST(test_two_commands_dropped_at_once_are_counted_together);
+    RUN_TEST(test_a_position_that_was_found_says_how_and_how_sure);
+    RUN_TEST(test_cycles_show_mean_and_most_of_what_was_counted_beside_the_budget);
     return UNITY_END();
 }

@@ -135,6 +135,22 @@ static void test_fixed_point_refuses_peaks_beyond_its_range(void)
 #endif
 }
 
+/* An alignment says where the rotor is; the counts go on from there. */
+static void test_it_goes_on_from_where_the_rotor_is_placed(void)
+{
+    const double from_rad = 0.02;
+    const double count_rad = TWO_PI / COUNTS;
+
+    reset(0.0);
+    high_gain_observer_place(&observer, position_from_rad(from_rad, 50), 1000);
+    for (int k = 1; k <= 50; k++) {
+        (void)high_gain_observer_step(&observer, &params, no_current, no_current, 1000 + 100 * k);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(100.0 * count_rad, from_rad + 5000.0 * count_rad,
+                              position_to_rad(observer.estimate.rotor.position, 50));
+    TEST_ASSERT_DOUBLE_WITHIN(2e-3, 100.0 * count_rad / PERIOD_S, speed_rad_s());
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -143,5 +159,6 @@ int main(void)
     RUN_TEST(test_it_is_stable_with_an_epsilon_of_one_period);
     RUN_TEST(test_an_epsilon_beyond_what_can_be_computed_is_refused);
     RUN_TEST(test_fixed_point_refuses_peaks_beyond_its_range);
+    RUN_TEST(test_it_goes_on_from_where_the_rotor_is_placed);
     return UNITY_END();
 }

@@ -241,6 +241,25 @@ static void test_the_asymmetry_is_what_saturation_makes(void)
                                   (3.0 * motor.saturation * MAGNET_A * peak * peak));
 }
 
+/* As impulses of the full response would have shown it: 1/(1 + e)^2 of what these have. */
+static void test_the_full_asymmetry_is_that_of_the_response_designed_for(void)
+{
+    static const double excess[] = {-0.1, 0.0, 0.1, 0.19};
+
+    for (int i = 0; i < 4; i++) {
+        const num_t response =
+            num_from_double((1.0 + excess[i]) / coef_to_double(params.per_response));
+
+        detection.asymmetry = NUM(0.1);
+        detection.response = (struct phases){response, response};
+        TEST_ASSERT_NUM_WITHIN(2.5e-3, 0.1 / (1.0 + excess[i]) / (1.0 + excess[i]),
+                               initial_position_full_asymmetry(&detection, &params));
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(0.15, 1.0 / coef_to_double(params.per_response),
+                              2.0 * num_to_double(params.response_min));
+    TEST_ASSERT_TRUE(params.response_max > params.response_min);
+}
+
 static void test_no_impulse_reaches_the_overcurrent_trip(void)
 {
     for (int step = 0; step < 8; step += EVERY) {
@@ -433,6 +452,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_impulses_find_the_rotor_all_around_and_leave_it_where_it_was);
     RUN_TEST(test_the_asymmetry_is_what_saturation_makes);
+    RUN_TEST(test_the_full_asymmetry_is_that_of_the_response_designed_for);
     RUN_TEST(test_no_impulse_reaches_the_overcurrent_trip);
     RUN_TEST(test_a_lower_trip_makes_smaller_impulses);
     RUN_TEST(test_wrong_motor_parameters_leave_no_error);

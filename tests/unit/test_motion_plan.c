@@ -177,6 +177,20 @@ static void test_a_speed_is_reached_without_a_kink_and_kept(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-4, 40.0 / 150.0, num_to_double(reference.next.speed));
 }
 
+/* Else what rounding has left would be the beginning of what follows. */
+static void test_where_a_speed_is_reached_there_is_no_acceleration(void)
+{
+    for (int i = 1; i <= 20; i++) {
+        struct motion_state end = {.acceleration = 2 * i * 123457, .speed = 1000003 * i};
+        struct motion_plan plan;
+
+        motion_plan_begin(&plan, &end, 0);
+        motion_plan_speed(&plan, &end, limits.speed * i / 20.0, &limits);
+        TEST_ASSERT_EQUAL_INT64(0, end.acceleration);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, limits.speed * i / 20.0, motion_to_turns(end.speed));
+    }
+}
+
 /* Whatever the reference does, a new speed preempts without a kink. */
 static void test_speeds_follow_one_another_in_mid_change(void)
 {
@@ -585,6 +599,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_closed_form_is_the_sum_of_the_additions_bit_for_bit);
     RUN_TEST(test_a_speed_is_reached_without_a_kink_and_kept);
+    RUN_TEST(test_where_a_speed_is_reached_there_is_no_acceleration);
     RUN_TEST(test_speeds_follow_one_another_in_mid_change);
     RUN_TEST(test_a_new_target_is_reached_exactly_from_any_motion);
     RUN_TEST(test_a_retarget_takes_the_time_of_a_jerk_limited_move);

@@ -337,6 +337,46 @@ static void test_a_converter_code_becomes_a_number(void)
                               num_to_double(num_from_code(-2097151, per_fine_code)));
 }
 
+/* What the product is cut to before its last shift is less than a tenth of the resolution here. */
+static void test_products_to_nearest_do_not_lean_to_either_side(void)
+{
+    static const double gains[] = {-0.03, 0.0101, -0.0013, 1.7e-4};
+    double lean = 0.0;
+
+    for (int g = 0; g < 4; g++) {
+        const coef_t gain = coef_from_double(gains[g]);
+        const double k = coef_to_double(gain);
+
+        for (int i = -50; i < 50; i++) {
+            const num_t a = num_from_double(0.01234567 * i + 0.0005);
+            const double error =
+                num_to_double(num_mul_coef_nearest(a, gain)) - k * num_to_double(a);
+            const double limit = STEADYSTEP_NUM == NUM_FIXED ? 0.6 / 67108864.0 : 1e-7;
+
+            TEST_ASSERT_DOUBLE_WITHIN(limit, 0.0, error);
+            lean += error / 400.0;
+        }
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(STEADYSTEP_NUM == NUM_FIXED ? 0.1 / 67108864.0 : 1e-8, 0.0, lean);
+}
+
+/* k (1 + more), also where its mantissa grows by a bit. */
+static void test_a_gain_is_changed_by_a_share(void)
+{
+    static const double gains[] = {1.0, 0.99, 0.75, -0.99, 1e-3, 31.9, 1000.0, 12000.0, -3e-4};
+    static const double shares[] = {-0.45, -0.1, -1e-3, 0.0, 1e-3, 0.02, 0.1, 0.45};
+
+    for (int g = 0; g < 9; g++) {
+        for (int s = 0; s < 8; s++) {
+            const coef_t gain = coef_from_double(gains[g]);
+            const double expected = coef_to_double(gain) * (1.0 + shares[s]);
+            const coef_t more = coef_more(gain, num_from_double(shares[s]));
+
+            TEST_ASSERT_DOUBLE_WITHIN(fabs(expected) / 12000.0, expected, coef_to_double(more));
+        }
+    }
+}
+
 static void test_a_number_becomes_the_nearest_count(void)
 {
     static const double counts[] = {4250.0, 2125.0, 32767.0};
@@ -491,6 +531,8 @@ int main(void)
     RUN_TEST(test_a_gain_of_any_size_keeps_15_bits);
     RUN_TEST(test_a_gain_applied_is_the_gain_asked_for);
     RUN_TEST(test_a_converter_code_becomes_a_number);
+    RUN_TEST(test_products_to_nearest_do_not_lean_to_either_side);
+    RUN_TEST(test_a_gain_is_changed_by_a_share);
     RUN_TEST(test_a_number_becomes_the_nearest_count);
     RUN_TEST(test_a_square_root_keeps_16_bits);
 #if STEADYSTEP_NUM == NUM_FIXED

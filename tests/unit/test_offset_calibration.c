@@ -318,6 +318,25 @@ static void test_finer_converters_have_as_many_more_codes(void)
     TEST_ASSERT_EQUAL(OFFSETS_OUT_OF_RANGE, calibrate());
 }
 
+/* Of one code more in each sample. The largest that passes is the whole number below the limit. */
+static void test_a_shift_passes_up_to_its_limit_and_not_beyond(void)
+{
+    for (int channel = 0; channel < 2; channel++) {
+        setUp();
+        const int kind = 0; /* currents: a voltage may differ by anything */
+        const int limit = params.shift_max[kind] / OFFSET_SAMPLES;
+
+        world.more_on[channel] = limit;
+        TEST_ASSERT_EQUAL(OFFSETS_FOUND, calibrate());
+        params.shift_max[kind] = limit * OFFSET_SAMPLES;
+        TEST_ASSERT_EQUAL(OFFSETS_FOUND, calibrate());
+        world.more_on[channel] = -limit;
+        TEST_ASSERT_EQUAL(OFFSETS_FOUND, calibrate());
+        params.shift_max[kind] -= 1;
+        TEST_ASSERT_EQUAL(OFFSETS_OUT_OF_RANGE, calibrate());
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -334,5 +353,6 @@ int main(void)
     RUN_TEST(test_a_rotor_that_is_turned_is_noticed_by_its_currents);
     RUN_TEST(test_noise_alone_is_no_rotor_that_turns);
     RUN_TEST(test_finer_converters_have_as_many_more_codes);
+    RUN_TEST(test_a_shift_passes_up_to_its_limit_and_not_beyond);
     return UNITY_END();
 }

@@ -291,6 +291,15 @@ static void test_every_element_has_an_index_of_its_own(void)
     TEST_ASSERT_NULL(setting_of_index(0x2000));
 }
 
+/* So many indices are theirs for good. */
+static void test_arrays_keep_their_number_of_elements(void)
+{
+    TEST_ASSERT_EQUAL_STRING("law_gains", setting_of_index(0x2180)->name);
+    TEST_ASSERT_EQUAL_UINT32(12, setting_of_index(0x2180)->count);
+    TEST_ASSERT_EQUAL_STRING("detent_torque_Nm", setting_of_index(0x21c0)->name);
+    TEST_ASSERT_EQUAL_UINT32(6, setting_of_index(0x21c0)->count);
+}
+
 static void test_a_refusal_says_what_was_asked_and_what_is_allowed(void)
 {
     settings.hold_current_A = 3.5;
@@ -390,6 +399,7 @@ int main(void)
     RUN_TEST(test_every_setting_is_refused_beyond_its_range_by_name_bound_and_unit);
     RUN_TEST(test_a_setting_that_is_not_finite_is_refused);
     RUN_TEST(test_every_element_has_an_index_of_its_own);
+    RUN_TEST(test_arrays_keep_their_number_of_elements);
     RUN_TEST(test_a_refusal_says_what_was_asked_and_what_is_allowed);
     RUN_TEST(test_the_rated_current_has_a_range_of_its_own);
     RUN_TEST(test_names_are_spelt_as_scenarios_and_the_serial_line_do);

@@ -1,0 +1,216 @@
+/* What breaks in a drive, in closed loop: which fault says so, and how soon. */
+#include <stdio.h>
+
+#include "tests/unit/drive_bench.h"
+
+enum breakage {
+    LEAD_A,
+    LEAD_B,
+    SENSOR_A, /* shows what it showed last */
+    SENSOR_B,
+    FROZEN_ENCODER,
+    REVERSED_ENCODER,
+    HALF_OF_THE_COUNTS,
+    HELD_ROTOR,
+    OVERLOAD, /* 0.6 N m, the rated torque is 0.47 */
+};
+
+static enum breakage breakage;
+static bool broken;
+static struct hal_samples last; /* before it broke */
+
+static void disturb(struct hal_samples *samples)
+{
+    const int32_t counted = samples->encoder_count - last.encoder_count;
+
+    if (!broken) {
+        last = *samples;
+    } else if (breakage == SENSOR_A) {
+        samples->current_a = last.current_a;
+    } else if (breakage == SENSOR_B) {
+        samples->current_b = last.current_b;
+    } else if (breakage == FROZEN_ENCODER) {
+        samples->encoder_count = last.encoder_count;
+    } else if (breakage == REVERSED_ENCODER) {
+        samples->encoder_count = last.encoder_count - counted;
+    } else if (breakage == HALF_OF_THE_COUNTS) {
+        samples->encoder_count = last.encoder_count + counted / 2;
+    }
+}
+
+void setUp(void)
+{
+    drive_bench_reset();
+    bridge.background = true;
+    bridge.disturb = disturb;
+    broken = false;
+    encoder_facts.encoder_counts_per_turn = 4000;
+}
+
+void tearDown(void)
+{
+}
+
+static void with_encoder(enum position_law law)
+{
+    board.facts = &encoder_facts;
+    drive_settings_select_feedback(&settings, DRIVE_FEEDBACK_ENCODER);
+    settings.encoder_zero_known = true;
+    drive_settings_select_law(&settings, law);
+}
+
+static void break_it(enum breakage what)
+{
+    breakage = what;
+    broken = true;
+    bridge.open_a = what == LEAD_A;
+    bridge.open_b = what == LEAD_B;
+    if (what == HELD_ROTOR) {
+        motor.motor.inertia_kgm2 = IMPOSED_SPEED;
+        motor.speed_rad_s = 0.0;
+    } else if (what == OVERLOAD) {
+        motor.load_torque_Nm = 0.6;
+    }
+}
+
+/* Periods until the fault; 4000: there is none. */
+static int periods_until_fault(void)
+{
+    int periods = 0;
+
+    while (drive.supervision.fault == DRIVE_FAULT_NONE && periods < 4000) {
+        period();
+        periods++;
+    }
+    return periods;
+}
+
+struct row {
+    enum breakage what;
+    bool in_motion; /* at 20 rad/s, else at rest, and the motion begins */
+    const char *fault;
+    int earliest, latest; /* periods */
+    int later;            /* in motion: periods in which the current of phase a turns on */
+};
+
+static void shows(const struct row *row)
+{
+    char words[80];
+
+    (void)snprintf(words, sizeof words, "breakage %d%s: after", (int)row->what,
+                   row->in_motion ? " in motion" : "");
+    enable();
+    run(500);
+    motor.load_torque_Nm = 0.05;
+    if (row->in_motion) {
+        move(6.0, 0.3);
+        run(1000 + row->later);
+    }
+    break_it(row->what);
+    if (!row->in_motion) {
+        move(6.0, 0.3);
+    }
+    const int periods = periods_until_fault();
+
+    TEST_ASSERT_EQUAL_STRING_MESSAGE(row->fault, drive_fault_name(drive.supervision.fault), words);
+    TEST_ASSERT_INT_WITHIN_MESSAGE((row->latest - row->earliest) / 2,
+                                   (row->latest + row->earliest) / 2, periods, words);
+    TEST_ASSERT_EQUAL_INT(DRIVE_FAULT, drive.supervision.state);
+    period();
+    period();
+    TEST_ASSERT_FALSE(bridge.in_force.bridge_on);
+}
+
+static void test_without_an_encoder(void)
+{
+    static const struct row rows[] = {
+        {LEAD_A, true, "open-phase-a", 150, 260, 0},
+        {LEAD_B, true, "open-phase-b", 150, 260, 0},
+        {SENSOR_B, true, "current-sensor-b", 200, 350, 0},
+        {SENSOR_A, true, "current-sensor-a", 200, 350, 11},
+        {HELD_ROTOR, false, "stalled", 205, 245, 0},
+        {HELD_ROTOR, true, "stalled", 25, 55, 0},
+        {OVERLOAD, false, "stalled", 1000, 1110, 0},
+        {OVERLOAD, true, "stalled", 1000, 1110, 0},
+    };
+
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
+        shows(&rows[i]);
+    }
+}
+
+static void test_with_an_encoder_and_its_default_law(void)
+{
+    static const struct row rows[] = {
+        {LEAD_A, false, "open-phase-a", 90, 150, 0},
+        {LEAD_B, false, "open-phase-b", 10, 50, 0},
+        {LEAD_A, true, "open-phase-a", 500, 900, 0},
+        {LEAD_B, true, "open-phase-b", 600, 1100, 0},
+        {SENSOR_B, true, "current-sensor-b", 20, 90, 0},
+        {SENSOR_A, true, "current-sensor-a", 20, 90, 11},
+        {FROZEN_ENCODER, false, "following-error", 365, 395, 0},
+        {FROZEN_ENCODER, true, "following-error", 125, 155, 0},
+        {REVERSED_ENCODER, true, "estimate-range", 4, 16, 0},
+        {HALF_OF_THE_COUNTS, false, "following-error", 385, 415, 0},
+        {HALF_OF_THE_COUNTS, true, "following-error", 155, 185, 0},
+        {HELD_ROTOR, false, "following-error", 365, 395, 0},
+        {HELD_ROTOR, true, "following-error", 125, 155, 0},
+        {OVERLOAD, false, "following-error", 200, 240, 0},
+        {OVERLOAD, true, "following-error", 215, 265, 0},
+    };
+
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
+        with_encoder(POSITION_LAW_FEEDBACK_LINEARISATION);
+        shows(&rows[i]);
+    }
+}
+
+/* A current law asks less of a phase that does not answer. */
+static void test_with_an_encoder_and_state_feedback(void)
+{
+    static const struct row rows[] = {
+        {LEAD_A, false, "open-phase-a", 120, 180, 0},
+        {LEAD_B, false, "open-phase-b", 30, 70, 0},
+        {SENSOR_A, false, "open-phase-a", 150, 230, 0}, /* at rest it shows nothing to flow */
+        {SENSOR_B, true, "current-sensor-b", 90, 140, 0},
+        {SENSOR_A, true, "current-sensor-a", 90, 150, 11},
+        {REVERSED_ENCODER, true, "estimate-range", 7, 18, 0},
+    };
+
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
+        with_encoder(POSITION_LAW_STATE_FEEDBACK);
+        shows(&rows[i]);
+    }
+}
+
+static void held_under(enum drive_synchronism_policy policy)
+{
+    setUp();
+    settings.synchronism_policy = policy;
+    enable();
+    run(500);
+    break_it(HELD_ROTOR);
+    move(6.0, 0.3);
+    run(1000);
+}
+
+static void test_a_policy_warns_or_looks_away_instead(void)
+{
+    held_under(DRIVE_SYNCHRONISM_WARN);
+    TEST_ASSERT_EQUAL_STRING("stalled", drive_synchronism_name(signals().synchronism));
+    held_under(DRIVE_SYNCHRONISM_OFF);
+    TEST_ASSERT_EQUAL_STRING("sure", drive_synchronism_name(signals().synchronism));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_without_an_encoder);
+    RUN_TEST(test_with_an_encoder_and_its_default_law);
+    RUN_TEST(test_with_an_encoder_and_state_feedback);
+    RUN_TEST(test_a_policy_warns_or_looks_away_instead);
+    return UNITY_END();
+}

@@ -1,0 +1,192 @@
+/*
+ * A block that begins anew is the same whatever came before: begun in cleared memory and in memory
+ * full of a past, it is equal but for padding and for what it leaves on purpose.
+ */
+#include <stddef.h>
+#include <string.h>
+
+#include "firmware/drive/following_error.h"
+#include "firmware/estimator/encoder_alignment.h"
+#include "firmware/estimator/synchronism_monitor.h"
+#include "tests/unit/drive_bench.h"
+
+/* Bytes of a block that may differ. */
+struct left {
+    size_t from, to;
+};
+
+#define END_OF(type, member) (offsetof(type, member) + sizeof(((type *)NULL)->member))
+#define LEAVES(type, member)                                                                       \
+    {                                                                                              \
+        offsetof(type, member), END_OF(type, member)                                               \
+    }
+#define LEAVES_UP_TO(type, a, b)                                                                   \
+    {                                                                                              \
+        offsetof(type, a), END_OF(type, b)                                                         \
+    }
+#define PADDING(type, behind, next)                                                                \
+    {                                                                                              \
+        END_OF(type, behind), offsetof(type, next)                                                 \
+    }
+#define PADDING_BEHIND(type, last)                                                                 \
+    {                                                                                              \
+        END_OF(type, last), sizeof(type)                                                           \
+    }
+#define NOTHING                                                                                    \
+    {                                                                                              \
+        0, 0                                                                                       \
+    }
+
+static bool may_differ(size_t byte, const struct left *left, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (byte >= left[i].from && byte < left[i].to) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* `begin` begins `block`. */
+#define BEGINS_ANEW(type, begin, ...)                                                              \
+    do {                                                                                           \
+        static const struct left left[] = {__VA_ARGS__};                                           \
+        static union {                                                                             \
+            type block;                                                                            \
+            uint8_t byte[sizeof(type)];                                                            \
+        } cleared, used;                                                                           \
+        type *block = &cleared.block;                                                              \
+                                                                                                   \
+        memset(&cleared, 0, sizeof cleared);                                                       \
+        memset(&used, 1, sizeof used);                                                             \
+        begin;                                                                                     \
+        block = &used.block;                                                                       \
+        begin;                                                                                     \
+        for (size_t i = 0; i < sizeof(type); i++) {                                                \
+            if (!may_differ(i, left, sizeof left / sizeof left[0])) {                              \
+                TEST_ASSERT_EQUAL_HEX8_MESSAGE(cleared.byte[i], used.byte[i], #type);              \
+            }                                                                                      \
+        }                                                                                          \
+    } while (0)
+
+static const struct position at = {3, 0x40000000u};
+
+void setUp(void)
+{
+    drive_bench_reset();
+    power_up();
+}
+
+void tearDown(void)
+{
+}
+
+static void test_the_blocks_of_the_control(void)
+{
+    const struct drive_params *p = &drive.params;
+
+    BEGINS_ANEW(struct measurement, measurement_reset(block, &p->measurement), NOTHING);
+    BEGINS_ANEW(struct current_control, current_control_reset(block), NOTHING);
+    BEGINS_ANEW(struct modulator, modulator_reset(block), NOTHING);
+    BEGINS_ANEW(struct actuation, actuation_reset(block), NOTHING);
+    BEGINS_ANEW(struct expectation, expectation_reset(block), NOTHING);
+    BEGINS_ANEW(union position_law_state, position_law_reset(block), NOTHING);
+    BEGINS_ANEW(struct following_error, following_error_reset(block), NOTHING);
+    BEGINS_ANEW(struct synchronism_monitor,
+                synchronism_monitor_reset(block, &drive.synchronism.params), NOTHING);
+    /* a hold that is not active has no frame */
+    BEGINS_ANEW(struct standstill_hold, standstill_hold_reset(block, &p->hold),
+                PADDING(struct standstill_hold, active, frame),
+                LEAVES_UP_TO(struct standstill_hold, frame, leads),
+                PADDING(struct standstill_hold, leads, current));
+    /* what was learned stays */
+    BEGINS_ANEW(struct detent_compensation, detent_compensation_reset(block),
+                LEAVES(struct detent_compensation, coefficient),
+                PADDING(struct detent_compensation, unsettled_periods, torque),
+                PADDING(struct detent_compensation, followed, follower),
+                PADDING_BEHIND(struct detent_compensation, follower),
+                LEAVES(struct detent_compensation, follower));
+}
+
+static void test_the_reference(void)
+{
+    /* at rest there is neither profile nor plan */
+    BEGINS_ANEW(
+        struct reference, reference_reset(block, at), PADDING(struct reference, course, now),
+        PADDING(struct reference, now.moving, next),
+        PADDING(struct reference, next.moving, slow_periods),
+        PADDING(struct reference, slow_periods, profile), LEAVES(struct reference, profile),
+        LEAVES(struct reference, creeps), LEAVES(struct reference, stopped),
+        PADDING(struct reference, jerks, at), PADDING(struct reference, at.turns, at.fraction),
+        LEAVES_UP_TO(struct reference, plan, segment), LEAVES(struct reference, epoch),
+        PADDING(struct reference, epoch, continuation), LEAVES(struct reference, continuation));
+    TEST_ASSERT_EQUAL_UINT32(drive.reference.epoch, 1u); /* plans of before are void */
+    reference_reset(&drive.reference, at);
+    TEST_ASSERT_EQUAL_UINT32(drive.reference.epoch, 2u);
+}
+
+static void test_the_estimators(void)
+{
+    const struct estimator_params *p = &drive.params.estimator;
+    const struct estimator_start start = {.position = at,
+                                          .encoder_position = at,
+                                          .load_torque = NUM(0.125),
+                                          .resistance = NUM(0.5),
+                                          .unloaded_periods = 7,
+                                          .encoder_count = 11};
+
+    BEGINS_ANEW(struct invariant_ekf, invariant_ekf_begin(block, &p->invariant_ekf, &start),
+                PADDING(struct invariant_ekf, swung_up, following_periods));
+    BEGINS_ANEW(struct steady_state_ekf,
+                steady_state_ekf_begin(block, &p->steady_state_ekf, &start), NOTHING);
+    BEGINS_ANEW(struct encoder_observer,
+                encoder_observer_begin(block, &p->encoder_observer, &start),
+                PADDING(struct encoder_observer, estimate, encoder),
+                PADDING(struct encoder_observer, encoder.turns, encoder.fraction),
+                PADDING(struct encoder_observer, encoder.count, known_torque),
+                PADDING_BEHIND(struct encoder_observer, known_torque));
+    BEGINS_ANEW(struct high_gain_observer,
+                high_gain_observer_begin(block, &p->high_gain_observer, &start),
+                PADDING(struct high_gain_observer, estimate, encoder),
+                PADDING(struct high_gain_observer, encoder.turns, encoder.fraction),
+                PADDING(struct high_gain_observer, encoder.count, measured),
+                PADDING_BEHIND(struct high_gain_observer, x));
+}
+
+static void test_what_runs_between_switched_off_and_operation(void)
+{
+    BEGINS_ANEW(struct held_angle, held_angle_start(block), NOTHING);
+    BEGINS_ANEW(struct offset_calibration, offset_calibration_reset(block),
+                PADDING_BEHIND(struct offset_calibration, bridge_on));
+    BEGINS_ANEW(struct initial_position,
+                initial_position_start(block, &drive.enabling.detection_params, 5u),
+                PADDING(struct initial_position, impulse, expected),
+                PADDING(struct initial_position, repetitions, final_angle),
+                PADDING(struct initial_position, direction, current_reference),
+                PADDING(struct initial_position, attempts, by_impulses),
+                PADDING(struct initial_position, by_impulses, angle),
+                PADDING(struct initial_position, angle, asymmetry));
+    /* found anew before they are asked for */
+    BEGINS_ANEW(struct encoder_alignment, encoder_alignment_start(block, 5),
+                LEAVES_UP_TO(struct encoder_alignment, lowest, mean),
+                PADDING(struct encoder_alignment, held, looked),
+                PADDING(struct encoder_alignment, deviation, deviation_on_way),
+                PADDING_BEHIND(struct encoder_alignment, rotor));
+    BEGINS_ANEW(struct phase_balance, phase_balance_start(block, 5u),
+                PADDING(struct phase_balance, periods, mean),
+                LEAVES_UP_TO(struct phase_balance, difference, reciprocal));
+    BEGINS_ANEW(struct standstill_pulses,
+                standstill_pulses_reset(block, &drive.standstill.params, NUM(0.1)),
+                PADDING(struct standstill_pulses, at_rest, command),
+                LEAVES(struct standstill_pulses, command), LEAVES(struct standstill_pulses, start));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_the_blocks_of_the_control);
+    RUN_TEST(test_the_reference);
+    RUN_TEST(test_the_estimators);
+    RUN_TEST(test_what_runs_between_switched_off_and_operation);
+    return UNITY_END();
+}
