@@ -33,10 +33,11 @@ struct PlantValues {
     plant::SensorConfig sensors;
     double bus_V = 0;            /* of the source */
     double coulomb_friction = 0; /* share of the holding torque */
+    double magnet_rise_K = 0;
 };
 
 /* What a value belongs to; each is handed to the plant as a whole. */
-enum class PlantPart { motor, sensors, bus, friction };
+enum class PlantPart { motor, sensors, bus, friction, magnet };
 
 struct DriftField {
     const char *key; /* as written under [plant] */
