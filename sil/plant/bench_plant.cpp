@@ -71,5 +71,16 @@ int main()
     measure("real, at speed", real, 0.0, 8.0);
     measure("real, d-axis current at rest", real, 1.5, 0.0);
     measure("real, at rest without current", real, 0.0, 0.0);
+    plant::Config as_built = real;
+    as_built.imperfections.iron.hysteresis = 0.02;
+    as_built.imperfections.iron.eddy_time_s = 6e-6;
+    as_built.imperfections.inductance_a_scale = 1.01;
+    as_built.imperfections.magnet_rise_K = 70;
+    as_built.sensors.divider_mismatch_a = 2.5e-3;
+    measure("as built, at speed", as_built, 0.0, 8.0);
+    measure("as built, d-axis current at rest", as_built, 1.5, 0.0);
+    measure("as built, at rest without current", as_built, 0.0, 0.0);
+    as_built.imperfections.belt.inertia_share = 0.5;
+    measure("as built with a belt, at speed", as_built, 0.0, 8.0);
     return 0;
 }

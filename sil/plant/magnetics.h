@@ -21,6 +21,11 @@
  *   i = x + b x^3 - I_f m                torque = Kx x . f - D4 sin 4 phi - Td2 ... - Td1 ...
  *
  * Kx = N L0 I_f, D4 = Td4 - (4/3) h Kx I_f.
+ *
+ * A phase whose L0 is s times that has the same flux of the magnet, so that its I_f is 1/s of it,
+ * and the same beta: its b is s^3 of it. |m|^2 has the mean I_f; what a phase's own then adds to
+ * the detent torque, two periods a tooth, is taken off Td2, but for h^2.
+ * A warm magnet has less I_f, and the detent goes with its square.
  */
 #ifndef STEADYSTEP_PLANT_MAGNETICS_H
 #define STEADYSTEP_PLANT_MAGNETICS_H
@@ -54,6 +59,10 @@ struct Magnetics {
     double detent_4 = 0.0, detent_2 = 0.0, detent_1 = 0.0; /* Td, N m */
     double teeth = 0.0;                                    /* N */
 
+    /* Of each phase: L0, I_f and b. */
+    Phases phase_inductance = {0.0, 0.0}, phase_magnet_A = {0.0, 0.0};
+    Phases phase_saturation = {0.0, 0.0};
+
     /* m and f of the axes. */
     Phases magnet_axis(Phases once, Phases thrice) const
     {
@@ -63,7 +72,12 @@ struct Magnetics {
     {
         return quarter_turn(once) - harmonic * exchanged(thrice);
     }
+    double mean_magnet_A() const
+    {
+        return 0.5 * (phase_magnet_A[0] + phase_magnet_A[1]);
+    }
     double unmagnetised_detent_4() const; /* D4 */
+    double unmagnetised_detent_2() const; /* of phases that differ */
 
     Phases current_A(Phases flux, const Axes &axes) const;
     Phases flux(Phases current_A, const Axes &axes) const; /* x of a current: its inverse */

@@ -54,8 +54,9 @@ struct MotorCoefficients {
 struct MotorIntegrals {
     Phases voltage_Vs = {0.0, 0.0}; /* since begin_period */
     double supplied_J = 0.0, diode_J = 0.0, copper_J = 0.0, friction_J = 0.0, load_J = 0.0;
-    double arc_J = 0.0, coulomb_J = 0.0, source_J = 0.0,
-           brake_J = 0.0; /* of a real motor and its supply */
+    /* Of a real motor, its supply and its belt. */
+    double arc_J = 0.0, coulomb_J = 0.0, source_J = 0.0, brake_J = 0.0;
+    double iron_J = 0.0, damping_J = 0.0;
 };
 
 class Motor

@@ -19,7 +19,10 @@ bool any(const ImperfectionConfig &x)
 {
     return x.saturation_depth != 0.0 || x.flux_harmonic_3 != 0.0 || x.detent_4 != 0.0 ||
            x.detent_2 != 0.0 || x.detent_1 != 0.0 || x.coulomb_friction != 0.0 ||
-           x.bridge_resistance_ohm != 0.0 || x.phase_voltage_filter_s != 0.0;
+           x.bridge_resistance_ohm != 0.0 || x.phase_voltage_filter_s != 0.0 ||
+           x.iron.hysteresis != 0.0 || x.iron.eddy_time_s != 0.0 || x.belt.inertia_share != 0.0 ||
+           x.resistance_a_scale != 1.0 || x.resistance_b_scale != 1.0 ||
+           x.inductance_a_scale != 1.0 || x.inductance_b_scale != 1.0 || x.magnet_rise_K != 0.0;
 }
 
 bool is_real(const Config &config)
@@ -70,6 +73,30 @@ double capacitor_of(const RealMotor &motor)
     return motor.capacitor_J();
 }
 
+double spring_of(const Motor &)
+{
+    return 0.0;
+}
+
+double spring_of(const RealMotor &motor)
+{
+    return motor.spring_J();
+}
+
+/* Of a phase's legs: means of their commanded shares of the bus, and whether they differ. */
+struct Legs {
+    Phases sum_share;
+    bool asked; /* for a voltage */
+};
+
+Legs legs_of(const Duties &duties, int half_period_counts)
+{
+    const std::uint16_t *high = duties.high_counts;
+    const double per_count = 1.0 / half_period_counts;
+    return {Phases{per_count * (high[0] + high[1]), per_count * (high[2] + high[3])},
+            high[0] != high[1] || high[2] != high[3]};
+}
+
 } // namespace
 
 struct Plant::Parts {
@@ -102,6 +129,8 @@ struct Plant::Parts {
     double capacitor_reference_J = 0.0;
     Phases measured_V = {0.0, 0.0}; /* phase voltages as they reach the converters */
     bool bridge_on = false;         /* in the period that ends at the present S(k) */
+    bool asked = false;             /* for a voltage, since the bridge came on */
+    Phases legs_share = {0.0, 0.0}; /* of the bus: sum of the legs of each phase in that period */
     Duties pending;                 /* computed from S(k-1), in force from S(k) on */
     std::uint64_t period = 0;       /* k of the present S(k) */
 };
@@ -120,6 +149,9 @@ void Plant::step(const Duties &duties)
     in_force.bridge_on = in_force.bridge_on && duties.bridge_on; /* off acts at once */
     plant.pending = duties;
     plant.bridge_on = in_force.bridge_on;
+    const Legs legs = legs_of(in_force, plant.config.bridge.half_period_counts);
+    plant.legs_share = legs.sum_share;
+    plant.asked = in_force.bridge_on && (plant.asked || legs.asked);
 
     const Timetable &timetable = plant.bridge.period(in_force);
     std::visit(
@@ -142,7 +174,8 @@ void Plant::observe()
     std::visit([this](const auto &motor) { observe(motor); }, plant.motor);
     samples_ =
         plant.sensors.sample(plant.period, {Phases{state_.i_a_A, state_.i_b_A}, plant.measured_V,
-                                            state_.bus_V, state_.theta_rad, plant.bridge_on});
+                                            state_.bus_V, state_.theta_rad, plant.bridge_on,
+                                            plant.asked, plant.legs_share * state_.bus_V});
 }
 
 /* What a change from outside can do to the true values; voltages are means of the period before. */
@@ -183,6 +216,9 @@ template <typename AnyMotor> void Plant::observe(const AnyMotor &motor)
         energy_.source = integrals.source_J;
         energy_.brake = integrals.brake_J;
         energy_.capacitor = capacitor_of(motor) - plant.capacitor_reference_J;
+        energy_.iron = integrals.iron_J;
+        energy_.damping = integrals.damping_J;
+        energy_.spring = spring_of(motor);
     }
 }
 
@@ -243,6 +279,17 @@ template <typename Change> void Plant::change_real_motor(const Change &change)
 void Plant::set_coulomb_friction(double share)
 {
     change_real_motor([share](RealMotor &motor) { motor.set_coulomb_friction(share); });
+}
+
+void Plant::set_magnet_rise(double rise_K)
+{
+    Parts &plant = *parts_;
+    change_real_motor([&](RealMotor &motor) {
+        plant.magnetic_reference_J -= motor.magnetic_J();
+        motor.set_magnet_rise(rise_K);
+        plant.magnetic_reference_J += motor.magnetic_J();
+    });
+    plant.config.imperfections.magnet_rise_K = rise_K;
 }
 
 /* A stiff bus takes or gives no energy of its own; that of a capacitor changes by currents only. */

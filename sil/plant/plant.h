@@ -27,6 +27,21 @@ struct MotorConfig {
     int rotor_teeth = 0;
 };
 
+/* Iron under the winding's flux linkage, the magnet's included; equations: iron.h. */
+struct IronConfig {
+    double hysteresis = 0;         /* coercive current / rated current; 0: none */
+    double hysteresis_flux = 0.32; /* flux linkage that turns the iron / (Km / N) */
+    double eddy_time_s = 0;        /* inductance of a phase / loss resistance beside it; 0: none */
+    double eddy_lag_s = 100e-6;    /* behind the voltage induced */
+};
+
+/* Part of the inertia behind a spring and a damper; equations: belt.h. */
+struct BeltConfig {
+    double inertia_share = 0;  /* of the inertia, on the far side; 0: all is one mass */
+    double frequency_Hz = 100; /* at which the two masses swing against one another, */
+    double damping = 0.02;     /* and its damping ratio */
+};
+
 /* What a real motor has beyond its six parameters; all 0: the plain equations. Shares are of the
    holding torque, sqrt 2 x torque constant x rated current. Equations: magnetics.h, real_motor.h.
  */
@@ -39,6 +54,13 @@ struct ImperfectionConfig {
     double coulomb_friction = 0;                     /* share; sticks at rest */
     double bridge_resistance_ohm = 0;  /* both conducting switches, in series with each phase */
     double phase_voltage_filter_s = 0; /* time constant before the phase voltage is averaged */
+    IronConfig iron = {};
+    BeltConfig belt = {};
+    /* Of one phase, relative to the motor's; bridge_resistance_ohm is apart. */
+    double resistance_a_scale = 1.0, resistance_b_scale = 1.0;
+    double inductance_a_scale = 1.0, inductance_b_scale = 1.0;
+    double magnet_rise_K = 0;            /* above the temperature of the torque constant */
+    double magnet_flux_per_K = -0.11e-2; /* what its flux changes by, relative */
 };
 
 /* The bus: a source that cannot take current back, a capacitor, a brake resistor. */
@@ -71,6 +93,9 @@ struct SensorConfig {
     double current_offset_b_A = 0.0;
     double current_offset_on_a_A = 0.0; /* only while the bridge is on: calibration misses it */
     double current_offset_on_b_A = 0.0;
+    /* What appears once a voltage is asked for, and goes with the bridge: calibration misses it. */
+    double current_residual_a_A = 0.0;
+    double current_residual_b_A = 0.0;
     double current_gain_a = 1.0;
     double current_gain_b = 1.0;
     double phase_voltage_range_V = 31.2; /* +- full scale; 1.3 x nominal bus */
@@ -79,6 +104,12 @@ struct SensorConfig {
     double phase_voltage_offset_b_V = 0.0;
     double phase_voltage_offset_on_a_V = 0.0; /* only while the bridge is on */
     double phase_voltage_offset_on_b_V = 0.0;
+    double phase_voltage_residual_a_V = 0.0;
+    double phase_voltage_residual_b_V = 0.0;
+    /* Half of what the dividers of a phase's two legs differ by: a share of the sum of the legs'
+       voltages, which is the bus voltage, while the bridge is on. */
+    double divider_mismatch_a = 0.0;
+    double divider_mismatch_b = 0.0;
     double bus_range_V = 31.2;             /* full scale */
     double bridge_ntc_beta_K = 3435.0;     /* hal.h */
     int encoder_counts_per_turn = 0;       /* quadrature counts; 0: no encoder */
@@ -149,6 +180,8 @@ struct Energy {
     double coulomb = 0; /* and in a jam */
     double arc = 0;     /* of a lead that breaks while current flows */
     double source = 0, brake = 0, capacitor = 0; /* the bus: two losses, and what is stored */
+    double iron = 0;                /* hysteresis, of which a little is stored, and eddies */
+    double spring = 0, damping = 0; /* of the belt; its mass is in kinetic, too */
 };
 
 class Plant
@@ -184,6 +217,7 @@ class Plant
     void vibrate(double load_torque_Nm, double frequency_Hz); /* amplitude of a sine beside it */
     void set_motor(const MotorConfig &motor);                 /* currents, angle and speed go on */
     void set_coulomb_friction(double share);                  /* as in ImperfectionConfig */
+    void set_magnet_rise(double rise_K);                      /* likewise */
     void set_bus(double bus_V);                    /* the source's; a capacitor follows */
     void set_bridge_temperature(double bridge_C);  /* 25 degrees Celsius until then */
     void set_sensors(const SensorConfig &sensors); /* offsets, gains and noise may differ */

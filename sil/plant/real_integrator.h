@@ -40,15 +40,19 @@ constexpr double no_current_A = 1e-12;     /* what rounding leaves of a current 
  * with t^j, so that the sum is finite for every coefficient. What is no vector stands in both
  * lanes, so that it multiplies vectors as it is.
  */
-template <int order> struct Series {
+template <int order, bool belted> struct Series {
     Phases flux[order + 1]; /* x */
     Phases flux_squared[order + 1];
     Phases current[order + 1];
     Phases omega[order + 1];
     Phases acceleration[order]; /* without Coulomb friction */
     Phases bus[order + 1];
-    Phases slope[order];                 /* f */
-    Phases turned[order + 1][order + 1]; /* [j][n]: coefficient j + n of psi^j, j > 0 */
+    Phases load_omega[belted ? order + 1 : 1]; /* behind a belt, if there is one, */
+    Phases twist[belted ? order + 1 : 1];      /* and by how much it is ahead */
+    Phases slope[order];                       /* f */
+    Phases turned[order + 1][order + 1];       /* [j][n]: coefficient j + n of psi^j, j > 0 */
+
+    Phases iron_A; /* part of the current, constant */
 
     /* Taylor coefficients in psi: of m, of f, and of the detent torque. */
     Phases magnet_at[order + 1];
@@ -99,7 +103,8 @@ template <int k, typename X, typename Turned>
 }
 
 /* Coefficient k of psi and its powers from the speed's coefficients before it. */
-template <int k, int j, int order> [[gnu::always_inline]] inline void raise(Series<order> &x)
+template <int k, int j, int order, bool belted>
+[[gnu::always_inline]] inline void raise(Series<order, belted> &x)
 {
     if constexpr (j <= k) {
         x.turned[j][k - j] = cauchy_product<k - j>(x.turned[1], x.turned[j - 1]);
@@ -107,8 +112,8 @@ template <int k, int j, int order> [[gnu::always_inline]] inline void raise(Seri
     }
 }
 
-template <int k, int order>
-[[gnu::always_inline]] inline void turn(Series<order> &x, const RealCoefficients &motor)
+template <int k, int order, bool belted>
+[[gnu::always_inline]] inline void turn(Series<order, belted> &x, const RealCoefficients &motor)
 {
     if constexpr (k > 0) {
         x.turned[1][k - 1] = motor.share[k - 1].teeth * x.omega[k - 1];
@@ -117,19 +122,40 @@ template <int k, int order>
 }
 
 /* Coefficient k of the current, the flux's being known. */
-template <bool turning, int k, int order>
-[[gnu::always_inline]] inline void magnetise(Series<order> &x, const Magnetics &magnetics)
+template <bool turning, int k, int order, bool belted>
+[[gnu::always_inline]] inline void magnetise(Series<order, belted> &x, const Magnetics &magnetics)
 {
     x.flux_squared[k] = cauchy_square<k>(x.flux);
-    x.current[k] = x.flux[k] + magnetics.saturation * cauchy_product<k>(x.flux, x.flux_squared);
+    x.current[k] =
+        x.flux[k] + magnetics.phase_saturation * cauchy_product<k>(x.flux, x.flux_squared);
     if constexpr (turning || k == 0) {
-        x.current[k] -= magnetics.magnet_A * composed<k>(x.magnet_at, x.turned);
+        x.current[k] -= magnetics.phase_magnet_A * composed<k>(x.magnet_at, x.turned);
+    }
+    if constexpr (k == 0) {
+        x.current[0] += x.iron_A;
     }
 }
 
+/* Coefficient k of the belt's pull at the rotor, over its inertia; k + 1 of what is behind it. */
+template <int k, int order, bool belted>
+[[gnu::always_inline]] inline Phases pull_of_belt(Series<order, belted> &x,
+                                                  const RealCoefficients &motor)
+{
+    constexpr double part = 1.0 / (k + 1);
+    const Phases ahead = x.load_omega[k] - x.omega[k];
+    const Phases pull = motor.spring * x.twist[k] + motor.damper * ahead;
+    Phases far = -motor.far_ratio * pull;
+    if constexpr (k == 0) {
+        far -= motor.far_load;
+    }
+    x.load_omega[k + 1] = part * far;
+    x.twist[k + 1] = part * ahead;
+    return pull;
+}
+
 /* Coefficients k + 1 and later from those before; the equations are in real_motor.h. */
-template <bool floating, bool turning, int k, int order>
-[[gnu::always_inline]] inline void expand(Series<order> &x, const RealCoefficients &motor,
+template <bool floating, bool turning, int k, int order, bool belted>
+[[gnu::always_inline]] inline void expand(Series<order, belted> &x, const RealCoefficients &motor,
                                           const Mode &mode)
 {
     const RealCoefficients::Share &share = motor.share[k];
@@ -156,6 +182,9 @@ template <bool floating, bool turning, int k, int order>
             acceleration -= x.detent_at[0];
         }
     }
+    if constexpr (belted) {
+        acceleration += pull_of_belt<k>(x, motor);
+    }
     Phases voltage_V = mode.share * x.bus[k];
     Phases bus = -(mode.source_rate + mode.brake_rate) * x.bus[k] -
                  mode.per_capacitance * sum_in_both_lanes(mode.share * x.current[k]);
@@ -174,13 +203,13 @@ template <bool floating, bool turning, int k, int order>
         Phases rest = {0.0, 0.0};
         if constexpr (turning) {
             turn<k + 1>(x, motor);
-            rest = magnetics.magnet_A * composed<k + 1>(x.magnet_at, x.turned);
+            rest = magnetics.phase_magnet_A * composed<k + 1>(x.magnet_at, x.turned);
         }
         for (int j = 1; j <= k; j++) {
-            rest -= (3.0 * magnetics.saturation * part * (k + 1 - j)) * x.flux_squared[j] *
+            rest -= (3.0 * magnetics.phase_saturation * part * (k + 1 - j)) * x.flux_squared[j] *
                     x.flux[k + 1 - j];
         }
-        const Phases open = rest / (1.0 + 3.0 * magnetics.saturation * x.flux_squared[0]);
+        const Phases open = rest / (1.0 + 3.0 * magnetics.phase_saturation * x.flux_squared[0]);
         flux = mode.conducting * flux + (1.0 - mode.conducting) * open;
     }
     x.flux[k + 1] = flux;
@@ -190,9 +219,9 @@ template <bool floating, bool turning, int k, int order>
 }
 
 /* Taylor coefficients j and later in psi, of f and of the detent torque. */
-template <int j, int order>
-[[gnu::always_inline]] inline void differentiate(Series<order> &x, const RealCoefficients &motor,
-                                                 const Axes &axes)
+template <int j, int order, bool belted>
+[[gnu::always_inline]] inline void differentiate(Series<order, belted> &x,
+                                                 const RealCoefficients &motor, const Axes &axes)
 {
     if constexpr (j < order) {
         const RealCoefficients::InAngle &share = motor.in_angle[j];
@@ -209,8 +238,8 @@ template <int j, int order>
 }
 
 /* Coefficients 0, and those in psi. */
-template <int order>
-[[gnu::always_inline]] inline void start(Series<order> &x, const RealCoefficients &motor,
+template <int order, bool belted>
+[[gnu::always_inline]] inline void start(Series<order, belted> &x, const RealCoefficients &motor,
                                          const RealMotorState &state)
 {
     const Magnetics &magnetics = motor.magnetics;
@@ -218,6 +247,11 @@ template <int order>
     x.flux[0] = state.flux;
     x.omega[0] = in_both_lanes(state.omega_rad_s);
     x.bus[0] = in_both_lanes(state.bus_V);
+    if constexpr (belted) {
+        x.load_omega[0] = in_both_lanes(state.load_omega_rad_s);
+        x.twist[0] = in_both_lanes(state.twist_rad);
+    }
+    x.iron_A = state.iron_A;
 
     x.magnet_at[0] = magnetics.magnet_axis(axes.once, axes.thrice);
     differentiate<0>(x, motor, axes);
@@ -225,11 +259,11 @@ template <int order>
 }
 
 /* Back-EMF of an open phase: L0 dx/dt with no current. */
-template <int order>
-double open_circuit_V(const Series<order> &x, const Magnetics &magnetics, int phase)
+template <int order, bool belted>
+double open_circuit_V(const Series<order, belted> &x, const Magnetics &magnetics, int phase)
 {
     return magnetics.torque * x.omega[0][0] * x.slope_at[0][phase] /
-           (1.0 + 3.0 * magnetics.saturation * x.flux_squared[0][phase]);
+           (1.0 + 3.0 * magnetics.phase_saturation[phase] * x.flux_squared[0][phase]);
 }
 
 /* What the bridge offers a phase. */
@@ -238,10 +272,10 @@ struct Terminal {
 };
 
 /* Of a phase, with a leg in dead time or not: see integrator::Terminal. */
-template <int order>
+template <int order, bool belted>
 [[gnu::always_inline]] inline Terminal
-terminal(int phase, const Segment &segment, const Series<order> &x, const RealCoefficients &motor,
-         const RealMotorState &state)
+terminal(int phase, const Segment &segment, const Series<order, belted> &x,
+         const RealCoefficients &motor, const RealMotorState &state)
 {
     const double legs = segment.diode_V[phase];
     if (legs == 0.0) {
@@ -267,8 +301,8 @@ terminal(int phase, const Segment &segment, const Series<order> &x, const RealCo
 }
 
 /* At rest the rotor sticks as long as friction can hold it. */
-template <int order>
-[[gnu::always_inline]] inline void set_friction(Mode &mode, const Series<order> &x,
+template <int order, bool belted>
+[[gnu::always_inline]] inline void set_friction(Mode &mode, const Series<order, belted> &x,
                                                 const RealCoefficients &motor,
                                                 const RealMotorState &state)
 {
@@ -276,8 +310,11 @@ template <int order>
     if (motor.coulomb == 0.0) {
         mode.sliding = 0.0;
     } else if (x.omega[0][0] == 0.0) {
-        const double acceleration =
+        double acceleration =
             motor.torque[0] * dot(x.slope_at[0], x.flux[0]) - x.detent_at[0][0] - motor.load[0];
+        if constexpr (belted) {
+            acceleration += motor.spring[0] * x.twist[0][0] + motor.damper[0] * x.load_omega[0][0];
+        }
         mode.stuck = !state.released && magnitude(acceleration) <= motor.coulomb;
         mode.sliding = mode.stuck ? 0.0 : (acceleration > 0.0 ? 1.0 : -1.0);
     } else {
@@ -285,8 +322,8 @@ template <int order>
     }
 }
 
-template <int order>
-[[gnu::always_inline]] inline void set_bus(Mode &mode, const Series<order> &x,
+template <int order, bool belted>
+[[gnu::always_inline]] inline void set_bus(Mode &mode, const Series<order, belted> &x,
                                            const RealCoefficients &motor,
                                            const RealMotorState &state)
 {
@@ -325,8 +362,8 @@ inline void break_open(Mode &mode, const RealMotorState &state)
 }
 
 /* Every member by itself: clearing the structure first takes a sixth of a step's time. */
-template <int order>
-[[gnu::always_inline]] inline Mode mode_of(const Series<order> &x, const Segment &segment,
+template <int order, bool belted>
+[[gnu::always_inline]] inline Mode mode_of(const Series<order, belted> &x, const Segment &segment,
                                            const RealCoefficients &motor,
                                            const RealMotorState &state)
 {
@@ -354,8 +391,24 @@ template <int order>
     return mode;
 }
 
-template <int order>
-[[gnu::noinline]] void add_energies(const Course &course, const Series<order> &x,
+template <int order, bool belted>
+void add_energies_of_belt(const Course &course, const Series<order, belted> &x, double h)
+{
+    const RealCoefficients &motor = course.motor;
+    const double inertia = 1.0 / motor.inverse_inertia;
+    const double far_inertia = inertia / motor.far_ratio[0];
+    Phases ahead[order + 1];
+    for (int k = 0; k <= order; k++) {
+        ahead[k] = x.load_omega[k] - x.omega[k];
+    }
+    course.integrals.damping_J +=
+        motor.damper[0] * inertia * integral_of_square<order>(ahead, h)[0];
+    course.integrals.load_J +=
+        motor.far_load[0] * far_inertia * integral<order>(x.load_omega, in_both_lanes(h))[0];
+}
+
+template <int order, bool belted>
+[[gnu::noinline]] void add_energies(const Course &course, const Series<order, belted> &x,
                                     const Segment &segment, const Mode &mode, double h)
 {
     const RealCoefficients &motor = course.motor;
@@ -368,9 +421,12 @@ template <int order>
     const double way = integral<order>(x.omega, span_s)[0];
     integrals.diode_J += motor.diode_drop * (segment.diode_V[0] * magnitude(charge[0]) +
                                              segment.diode_V[1] * magnitude(charge[1]));
-    integrals.copper_J += motor.resistance * (current_squared[0] + current_squared[1]);
+    integrals.copper_J += dot(motor.resistance, current_squared);
     integrals.friction_J += motor.friction[0] * inertia * integral_of_square<order>(x.omega, h)[0];
     integrals.load_J += motor.load[0] * inertia * way;
+    if constexpr (belted) {
+        add_energies_of_belt(course, x, h);
+    }
     integrals.coulomb_J += mode.sliding * motor.coulomb * inertia * way;
     if (supply.stiff()) {
         integrals.supplied_J += supply.source_V * dot(mode.share, charge);
@@ -414,7 +470,8 @@ inline double between_legs(const Segment &segment, int phase)
 }
 
 /* Back-EMF of the phases at t = h as if open, L0 dx/dt. */
-template <int order> Phases induced_V(const Series<order> &x, const Magnetics &magnetics, double h)
+template <int order, bool belted>
+Phases induced_V(const Series<order, belted> &x, const Magnetics &magnetics, double h)
 {
     Phases rate = x.flux[1];
     double power = h;
@@ -422,14 +479,14 @@ template <int order> Phases induced_V(const Series<order> &x, const Magnetics &m
         rate += x.flux[k] * (k * power);
         power *= h;
     }
-    return magnetics.inductance * rate;
+    return magnetics.phase_inductance * rate;
 }
 
 /* Voltage at the bridge of the phases at t = h, where the bus has bus_V. */
-template <int order>
-[[gnu::always_inline]] inline Phases terminal_V(const Course &course, const Series<order> &x,
-                                                const Segment &segment, const Mode &mode, double h,
-                                                Phases bus_V)
+template <int order, bool belted>
+[[gnu::always_inline]] inline Phases
+terminal_V(const Course &course, const Series<order, belted> &x, const Segment &segment,
+           const Mode &mode, double h, Phases bus_V)
 {
     Phases voltage_V = mode.share * bus_V + mode.drop_V;
     if (mode.floating) {
@@ -444,8 +501,8 @@ template <int order>
 }
 
 /* Behind the filter at t = h, of a voltage that is taken as a straight line within the step. */
-template <int order>
-[[gnu::always_inline]] inline void filter(const Course &course, const Series<order> &x,
+template <int order, bool belted>
+[[gnu::always_inline]] inline void filter(const Course &course, const Series<order, belted> &x,
                                           const Segment &segment, const Mode &mode, double h,
                                           Phases bus_V)
 {
@@ -458,8 +515,8 @@ template <int order>
 }
 
 /* The state at the end of the step. */
-template <bool track_energy, bool turning, int order>
-[[gnu::always_inline]] inline void accept(const Course &course, const Series<order> &x,
+template <bool track_energy, bool turning, int order, bool belted>
+[[gnu::always_inline]] inline void accept(const Course &course, const Series<order, belted> &x,
                                           const Segment &segment, const Mode &mode, double h)
 {
     RealMotorState &state = course.state;
@@ -482,6 +539,10 @@ template <bool track_energy, bool turning, int order>
         state.axis = turned_by_little<order>(state.axis, turned_rad);
     }
     state.bus_V = bus_V[0];
+    if constexpr (belted) {
+        state.load_omega_rad_s = value<order>(x.load_omega, span_s)[0];
+        state.twist_rad = value<order>(x.twist, span_s)[0];
+    }
     if (mode.relaxing) {
         relax<track_energy>(course, h);
     }
@@ -497,9 +558,10 @@ template <int order> struct Margin {
     double coefficient[order + 1];
 };
 
-template <int order>
-Margin<order> margin_of_phase(int phase, const Series<order> &x, const RealCoefficients &motor,
-                              const Segment &segment, const Mode &mode, double h)
+template <int order, bool belted>
+Margin<order> margin_of_phase(int phase, const Series<order, belted> &x,
+                              const RealCoefficients &motor, const Segment &segment,
+                              const Mode &mode, double h)
 {
     Margin<order> margin = {};
     if (mode.conducting[phase] != 0.0) {
@@ -510,7 +572,7 @@ Margin<order> margin_of_phase(int phase, const Series<order> &x, const RealCoeff
     }
     double emf[order];
     for (int k = 0; k < order; k++) {
-        emf[k] = motor.magnetics.inductance * (k + 1) * x.flux[k + 1][phase];
+        emf[k] = motor.magnetics.phase_inductance[phase] * (k + 1) * x.flux[k + 1][phase];
     }
     const double drops = segment.diode_V[phase];
     const bool negative = value<order - 1>(emf, h) < 0.0;
@@ -525,8 +587,8 @@ Margin<order> margin_of_phase(int phase, const Series<order> &x, const RealCoeff
 }
 
 /* ... the speed while the rotor slides, what friction holds while it sticks, ... */
-template <int order>
-Margin<order> margin_of_friction(const Series<order> &x, const RealCoefficients &motor,
+template <int order, bool belted>
+Margin<order> margin_of_friction(const Series<order, belted> &x, const RealCoefficients &motor,
                                  const Mode &mode, double h)
 {
     Margin<order> margin = {};
@@ -545,8 +607,8 @@ Margin<order> margin_of_friction(const Series<order> &x, const RealCoefficients 
 }
 
 /* ... and the bus below or above a threshold. */
-template <int order>
-Margin<order> margin_of_bus(const Series<order> &x, double threshold_V, bool below)
+template <int order, bool belted>
+Margin<order> margin_of_bus(const Series<order, belted> &x, double threshold_V, bool below)
 {
     Margin<order> margin = {};
     const double sign = below ? -1.0 : 1.0;
@@ -597,8 +659,8 @@ template <int order> void consider(Event &first, End end, const Margin<order> &m
     }
 }
 
-template <int order>
-Event first_event(const Series<order> &x, const RealCoefficients &motor,
+template <int order, bool belted>
+Event first_event(const Series<order, belted> &x, const RealCoefficients &motor,
                   const RealMotorState &state, const Segment &segment, const Mode &mode, double h)
 {
     Event first = {h};
@@ -631,17 +693,18 @@ Event first_event(const Series<order> &x, const RealCoefficients &motor,
 /* Puts a floating phase's flux where its current is 0, to rounding. */
 inline void hold_open(RealMotorState &state, const Magnetics &magnetics, int phase)
 {
-    const double current_A = magnetics.current_A(state.flux, axes_of(state.axis))[phase];
-    state.flux[phase] -=
-        current_A / (1.0 + 3.0 * magnetics.saturation * state.flux[phase] * state.flux[phase]);
+    const double flux = state.flux[phase];
+    const double current_A =
+        magnetics.current_A(state.flux, axes_of(state.axis))[phase] + state.iron_A[phase];
+    state.flux[phase] -= current_A / (1.0 + 3.0 * magnetics.phase_saturation[phase] * flux * flux);
     state.blocked[phase] = true;
 }
 
 /* Whether a mode ends within a step, which is the exception. */
-template <bool turning, bool dead_time, int order>
-[[gnu::always_inline]] inline bool mode_ends(const Series<order> &x, const RealCoefficients &motor,
-                                             const RealMotorState &state, const Mode &mode,
-                                             double h)
+template <bool turning, bool dead_time, int order, bool belted>
+[[gnu::always_inline]] inline bool
+mode_ends(const Series<order, belted> &x, const RealCoefficients &motor,
+          const RealMotorState &state, const Mode &mode, double h)
 {
     const Supply &supply = motor.supply;
     const Phases span_s = in_both_lanes(h);
@@ -667,9 +730,9 @@ template <bool turning, bool dead_time, int order>
 }
 
 /* All series; the current's last coefficient where somebody wants it. */
-template <bool floating, bool turning, bool whole_current, int order>
-[[gnu::always_inline]] inline void expand_all(Series<order> &x, const RealCoefficients &motor,
-                                              const Mode &mode)
+template <bool floating, bool turning, bool whole_current, int order, bool belted>
+[[gnu::always_inline]] inline void expand_all(Series<order, belted> &x,
+                                              const RealCoefficients &motor, const Mode &mode)
 {
     expand<floating, turning, 0>(x, motor, mode);
     if constexpr (whole_current) {
@@ -684,8 +747,8 @@ template <bool floating, bool turning, bool whole_current, int order>
 }
 
 /* As far as the first event; what ends there. */
-template <bool turning, bool track_energy, int order>
-Event accept_to_event(const Course &course, Series<order> &x, const Segment &segment,
+template <bool turning, bool track_energy, int order, bool belted>
+Event accept_to_event(const Course &course, Series<order, belted> &x, const Segment &segment,
                       const Mode &mode, double h)
 {
     if (mode.floating) {
@@ -702,19 +765,20 @@ Event accept_to_event(const Course &course, Series<order> &x, const Segment &seg
  * A step in which a phase floats or a mode ends: goes as far as the first event. It starts anew, so
  * that the series of all other steps stay in registers.
  */
-template <int order, bool track_energy>
+template <int order, bool belted, bool track_energy>
 [[gnu::noinline]] double step_to_event(const Course &course, const Segment &segment, double h)
 {
     const Magnetics &magnetics = course.motor.magnetics;
     RealMotorState &state = course.state;
-    Series<order> x;
+    Series<order, belted> x;
     start(x, course.motor, state);
     const Mode mode = mode_of(x, segment, course.motor, state);
     const Phases before = state.flux;
     const Event event = mode.stuck
                             ? accept_to_event<false, track_energy>(course, x, segment, mode, h)
                             : accept_to_event<true, track_energy>(course, x, segment, mode, h);
-    Phases floating_Vs = (1.0 - mode.conducting) * magnetics.inductance * (state.flux - before);
+    Phases floating_Vs =
+        (1.0 - mode.conducting) * magnetics.phase_inductance * (state.flux - before);
     for (int phase = 0; phase < 2; phase++) {
         if (state.open[phase]) {
             floating_Vs[phase] = between_legs(segment, phase) *
@@ -741,48 +805,48 @@ template <int order, bool track_energy>
 }
 
 /* A step in which no phase floats; returns the time that passed. */
-template <bool turning, bool dead_time, bool track_energy, int order>
-[[gnu::always_inline]] inline double step_through(const Course &course, Series<order> &x,
+template <bool turning, bool dead_time, bool track_energy, int order, bool belted>
+[[gnu::always_inline]] inline double step_through(const Course &course, Series<order, belted> &x,
                                                   const Segment &segment, const Mode &mode,
                                                   double h)
 {
     expand_all<false, turning, track_energy || dead_time>(x, course.motor, mode);
     if (mode_ends<turning, dead_time>(x, course.motor, course.state, mode, h)) {
-        return step_to_event<order, track_energy>(course, segment, h);
+        return step_to_event<order, belted, track_energy>(course, segment, h);
     }
     accept<track_energy, turning>(course, x, segment, mode, h);
     return h;
 }
 
 /* Advances by h or to the first event before; returns the time that passed. */
-template <int order, bool track_energy, bool dead_time>
+template <int order, bool belted, bool track_energy, bool dead_time>
 [[gnu::always_inline]] inline double step(const Course &course, const Segment &segment, double h)
 {
-    Series<order> x;
+    Series<order, belted> x;
     start(x, course.motor, course.state);
     const Mode mode = mode_of(x, segment, course.motor, course.state);
     if (mode.floating) {
-        return step_to_event<order, track_energy>(course, segment, h);
+        return step_to_event<order, belted, track_energy>(course, segment, h);
     }
     return mode.stuck ? step_through<false, dead_time, track_energy>(course, x, segment, mode, h)
                       : step_through<true, dead_time, track_energy>(course, x, segment, mode, h);
 }
 
 /* To the end of a stretch of constant switches, in steps of at most longest_s. */
-template <int order, bool track_energy>
+template <int order, bool belted, bool track_energy>
 [[gnu::always_inline]] inline void cross(const Course &course, const Segment &segment,
                                          double longest_s)
 {
     double left_s = segment.duration_s;
     while (left_s > 0.0) {
         const double h = left_s < longest_s ? left_s : longest_s;
-        left_s -= segment.dead_time ? step<order, track_energy, true>(course, segment, h)
-                                    : step<order, track_energy, false>(course, segment, h);
+        left_s -= segment.dead_time ? step<order, belted, track_energy, true>(course, segment, h)
+                                    : step<order, belted, track_energy, false>(course, segment, h);
     }
 }
 
 /* Through a timetable; rate: how fast the solution can change, 1/s. */
-template <bool track_energy>
+template <bool belted, bool track_energy>
 void follow(const Course &course, const Timetable &timetable, double rate)
 {
     const Supply &supply = course.motor.supply;
@@ -792,13 +856,14 @@ void follow(const Course &course, const Timetable &timetable, double rate)
         const double bus_rate = supply.brake_rate + (draws ? supply.source_rate : 0.0);
         const double duration_s = segment.duration_s;
         if (rate * duration_s < reach_2.motor && bus_rate * duration_s < reach_2.bus) {
-            cross<2, track_energy>(course, segment, duration_s);
+            cross<2, belted, track_energy>(course, segment, duration_s);
         } else if (rate * duration_s < reach_3.motor && bus_rate * duration_s < reach_3.bus) {
-            cross<3, track_energy>(course, segment, duration_s);
+            cross<3, belted, track_energy>(course, segment, duration_s);
         } else {
             const double by_motor_s = reach_4.motor / rate;
             const double by_bus_s = reach_4.bus / bus_rate; /* infinite on a stiff bus */
-            cross<4, track_energy>(course, segment, by_motor_s < by_bus_s ? by_motor_s : by_bus_s);
+            cross<4, belted, track_energy>(course, segment,
+                                           by_motor_s < by_bus_s ? by_motor_s : by_bus_s);
         }
     }
 }

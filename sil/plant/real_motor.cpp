@@ -26,10 +26,17 @@ void require_coulomb_friction(double share)
     require(share >= 0.0 && share <= 10.0, "coulomb_friction", share, "0...10");
 }
 
+void require_phase_scale(double scale, const char *field)
+{
+    require(scale >= 0.5 && scale <= 2.0, field, scale, "0.5...2");
+}
+
 } // namespace
 
 RealMotor::RealMotor(const Config &config)
-    : imperfections_(config.imperfections), filter_(0.0), source_(0.0),
+    : imperfections_(config.imperfections),
+      belt_(belt_of(config.imperfections.belt, config.motor.inertia_kgm2)),
+      period_s_(config.bridge.period_s), filter_(0.0), source_(0.0),
       track_energy_(config.track_energy)
 {
     constexpr double slowest_filter_s = 1e-3, fastest_filter_s = 1e-7;
@@ -43,10 +50,12 @@ RealMotor::RealMotor(const Config &config)
     require(imperfections_.bridge_resistance_ohm >= 0.0 &&
                 imperfections_.bridge_resistance_ohm <= 1e4,
             "bridge_resistance_ohm", imperfections_.bridge_resistance_ohm, "0...1e4 ohm");
+    require_phase_scale(imperfections_.resistance_a_scale, "resistance_a_scale");
+    require_phase_scale(imperfections_.resistance_b_scale, "resistance_b_scale");
     coefficients_.supply = supply_of(config.supply, config.bridge.bus_V);
     source_ = Decay(coefficients_.supply.source_rate);
     coefficients_.diode_drop = config.bridge.diode_drop_V;
-    state_.omega_rad_s = config.initial_omega_rad_s;
+    state_.omega_rad_s = state_.load_omega_rad_s = config.initial_omega_rad_s;
     state_.electrical_rad = config.motor.rotor_teeth * config.initial_theta_rad;
     state_.bus_V = config.bridge.bus_V;
     set_parameters(config.motor);
@@ -56,7 +65,7 @@ RealMotor::RealMotor(const Config &config, const Motor &motor, double load_torqu
     : RealMotor(config)
 {
     const MotorState &from = motor.state();
-    state_.omega_rad_s = from.omega_rad_s;
+    state_.omega_rad_s = state_.load_omega_rad_s = from.omega_rad_s;
     state_.electrical_turns = from.electrical_turns;
     state_.electrical_rad = from.electrical_rad;
     set_load_torque(load_torque_Nm);
@@ -78,26 +87,37 @@ void RealMotor::set_parameters(const MotorConfig &config)
     }
     motor_ = config;
     const Magnetics &magnetics = motor.magnetics;
-    const double per_J = 1.0 / config.inertia_kgm2;
-    motor.load *=
+    const double per_J = 1.0 / (config.inertia_kgm2 * (1.0 - belt_.inertia_share));
+    const Phases lighter =
         in_both_lanes(per_J / (motor.inverse_inertia > 0.0 ? motor.inverse_inertia : per_J));
+    motor.load *= lighter;
+    motor.far_load *= lighter;
     motor.inverse_inertia = per_J;
-    motor.resistance = config.resistance_ohm + imperfections_.bridge_resistance_ohm;
+    motor.resistance = config.resistance_ohm * Phases{imperfections_.resistance_a_scale,
+                                                      imperfections_.resistance_b_scale} +
+                       imperfections_.bridge_resistance_ohm;
+    motor.iron = iron_of(config, imperfections_, magnetics, period_s_);
+    motor.belted = belt_.present();
+    motor.spring = in_both_lanes(belt_.spring_Nm_rad * per_J);
+    motor.damper = in_both_lanes(belt_.damper_Nms_rad * per_J);
+    motor.far_ratio =
+        in_both_lanes(belt_.present() ? (1.0 - belt_.inertia_share) / belt_.inertia_share : 0.0);
     motor.torque = in_both_lanes(magnetics.torque * per_J);
     motor.friction = in_both_lanes(config.viscous_friction_Nms_rad * per_J);
     motor.coulomb =
         (imperfections_.coulomb_friction * holding_torque_Nm(config, imperfections_) + jam_Nm_) *
         per_J;
     const double detent_4 = magnetics.unmagnetised_detent_4() * per_J;
-    const double detent_2 = magnetics.detent_2 * per_J;
+    const double detent_2 = magnetics.unmagnetised_detent_2() * per_J;
     const double detent_1 = magnetics.detent_1 * per_J;
-    motor.stiffness = magnetics.teeth *
-                      (4.0 * magnitude(detent_4) + 2.0 * magnitude(detent_2) + magnitude(detent_1));
+    motor.stiffness = magnetics.teeth * (4.0 * magnitude(detent_4) + 2.0 * magnitude(detent_2) +
+                                         magnitude(detent_1)) +
+                      motor.spring[0] * (1.0 + motor.far_ratio[0]);
     double once = 1.0, thrice = -magnetics.harmonic;
     RealCoefficients::InAngle in_angle = {{}, {}, detent_4, detent_2, detent_1};
     for (int k = 0; k < MotorCoefficients::highest_order; k++) {
         const double next = 1.0 / (k + 1);
-        const Phases per_L = Phases{next, next} / magnetics.inductance;
+        const Phases per_L = Phases{next, next} / magnetics.phase_inductance;
         motor.share[k] = {per_L * -motor.resistance, per_L, in_both_lanes(magnetics.teeth * next)};
         in_angle.once = once * (k % 2 == 0 ? Phases{-1.0, 1.0} : Phases{-1.0, -1.0});
         in_angle.thrice = thrice * (k % 2 == 0 ? Phases{1.0, 1.0} : Phases{1.0, -1.0});
@@ -110,7 +130,23 @@ void RealMotor::set_parameters(const MotorConfig &config)
         in_angle.detent_1 *= turned;
     }
     begin_period();
-    state_.flux = magnetics.flux(kept_A, axes_of(state_.axis));
+    state_.flux = magnetics.flux(kept_A - state_.iron_A, axes_of(state_.axis));
+}
+
+/* As with the motor's parameters: what the magnet's energy changes by came from its heat. */
+void RealMotor::set_magnet_rise(double rise_K)
+{
+    const ImperfectionConfig before = imperfections_;
+    const Phases kept_A = current_A();
+    imperfections_.magnet_rise_K = rise_K;
+    try {
+        coefficients_.magnetics = magnetics_of(motor_, imperfections_);
+    } catch (...) {
+        imperfections_ = before;
+        throw;
+    }
+    state_.flux = coefficients_.magnetics.flux(kept_A - state_.iron_A, axes_of(state_.axis));
+    set_parameters(motor_);
 }
 
 void RealMotor::set_coulomb_friction(double share)
@@ -138,7 +174,7 @@ void RealMotor::jam(double torque_Nm)
             "0...1e9 N m");
     jam_Nm_ = torque_Nm;
     if (torque_Nm == Plant::held_Nm) {
-        integrals_.coulomb_J += kinetic_J();
+        integrals_.coulomb_J += rotor_J();
         state_.omega_rad_s = 0.0;
     }
     state_.released = false;
@@ -155,14 +191,17 @@ void RealMotor::open_phase(int phase, bool open)
     const double before_J = magnetic_J();
     Phases left_A = current_A();
     left_A[phase] = 0.0;
-    state_.flux = coefficients_.magnetics.flux(left_A, axes_of(state_.axis));
+    state_.flux = coefficients_.magnetics.flux(left_A - state_.iron_A, axes_of(state_.axis));
     state_.blocked[phase] = true;
     integrals_.arc_J += before_J - magnetic_J();
 }
 
 void RealMotor::set_load_torque(double load_torque_Nm)
 {
-    coefficients_.load = in_both_lanes(load_torque_Nm * coefficients_.inverse_inertia);
+    RealCoefficients &motor = coefficients_;
+    const Phases load = in_both_lanes(load_torque_Nm * motor.inverse_inertia);
+    motor.load = motor.belted ? in_both_lanes(0.0) : load;
+    motor.far_load = motor.far_ratio * load;
 }
 
 void RealMotor::begin_period()
@@ -173,30 +212,61 @@ void RealMotor::begin_period()
     state_.axis = unit_vector(state_.electrical_rad);
     integrals_.voltage_Vs = Phases{0.0, 0.0};
     filtered_at_begin_V_ = state_.filtered_V;
+    flux_at_begin_ = state_.flux;
 
     /* Rotation, L/R, the exchange of magnetic with kinetic energy, and with that of the bus. */
     const double most = magnitude(state_.flux[0]) + magnitude(state_.flux[1]);
     const double per_L = (1.0 + 3.0 * magnetics.saturation * most * most) / magnetics.inductance;
     const double stiffness =
         motor.torque[0] * (magnetics.torque * per_L + magnetics.teeth * most) + motor.stiffness;
-    const double rate = magnetics.teeth * magnitude(state_.omega_rad_s) + motor.resistance * per_L +
+    const double resistance =
+        motor.resistance[0] > motor.resistance[1] ? motor.resistance[0] : motor.resistance[1];
+    const double rate = magnetics.teeth * magnitude(state_.omega_rad_s) + resistance * per_L +
                         std::sqrt(stiffness + 2.0 * per_L * motor.supply.per_capacitance);
     rate_ = rate < fastest_rate ? rate : fastest_rate; /* also if not a number */
 }
 
 void RealMotor::advance(const Timetable &timetable)
 {
-    const real_integrator::Course course = {coefficients_, state_, integrals_, filter_, source_};
-    if (track_energy_) {
-        real_integrator::follow<true>(course, timetable, rate_);
+    namespace with = real_integrator;
+    const with::Course course = {coefficients_, state_, integrals_, filter_, source_};
+    if (coefficients_.belted) {
+        track_energy_ ? with::follow<true, true>(course, timetable, rate_)
+                      : with::follow<true, false>(course, timetable, rate_);
     } else {
-        real_integrator::follow<false>(course, timetable, rate_);
+        track_energy_ ? with::follow<false, true>(course, timetable, rate_)
+                      : with::follow<false, false>(course, timetable, rate_);
     }
+    if (coefficients_.iron.present) {
+        remagnetise();
+    }
+}
+
+/* At the end of a period, S(k): what its change of flux leaves in the iron. Where no current can
+   flow the flux gives way instead; that energy is the iron's, too. */
+void RealMotor::remagnetise()
+{
+    const Magnetics &magnetics = coefficients_.magnetics;
+    const Phases change_Vs = magnetics.phase_inductance * (state_.flux - flux_at_begin_);
+    integrals_.iron_J += dot(state_.iron_A, change_Vs);
+    state_.iron_A = magnetise(state_.iron, coefficients_.iron, change_Vs);
+    if (!state_.blocked[0] && !state_.blocked[1]) {
+        return;
+    }
+    const double before_J = magnetic_J();
+    const Phases closed = magnetics.flux(-state_.iron_A, axes_of(state_.axis));
+    for (int phase = 0; phase < 2; phase++) {
+        if (state_.blocked[phase]) {
+            state_.flux[phase] = closed[phase];
+        }
+    }
+    integrals_.iron_J += before_J - magnetic_J();
 }
 
 Phases RealMotor::current_A() const
 {
-    const Phases current_A = coefficients_.magnetics.current_A(state_.flux, axes_of(state_.axis));
+    const Phases current_A =
+        coefficients_.magnetics.current_A(state_.flux, axes_of(state_.axis)) + state_.iron_A;
     return Phases{state_.blocked[0] ? 0.0 : current_A[0], state_.blocked[1] ? 0.0 : current_A[1]};
 }
 
@@ -226,9 +296,20 @@ double RealMotor::magnetic_J() const
     return coefficients_.magnetics.energy_J(state_.flux, axes_of(state_.axis));
 }
 
-double RealMotor::kinetic_J() const
+double RealMotor::rotor_J() const
 {
     return 0.5 * state_.omega_rad_s * state_.omega_rad_s / coefficients_.inverse_inertia;
+}
+
+double RealMotor::kinetic_J() const
+{
+    const double far_kgm2 = motor_.inertia_kgm2 * belt_.inertia_share;
+    return rotor_J() + 0.5 * far_kgm2 * state_.load_omega_rad_s * state_.load_omega_rad_s;
+}
+
+double RealMotor::spring_J() const
+{
+    return 0.5 * belt_.spring_Nm_rad * state_.twist_rad * state_.twist_rad;
 }
 
 double RealMotor::capacitor_J() const

@@ -2,14 +2,16 @@
  * A motor with saturation, flux harmonic, detent and Coulomb friction (magnetics.h), the bridge's
  * resistance, and the bus (supply.h), integrated from switching edge to switching edge.
  *
- *   L0 dx/dt = u - (R + R_bridge) i           x: flux linkage / L0 of the phases (a, b)
+ *   L0 dx/dt = u - (R + R_bridge) i           x: flux linkage / L0 of the phases (a, b); R and L0
+ *                                             are of each phase
  *   J dw/dt  = torque(x, N theta) - Kv w - T_L - Tc sign(w)
  *   d theta/dt = w
  *   C dV/dt  = source and brake - share . i   u = share V -+ diode drops
  *
  * At rest the rotor sticks until the other torques exceed Tc, which a jam adds to. The current of a
  * phase with a broken lead is 0 and its voltage, which is measured at the bridge, that of the legs.
- * The measured voltage passes a filter, tf dv/dt = u - v.
+ * The measured voltage passes a filter, tf dv/dt = u - v. The iron adds to the current (iron.h),
+ * and part of J may stand behind a belt, with T_L (belt.h).
  * Taylor series in time as for the
  * plain motor (motor.h); what depends on the rotor angle is a Taylor series in the angle turned,
  * and so the sum of its powers.
@@ -17,8 +19,10 @@
 #ifndef STEADYSTEP_PLANT_REAL_MOTOR_H
 #define STEADYSTEP_PLANT_REAL_MOTOR_H
 
+#include "sil/plant/belt.h"
 #include "sil/plant/bridge.h"
 #include "sil/plant/elementary.h"
+#include "sil/plant/iron.h"
 #include "sil/plant/magnetics.h"
 #include "sil/plant/motor.h"
 #include "sil/plant/phases.h"
@@ -40,19 +44,30 @@ struct RealMotorState {
     bool released = false;          /* friction has just ceased to hold the rotor, to rounding */
     bool open[2] = {false, false};  /* a lead of the phase is broken */
     Phases filtered_V = {0.0, 0.0}; /* phase voltages behind the filter */
+    Phases iron_A = {0.0, 0.0};     /* the iron's part of the currents, within this period */
+    IronState iron;
+    double load_omega_rad_s = 0.0; /* behind the belt, */
+    double twist_rad = 0.0;        /* by which it is ahead of the rotor */
 };
 
 /* Configuration as the equations want it: torques over inertia, rad/s^2. */
 struct RealCoefficients {
     Magnetics magnetics;
     Supply supply;
-    double resistance = 0.0, diode_drop = 0.0;
-    double inverse_inertia = 0.0;
-    double coulomb = 0.0;                                                 /* Tc over J */
+    Phases resistance = {0.0, 0.0};
+    double diode_drop = 0.0;
+    double inverse_inertia = 0.0; /* of what turns with the rotor */
+    double coulomb = 0.0;         /* Tc over J */
     Phases torque = {0.0, 0.0}, friction = {0.0, 0.0}, load = {0.0, 0.0}; /* Kx, Kv and T_L over J,
                                                                               in both lanes */
     double stiffness = 0.0;   /* of the detent, 1/s^2: the greatest slope over J */
     double filter_rate = 0.0; /* 1 / tf, 1/s; 0: no filter */
+    Iron iron;
+
+    /* Spring and damper over J, and J over the inertia behind them; both lanes. */
+    bool belted = false;
+    Phases spring = {0.0, 0.0}, damper = {0.0, 0.0}, far_ratio = {0.0, 0.0};
+    Phases far_load = {0.0, 0.0}; /* T_L over the inertia behind the belt; load is 0 then */
 
     /* -R/L0, 1/L0 and N over k + 1: from Taylor coefficient k to k + 1. */
     struct Share {
@@ -78,6 +93,7 @@ class RealMotor
     void set_parameters(const MotorConfig &config); /* currents, angle and speed go on */
     void set_load_torque(double load_torque_Nm);
     void set_coulomb_friction(double share);
+    void set_magnet_rise(double rise_K);
     void set_bus(const SupplyConfig &config, double source_V);
     void jam(double torque_Nm);
     void open_phase(int phase, bool open);
@@ -104,15 +120,22 @@ class RealMotor
         return state_.bus_V;
     }
     double magnetic_J() const;
-    double kinetic_J() const;
+    double kinetic_J() const; /* the belt's load included */
     double capacitor_J() const;
+    double spring_J() const;
 
   private:
+    double rotor_J() const;
+    void remagnetise();
+
     ImperfectionConfig imperfections_;
     MotorConfig motor_;
     RealCoefficients coefficients_;
     RealMotorState state_;
     MotorIntegrals integrals_;
+    Belt belt_;
+    double period_s_;
+    Phases flux_at_begin_ = {0.0, 0.0};
     Decay filter_, source_; /* of the voltage filter, and of the bus towards its source */
     bool track_energy_;
     double rate_ = 0.0; /* 1/s: how fast the solution can change, bounds the step */

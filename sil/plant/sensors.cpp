@@ -40,6 +40,11 @@ void require_gain(double gain, const char *field)
     require(gain >= 0.1 && gain <= 10.0, field, gain, "0.1...10");
 }
 
+void require_mismatch(double share, const char *field)
+{
+    require(magnitude(share) <= 0.1, field, share, "-0.1...0.1");
+}
+
 bool is_signed(Channel channel)
 {
     return channel == Channel::phase_voltage_a || channel == Channel::phase_voltage_b;
@@ -134,6 +139,12 @@ void Sensors::set(const SensorConfig &config)
     require_offset(config.current_offset_on_b_A, "current_offset_on_b_A");
     require_offset(config.phase_voltage_offset_on_a_V, "phase_voltage_offset_on_a_V");
     require_offset(config.phase_voltage_offset_on_b_V, "phase_voltage_offset_on_b_V");
+    require_offset(config.current_residual_a_A, "current_residual_a_A");
+    require_offset(config.current_residual_b_A, "current_residual_b_A");
+    require_offset(config.phase_voltage_residual_a_V, "phase_voltage_residual_a_V");
+    require_offset(config.phase_voltage_residual_b_V, "phase_voltage_residual_b_V");
+    require_mismatch(config.divider_mismatch_a, "divider_mismatch_a");
+    require_mismatch(config.divider_mismatch_b, "divider_mismatch_b");
     require_gain(config.current_gain_a, "current_gain_a");
     require_gain(config.current_gain_b, "current_gain_b");
     current_offset_A_[0] = Phases{config.current_offset_a_A, config.current_offset_b_A};
@@ -144,6 +155,10 @@ void Sensors::set(const SensorConfig &config)
     phase_voltage_offset_V_[1] =
         phase_voltage_offset_V_[0] +
         Phases{config.phase_voltage_offset_on_a_V, config.phase_voltage_offset_on_b_V};
+    current_residual_A_ = Phases{config.current_residual_a_A, config.current_residual_b_A};
+    phase_voltage_residual_V_ =
+        Phases{config.phase_voltage_residual_a_V, config.phase_voltage_residual_b_V};
+    divider_mismatch_ = Phases{config.divider_mismatch_a, config.divider_mismatch_b};
     current_gain_ = Phases{config.current_gain_a, config.current_gain_b};
     codes_per_A_ = 1.0 / current_A_per_code(config);
     codes_per_phase_V_ = 1.0 / phase_voltage_V_per_code(config);
@@ -222,6 +237,13 @@ Samples Sensors::sample(std::uint64_t period, const True &now) const
         phase_voltage_V +=
             phase_voltage_offset_V_[on] +
             config_.phase_voltage_noise_rms_V * gaussian_pair(phase_voltage_noise_, period);
+        if (now.asked) {
+            current_A += current_residual_A_;
+            phase_voltage_V += phase_voltage_residual_V_;
+        }
+        if (now.bridge_on) {
+            phase_voltage_V += divider_mismatch_ * now.legs_V;
+        }
     }
     Phases current = current_A * codes_per_A_ + middle_code_;
     if (config_.converter_crosstalk_codes > 0.0 && !config_.exact) {

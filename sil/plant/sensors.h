@@ -31,6 +31,8 @@ struct True {
     Phases current_A, phase_voltage_V;
     double bus_V, theta_rad;
     bool bridge_on;
+    bool asked;    /* for a voltage, since it came on */
+    Phases legs_V; /* sum of the voltages of a phase's legs */
 };
 
 class Sensors
@@ -61,6 +63,8 @@ class Sensors
     std::uint64_t seed_, current_noise_, phase_voltage_noise_; /* the latter two are keys of it */
     /* With the bridge off and on. */
     Phases current_offset_A_[2], phase_voltage_offset_V_[2];
+    Phases current_residual_A_, phase_voltage_residual_V_;
+    Phases divider_mismatch_;
     Phases current_gain_;
     double codes_per_A_, codes_per_phase_V_, codes_per_bus_V_;
     double middle_code_, highest_code_;

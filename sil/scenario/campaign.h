@@ -51,6 +51,7 @@ struct CampaignOutcome {
 struct CampaignMotor {
     std::string name = "bendjedia-2012"; /* or a path, as a scenario gives it */
     RatingScales scales;                 /* of its ratings to that motor's */
+    double spread = 1;                   /* of tolerances, relative to what a kind draws */
 };
 
 /* What a seed draws: texts of files. */
@@ -92,21 +93,25 @@ class CampaignWatch : public RowReader
 
 struct CampaignKind {
     const char *name, *description;
-    double duration_s; /* of one run, unless given */
+    static constexpr double own_duration = 0;
+    double duration_s; /* of one run, unless given; own_duration: each run has its own */
     std::vector<CampaignFigure> figures;
     /* The same on every machine (random_scenario.h). */
     Drawn (*draw)(std::uint64_t seed, double duration_s, const CampaignMotor &motor);
     std::unique_ptr<CampaignWatch> (*watch)(const Scenario &scenario);
     bool draws_motor = false; /* then a refusal by the drive is a verdict, not bad input */
+    bool has_bounds = false;  /* of tolerances, which --stretch doubles */
+    std::uint64_t seeds = 1;  /* from 1 on, unless given */
 };
 
 /* All kinds. A new one is a source of its own and a line in campaign.cpp. */
 const std::vector<const CampaignKind *> &campaign_kinds();
 
-extern const CampaignKind long_run_campaign;                    /* campaign_long_run.cpp */
-extern const CampaignKind slip_campaign;                        /* campaign_slip.cpp */
-extern const CampaignKind load_campaign;                        /* campaign_load.cpp */
-extern const CampaignKind motors_campaign, any_motors_campaign; /* campaign_motors.cpp */
+extern const CampaignKind long_run_campaign;                            /* campaign_long_run.cpp */
+extern const CampaignKind slip_campaign;                                /* campaign_slip.cpp */
+extern const CampaignKind load_campaign;                                /* campaign_load.cpp */
+extern const CampaignKind as_built_campaign, as_built_corners_campaign; /* campaign_as_built.cpp */
+extern const CampaignKind motors_campaign, any_motors_campaign;         /* campaign_motors.cpp */
 
 struct CampaignOrder {
     const CampaignKind *kind = nullptr;

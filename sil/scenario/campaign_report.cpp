@@ -150,6 +150,9 @@ std::string reproduce_command(const CampaignOrder &order, std::uint64_t seed)
     if (order.duration_s != order.kind->duration_s) {
         command += " --duration " + shortest(order.duration_s);
     }
+    if (order.motor.spread != CampaignMotor().spread) {
+        command += " --stretch";
+    }
     return command + given_text(order);
 }
 
@@ -170,9 +173,10 @@ std::string campaign_report(const CampaignOrder &order, const std::vector<Campai
         refused += run.outcome.refused() ? 1 : 0;
         within_limit += run.outcome.within_limit() ? 1 : 0;
     }
-    std::string text =
-        format("campaign %s  %s  %s  %.4g s each, %.6g s simulated\n", order.kind->name,
-               order.numeric.c_str(), seeds_text(order).c_str(), order.duration_s, simulated_s);
+    std::string text = format("campaign %s  %s  %s  ", order.kind->name, order.numeric.c_str(),
+                              seeds_text(order).c_str()) +
+                       (order.duration_s > 0 ? format("%.4g s each, ", order.duration_s) : "") +
+                       format("%.6g s simulated\n", simulated_s);
     text += std::string("  ") + order.kind->description + "\n";
     text += verdict_table(runs) + figure_table(order, runs);
     std::size_t shown = 0;

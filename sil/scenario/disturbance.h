@@ -34,10 +34,11 @@ struct PlantValues {
     double bus_V = 0;            /* of the source */
     double coulomb_friction = 0; /* share of the holding torque */
     double bridge_temperature_C = 25;
+    double magnet_rise_K = 0;
 };
 
 /* What a value belongs to; each is handed to the plant as a whole. */
-enum class PlantPart { motor, sensors, bus, friction, bridge_temperature };
+enum class PlantPart { motor, sensors, bus, friction, bridge_temperature, magnet };
 
 struct DriftField {
     const char *key; /* as written under [plant] */

@@ -19,7 +19,7 @@ double held_back_Nm(const Scenario &scenario)
     const plant::ImperfectionConfig &share = scenario.plant.imperfections;
     return scenario.motor.holding_torque_Nm() *
            (std::fabs(share.detent_4) + std::fabs(share.detent_2) + std::fabs(share.detent_1) +
-            share.coulomb_friction);
+            share.coulomb_friction + share.iron.hysteresis);
 }
 
 /* With an encoder. */

@@ -51,6 +51,7 @@ struct Options {
     std::string campaign, scenario_file; /* --write-scenario */
     std::string settings_to, junit;      /* --write-settings, --junit */
     double campaign_duration_s = 0;      /* 0: the kind's own */
+    bool campaign_stretch = false;
     std::string numeric, seed, seeds, out, trace = "csv", folder;
     bool json = false;
     unsigned jobs = default_workers();
@@ -305,12 +306,26 @@ const CampaignKind &campaign_kind(const std::string &name)
     throw InputError("campaign " + name + ": unknown kind (steadystep-sil list names them)");
 }
 
+/* What the kind has a use for. */
+void require_fitting(const Options &options, const CampaignKind &kind)
+{
+    if (options.campaign_duration_s > 0 && kind.duration_s == CampaignKind::own_duration) {
+        throw InputError(std::string("--duration: each run of ") + kind.name + " has its own");
+    }
+    if (options.campaign_stretch && !kind.has_bounds) {
+        throw InputError(std::string("--stretch: ") + kind.name +
+                         " draws no tolerances within bounds; as-built and as-built-corners do");
+    }
+}
+
 int campaign_command(const Options &options)
 {
     const Catalogue catalogue = options.catalogue();
-    const Seeds seeds = seeds_of(options, 1);
     CampaignOrder order;
     order.kind = &campaign_kind(options.campaign);
+    require_fitting(options, *order.kind);
+    const bool given = !options.seed.empty() || !options.seeds.empty();
+    const Seeds seeds = given ? seeds_of(options, 1) : Seeds{1, order.kind->seeds};
     order.duration_s =
         options.campaign_duration_s > 0 ? options.campaign_duration_s : order.kind->duration_s;
     order.first_seed = seeds.first;
@@ -319,6 +334,7 @@ int campaign_command(const Options &options)
     order.given = options.given;
     order.out = options.out;
     order.motor = campaign_motor(catalogue, *order.kind, order.given);
+    order.motor.spread = options.campaign_stretch ? 2 : 1;
     order.jobs = options.jobs;
     order.json = options.json;
     if (options.scenario_file.empty()) {
@@ -522,6 +538,8 @@ int run_program(int argc, char **argv)
         ->add_option("--write-scenario", options.scenario_file,
                      "writes the scenario of --seed to this file and runs nothing")
         ->check(not_empty());
+    campaign->add_flag("--stretch", options.campaign_stretch,
+                       "doubles the bounds of tolerances, where a kind has such");
     campaign->add_flag("--json", options.json, "JSON on standard output, no report");
     add_given_options(*campaign, options);
     add_run_options(*campaign, options);

@@ -27,7 +27,8 @@ std::uint32_t periods(double time_s, double period_s)
 PlantValues values_of(const Scenario &scenario)
 {
     return {scenario.scales, scenario.plant.sensors, scenario.plant.bridge.bus_V,
-            scenario.plant.imperfections.coulomb_friction};
+            scenario.plant.imperfections.coulomb_friction,
+            scenario.plant.imperfections.magnet_rise_K};
 }
 
 void set_part(const Scenario &scenario, const PlantValues &values, PlantPart part,
@@ -42,6 +43,9 @@ void set_part(const Scenario &scenario, const PlantValues &values, PlantPart par
         break;
     case PlantPart::bus:
         plant.set_bus(values.bus_V);
+        break;
+    case PlantPart::magnet:
+        plant.set_magnet_rise(values.magnet_rise_K);
         break;
     case PlantPart::friction:
         plant.set_coulomb_friction(values.coulomb_friction);

@@ -22,11 +22,40 @@ constexpr std::size_t most_bases = 16;  /* each is held until the last one has b
 constexpr double longest_run_s = 600;
 constexpr double most_rows = 6e6; /* 25 columns: 1.2 GB */
 constexpr double largest_position_rad = 1e7;
+/* Of the converters' ranges: 10 mA of 6 A, 5 mV of 31.2 V. */
+constexpr double residual_current = 10e-3 / 6.0, residual_voltage = 5e-3 / 31.2;
+
+/* `plant = "real"` is short for its model alone. */
+void spell_out_plant(Value &document)
+{
+    const Value *plant = document.find("plant");
+    if (plant == nullptr || plant->kind != Value::Kind::text) {
+        return;
+    }
+    Value table;
+    table.kind = Value::Kind::table;
+    table.location = plant->location;
+    table.set("model", *plant);
+    document.set("plant", table);
+}
+
+/* The same of --set. */
+std::vector<std::string> with_plant_spelled_out(std::vector<std::string> sets)
+{
+    const std::string brief = "plant=";
+    for (std::string &set : sets) {
+        if (set.rfind(brief, 0) == 0) {
+            set = "plant.model=" + set.substr(brief.size());
+        }
+    }
+    return sets;
+}
 
 /* The file with its bases under it; `chain` holds the files that wait for this one. */
 Value read_with_bases(const Catalogue &catalogue, const fs::path &file, std::vector<fs::path> chain)
 {
     Value document = read_toml(file);
+    spell_out_plant(document);
     const Value *base = document.find("base");
     if (base == nullptr) {
         return document;
@@ -124,8 +153,8 @@ std::vector<std::string> sets_of(const CommandLine &given, bool of_drive)
 void apply_command_line(Value &document, const Catalogue &catalogue, const CommandLine &given,
                         std::string &parameters)
 {
-    const std::vector<std::string> sets =
-        given.settings_file.empty() ? given.settings : sets_of(given, false);
+    const std::vector<std::string> sets = with_plant_spelled_out(
+        given.settings_file.empty() ? given.settings : sets_of(given, false));
     if (given.parameters.empty()) {
         apply_settings(document, sets);
         lay_parameters_under(document, catalogue, parameters);
@@ -190,6 +219,48 @@ void make_real(plant::Config &plant, const Motor &motor)
     plant.sensors.phase_voltage_offset_on_b_V = 5e-3;
 }
 
+/* What `as-built` adds to `real`; sources: sil/plant/README.md. */
+void make_as_built(plant::Config &plant, const Motor &motor)
+{
+    make_real(plant, motor);
+    plant::ImperfectionConfig &imperfections = plant.imperfections;
+    imperfections.iron.hysteresis = 0.02;
+    imperfections.iron.eddy_time_s = 6e-6;
+    imperfections.resistance_a_scale = 0.985;
+    imperfections.resistance_b_scale = 1.015;
+    imperfections.inductance_a_scale = 1.01;
+    imperfections.inductance_b_scale = 0.99;
+    imperfections.magnet_rise_K = 70;
+    plant::SensorConfig &sensors = plant.sensors;
+    sensors.current_gain_a = 1.015;
+    sensors.current_gain_b = 0.985;
+    sensors.divider_mismatch_a = 2.5e-3;
+    sensors.divider_mismatch_b = -2.5e-3;
+    sensors.current_residual_a_A = residual_current * sensors.current_range_A;
+    sensors.current_residual_b_A = -residual_current * sensors.current_range_A;
+    sensors.phase_voltage_residual_a_V = residual_voltage * sensors.phase_voltage_range_V;
+    sensors.phase_voltage_residual_b_V = -residual_voltage * sensors.phase_voltage_range_V;
+}
+
+void read_iron_and_belt(TableReader &reader, plant::ImperfectionConfig &imperfections)
+{
+    plant::IronConfig &iron = imperfections.iron;
+    plant::BeltConfig &belt = imperfections.belt;
+    reader.number("hysteresis", iron.hysteresis, 0, 0.2);
+    reader.number("hysteresis_flux", iron.hysteresis_flux, 0.02, 10);
+    reader.number("eddy_time_s", iron.eddy_time_s, 0, 1e-4);
+    reader.number("eddy_lag_s", iron.eddy_lag_s, 0, 1e-2);
+    reader.number("belt_inertia_share", belt.inertia_share, 0, 0.99);
+    reader.number("belt_frequency_Hz", belt.frequency_Hz, 1, 2000);
+    reader.number("belt_damping", belt.damping, 0, 1);
+    reader.number("resistance_a_scale", imperfections.resistance_a_scale, 0.5, 2);
+    reader.number("resistance_b_scale", imperfections.resistance_b_scale, 0.5, 2);
+    reader.number("inductance_a_scale", imperfections.inductance_a_scale, 0.5, 2);
+    reader.number("inductance_b_scale", imperfections.inductance_b_scale, 0.5, 2);
+    reader.number("magnet_rise_K", imperfections.magnet_rise_K, -100, 200);
+    reader.number("magnet_flux_per_K", imperfections.magnet_flux_per_K, -0.01, 0);
+}
+
 void read_imperfections(TableReader &reader, plant::ImperfectionConfig &imperfections)
 {
     reader.number("saturation_depth", imperfections.saturation_depth, 0, 0.5);
@@ -200,6 +271,18 @@ void read_imperfections(TableReader &reader, plant::ImperfectionConfig &imperfec
     reader.number("coulomb_friction", imperfections.coulomb_friction, 0, 10);
     reader.number("bridge_resistance_ohm", imperfections.bridge_resistance_ohm, 0, 100);
     reader.number("phase_voltage_filter_s", imperfections.phase_voltage_filter_s, 0, 1e-3);
+    read_iron_and_belt(reader, imperfections);
+}
+
+/* A residual is what is left of a calibration, or comes behind it. */
+void read_mismatches(TableReader &reader, plant::SensorConfig &sensors)
+{
+    reader.number("current_residual_a_A", sensors.current_residual_a_A, -10, 10);
+    reader.number("current_residual_b_A", sensors.current_residual_b_A, -10, 10);
+    reader.number("phase_voltage_residual_a_V", sensors.phase_voltage_residual_a_V, -100, 100);
+    reader.number("phase_voltage_residual_b_V", sensors.phase_voltage_residual_b_V, -100, 100);
+    reader.number("divider_mismatch_a", sensors.divider_mismatch_a, -0.1, 0.1);
+    reader.number("divider_mismatch_b", sensors.divider_mismatch_b, -0.1, 0.1);
 }
 
 void read_supply(TableReader &reader, plant::Config &plant)
@@ -234,10 +317,12 @@ void read_current_range(TableReader &reader, plant::SensorConfig &sensors, const
 void read_plant_model(TableReader &reader, plant::Config &plant, const Motor &motor)
 {
     std::size_t model = 1, bridge = 0;
-    reader.choice("model", model, {"ideal", "bench", "real"});
+    reader.choice("model", model, {"ideal", "bench", "real", "as-built"});
     const bool ideal = model == 0;
     if (model == 2) {
         make_real(plant, motor);
+    } else if (model == 3) {
+        make_as_built(plant, motor);
     }
     plant.bridge.model = ideal ? plant::BridgeModel::averaged : plant::BridgeModel::switched;
     plant.sensors.exact = ideal;
@@ -262,6 +347,7 @@ void read_plant(const Value &table, Scenario &scenario)
     read_plant_model(reader, plant, scenario.motor);
     read_imperfections(reader, plant.imperfections);
     read_supply(reader, plant);
+    read_mismatches(reader, sensors);
     reader.number("dead_time_s", bridge.dead_time_s, 0, 1e-5);
     reader.number("diode_drop_V", bridge.diode_drop_V, 0, 5);
     reader.number("period_s", bridge.period_s, 1e-6, 1e-3);
@@ -367,6 +453,7 @@ Scenario interpreted(const Catalogue &catalogue, const Value &document, const Co
     Scenario scenario;
     scenario.given = given;
     scenario.document = document;
+    spell_out_plant(scenario.document);
     apply_command_line(scenario.document, catalogue, given, scenario.parameters);
 
     TableReader reader(scenario.document, "");

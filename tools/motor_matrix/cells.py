@@ -41,6 +41,9 @@ PLANTS = (
               {"model": "real", "detent_4": 0.0, "detent_2": 0.0, "detent_1": 0.0,
                "coulomb_friction": 0.0}),
 )
+# With one that is run by its name only: it asks for more than the counts of the others.
+ALL_PLANTS = (*PLANTS, PlantKind("as-built", "as built", {"model": "as-built"}, detent=True))
+
 
 
 class Feedback(NamedTuple):

@@ -1,5 +1,5 @@
 """The matrix as text: a row per motor, a group of columns per plant and feedback."""
-from motor_matrix.cells import FEEDBACKS, MOVES, PLANTS
+from motor_matrix.cells import ALL_PLANTS, FEEDBACKS, MOVES
 from motor_matrix.verdict import HELD, LIMIT, REFUSED, WORST_FIRST
 
 SIGNS = {HELD: "·", "fault": "F", "slip": "S", "commutation": "C", "position": "p", "slow": "t",
@@ -12,7 +12,7 @@ LEGEND = ("· held, F fault, S slip, C commutation beyond 45°, p position at th
 def groups_of(cells):
     """(plant, feedback) in order, those that are there."""
     present = {(cell["plant"], cell["feedback"]) for cell in cells}
-    return [(plant, feedback) for plant in PLANTS for feedback in FEEDBACKS
+    return [(plant, feedback) for plant in ALL_PLANTS for feedback in FEEDBACKS
             if (plant.name, feedback.name) in present]
 
 
