@@ -6,9 +6,9 @@
 import re
 from typing import NamedTuple
 
-INLINE = re.compile(r"<!--= ([\w.-]+) -->([^\n]*?)<!--=-->")
-BLOCK = re.compile(r"<!--: ([\w.-]+) -->\n\n?((?:(?:    .*|\|.*)\n(?:\n(?=    ))?)+)")
-ANY = re.compile(r"<!--[=:] ")
+INLINE = re.compile(r"(?<!`)<!--= ([\w.-]+) -->([^\n]*?)<!--=-->")
+BLOCK = re.compile(r"(?<!`)<!--: ([\w.-]+) -->\n\n?((?:(?:    .*|\|.*)\n(?:\n(?=    ))?)+)")
+ANY = re.compile(r"(?<!`)<!--[=:] ")  # one in backticks is shown, not meant
 SKIPPED = ("build", "third_party", ".git")
 
 

@@ -16,7 +16,7 @@ def vibration(sources):
         least = min((row for row in rows if row["state"] == state), key=lambda row: row["borne_share"])
         name = state.replace(" ", "-")
         found |= {name: f"{100 * least['borne_share']:.0f}", f"{name}-Hz": f"{least['frequency_Hz']:.0f}",
-                  f"{name}-plant": least["plant"]}
+                  f"{name}-plant": f"`{least['plant']}`"}
     return found
 
 

@@ -33,6 +33,10 @@ def draw(found, motor, hold_Hz, seeds, numeric):
         axes.axhline(level, color="#009e73", linewidth=1.2)
         axes.annotate(f"{level} %, {name}", (frequencies[0], level), xytext=(2, 3),
                       textcoords="offset points", color="#00694d", fontsize=9)
+    if any(all_borne for _, all_borne in found.values()):
+        axes.annotate("the most that was tried: borne", (frequencies[-1], 100 * COARSE[-1]),
+                      xytext=(0, -12), textcoords="offset points", ha="right", color="#444444",
+                      fontsize=9)
     if frequencies[0] < hold_Hz < frequencies[-1]:
         axes.axvline(hold_Hz, color="#555555", linewidth=1, linestyle=":")
         axes.annotate(f"the held rotor's own\nfrequency, {hold_Hz:.0f} Hz", (hold_Hz, 0),
@@ -46,8 +50,8 @@ def draw(found, motor, hold_Hz, seeds, numeric):
     axes.grid(color="#dddddd")
     axes.spines[["top", "right"]].set_visible(False)
     axes.legend(loc="upper left", bbox_to_anchor=(1.005, 1.0), frameon=False, fontsize=9)
-    figure.suptitle(f"Oscillating load, {motor.id} without an encoder, firmware in {numeric}, "
-                    f"every one of {seeds[1] - seeds[0] + 1} seeds", fontsize=11)
+    figure.suptitle(f"Oscillating load that {motor.id} bears without an encoder, firmware in "
+                    f"{numeric}, worst of {seeds[1] - seeds[0] + 1} seeds", fontsize=11)
     drawn = io.BytesIO()
     figure.savefig(drawn)
     plt.close(figure)
