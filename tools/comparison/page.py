@@ -9,13 +9,13 @@ from comparison.table import column, main_columns, mismatch_columns
 
 STYLE = """
 body { font: 15px/1.5 "Helvetica Neue", Helvetica, Arial, sans-serif; color: #1a1a1a;
-       margin: 0 auto; padding: 1.5em 2em 4em; max-width: 1180px; background: #fff; }
+       margin: 0 auto; padding: 1.5em 2em 4em; max-width: 1236px; background: #fff; }
 h1 { font-size: 1.7em; margin: 0 0 .1em; } h2 { font-size: 1.2em; margin: 2.2em 0 .5em;
      border-bottom: 2px solid #1a1a1a; padding-bottom: .15em; }
 p { max-width: 62em; } .quiet { color: #666; font-size: .9em; }
-.wide { overflow-x: auto; } table { border-collapse: collapse; font-size: .86em;
+.wide { overflow-x: auto; } table { border-collapse: collapse; font-size: .8em;
        font-variant-numeric: tabular-nums; }
-th, td { padding: .28em .5em; text-align: right; } td { white-space: nowrap; }
+th, td { padding: .3em .32em; text-align: right; } td { white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; }
 thead th { font-weight: 600; vertical-align: bottom; }
 thead tr:first-child th { text-align: center; border-bottom: 1px solid #999; }
@@ -33,7 +33,7 @@ pre { white-space: pre-wrap; } code, pre, td.words { overflow-wrap: anywhere; }
 td.words { white-space: normal; }
 @media (max-width: 900px) { .wide { display: none; } .narrow { display: block; }
        body { padding: .8em 1em 3em; } h1 { font-size: 1.35em; } dd { margin-left: .6em; }
-       th, td { padding: .28em .3em; } }
+       .narrow td:first-child { white-space: normal; } table { font-size: .86em; } }
 @media print { body { max-width: none; padding: 0; font-size: 11px; } h2 { break-after: avoid; }
                img { break-inside: avoid; } details { display: none; } }
 """

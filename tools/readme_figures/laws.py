@@ -102,11 +102,11 @@ def laws(sources):
     return found
 
 
-@entry("laws-learned", f"{COMPARE} --moves learned-creep --ablation", Cost.DEAR,
+@entry("laws-learned", "tools/compare --plants nominal --seeds 1-8 --moves learned-creep --ablation", Cost.DEAR,
        probe=("run compare-learned-creep --json",
               "run compare-learned-creep --json --parameters bendjedia-2012/foc"))
 def laws_learned(sources):
-    rows, parts = compared(sources, "--moves", "learned-creep", "--ablation")
+    rows, parts = compared(sources, "--seeds", "1-8", "--moves", "learned-creep", "--ablation")
     creep = "learned-creep"
     return {"default": short(rows[DEFAULT, creep]["position_error_rms_rad"]),
             "up": up(1e3 * rows[DEFAULT, creep]["position_error_rms_rad"], 2),

@@ -1,5 +1,6 @@
 """firmware/README.md: the oscillating load that is borne. tools/README.md: the envelope."""
 import json
+import math
 
 from readme_figures.registry import Cost, entry
 
@@ -15,7 +16,7 @@ def vibration(sources):
     for state in ("at rest", "in motion"):
         least = min((row for row in rows if row["state"] == state), key=lambda row: row["borne_share"])
         name = state.replace(" ", "-")
-        found |= {name: f"{100 * least['borne_share']:.0f}", f"{name}-Hz": f"{least['frequency_Hz']:.0f}",
+        found |= {name: f"{math.floor(100 * least['borne_share'] + 1e-9)}", f"{name}-Hz": f"{least['frequency_Hz']:.0f}",
                   f"{name}-plant": f"`{least['plant']}`"}
     return found
 

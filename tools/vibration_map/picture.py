@@ -35,7 +35,7 @@ def draw(found, motor, hold_Hz, seeds, numeric):
                       textcoords="offset points", color="#00694d", fontsize=9)
     if any(all_borne for _, all_borne in found.values()):
         axes.annotate("the most that was tried: borne", (frequencies[-1], 100 * COARSE[-1]),
-                      xytext=(0, -12), textcoords="offset points", ha="right", color="#444444",
+                      xytext=(0, 5), textcoords="offset points", ha="right", color="#444444",
                       fontsize=9)
     if frequencies[0] < hold_Hz < frequencies[-1]:
         axes.axvline(hold_Hz, color="#555555", linewidth=1, linestyle=":")
@@ -44,7 +44,7 @@ def draw(found, motor, hold_Hz, seeds, numeric):
     axes.set_xscale("log")
     axes.set_xticks(frequencies, [f"{frequency:.0f}" for frequency in frequencies])
     axes.xaxis.set_minor_locator(matplotlib.ticker.NullLocator())
-    axes.set_ylim(0, 100 * COARSE[-1] * 1.06)
+    axes.set_ylim(0, 100 * COARSE[-1] * 1.1)
     axes.set_xlabel("frequency of the load / Hz")
     axes.set_ylabel("amplitude that is borne for 2 s\n/ % of the rated torque (Km × rated current)")
     axes.grid(color="#dddddd")
