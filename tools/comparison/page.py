@@ -9,13 +9,13 @@ from comparison.table import column, main_columns, mismatch_columns
 
 STYLE = """
 body { font: 15px/1.5 "Helvetica Neue", Helvetica, Arial, sans-serif; color: #1a1a1a;
-       margin: 0 auto; padding: 1.5em 2em 4em; max-width: 1180px; background: #fff; }
+       margin: 0 auto; padding: 1.5em 2em 4em; max-width: 1236px; background: #fff; }
 h1 { font-size: 1.7em; margin: 0 0 .1em; } h2 { font-size: 1.2em; margin: 2.2em 0 .5em;
      border-bottom: 2px solid #1a1a1a; padding-bottom: .15em; }
 p { max-width: 62em; } .quiet { color: #666; font-size: .9em; }
-.wide { overflow-x: auto; } table { border-collapse: collapse; font-size: .86em;
+.wide { overflow-x: auto; } table { border-collapse: collapse; font-size: .8em;
        font-variant-numeric: tabular-nums; }
-th, td { padding: .28em .6em; text-align: right; white-space: nowrap; }
+th, td { padding: .3em .32em; text-align: right; } td { white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; }
 thead th { font-weight: 600; vertical-align: bottom; }
 thead tr:first-child th { text-align: center; border-bottom: 1px solid #999; }
@@ -28,17 +28,27 @@ img { max-width: 100%; height: auto; } pre { background: #f6f6f6; padding: .8em 
       overflow-x: auto; font-size: .82em; line-height: 1.4; }
 dt { font-weight: 600; margin-top: .5em; } dd { margin: 0 0 0 1.2em; }
 details { margin: .3em 0; } summary { cursor: pointer; }
+.narrow { display: none; } .narrow table { width: 100%; margin-bottom: 1.2em; }
+pre { white-space: pre-wrap; } code, pre, td.words { overflow-wrap: anywhere; }
+td.words { white-space: normal; }
+@media (max-width: 900px) { .wide { display: none; } .narrow { display: block; }
+       body { padding: .8em 1em 3em; } h1 { font-size: 1.35em; } dd { margin-left: .6em; }
+       .narrow td:first-child { white-space: normal; } table { font-size: .86em; } }
 @media print { body { max-width: none; padding: 0; font-size: 11px; } h2 { break-after: avoid; }
                img { break-inside: avoid; } details { display: none; } }
 """
+
+NARROW = "max-width: 900px"
+NARROW_COLUMNS = 3  # that a telephone shows beside the law's name
+LONGEST_CELL = 24   # beyond, a cell is words
 
 # What tools/cycles calls a law where it counts it in another configuration.
 CYCLES_OF = {"state-feedback": "default-sensorless"}
 
 HOW_TO_READ = """
 <p>Every law runs as the drive's own firmware on the same simulated board, with the same encoder,
-observer structure, angle advance, voltage limit, loss compensation and calibrated series
-resistance; its bandwidths were found by the same optimiser with the same budget and cost. What
+observer structure, detent learning, angle advance, voltage limit, loss compensation and calibrated
+series resistance; its bandwidths were found by the same optimiser with the same budget and cost. What
 differs between two rows is the law.</p>
 <p>Errors are reference minus true angle. The rms counts from 0.03 s on (sine: 0.3 s), so that the
 load's arrival at time zero does not weigh in. The step is a raw one: laws that live from a smooth
@@ -57,7 +67,23 @@ def cell_html(tag, text, classes=()):
     return f"<{tag}{attribute}>{html.escape(text)}</{tag}>"
 
 
+def in_both(whole, parts):
+    """A table for a wide page, and the same in parts for a narrow one."""
+    return f'<div class="wide">{whole}</div><div class="narrow">{"".join(parts)}</div>'
+
+
 def grouped_table(names, columns, home_law, colours=None):
+    groups = {}
+    for one in columns:
+        groups.setdefault(one.group, []).append(one)
+    return in_both(table_of(names, columns, home_law, colours),
+                   [part for group in groups.values()
+                    for part in (table_of(names, group[first:first + NARROW_COLUMNS], home_law,
+                                          colours)
+                                 for first in range(0, len(group), NARROW_COLUMNS))])
+
+
+def table_of(names, columns, home_law, colours):
     top, second = ["<th></th>"], ["<th>law</th>"]
     starts = [i == 0 or columns[i - 1].group != one.group for i, one in enumerate(columns)]
     for i, one in enumerate(columns):
@@ -79,16 +105,23 @@ def grouped_table(names, columns, home_law, colours=None):
             cells.append(cell_html("td", text, classes))
         home = ' class="home"' if name == home_law else ""
         rows.append(f"<tr{home}>{''.join(cells)}</tr>")
-    return (f'<div class="wide"><table><thead><tr>{"".join(top)}</tr><tr>{"".join(second)}</tr>'
-            f"</thead><tbody>{''.join(rows)}</tbody></table></div>")
+    return (f'<table><thead><tr>{"".join(top)}</tr><tr>{"".join(second)}</tr>'
+            f"</thead><tbody>{''.join(rows)}</tbody></table>")
 
 
 def plain_table(headings, rows):
-    head = "".join(cell_html("th", one) for one in headings)
-    body = "".join("<tr>" + "".join(cell_html("td", cell) for cell in row) + "</tr>"
-                   for row in rows)
-    return (f'<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>'
-            "</div>")
+    """The first column names the rows, in every part of it."""
+    def part(begin, end):
+        def line(tag, cells):
+            shown = [cells[0], *cells[begin:end]]
+            return "<tr>" + "".join(cell_html(tag, cell, ["words"] if len(cell) > LONGEST_CELL else [])
+                                    .replace("_", "_<wbr>") for cell in shown) + "</tr>"
+
+        return (f'<table><thead>{line("th", headings)}</thead>'
+                f'<tbody>{"".join(line("td", row) for row in rows)}</tbody></table>')
+
+    return in_both(part(1, len(headings)), [part(begin, begin + NARROW_COLUMNS)
+                                            for begin in range(1, len(headings), NARROW_COLUMNS)])
 
 
 def costs_section(comparison, plant):
@@ -211,11 +244,13 @@ def page(comparison, *, pictures, cycles, ablation, command, version, numeric, h
                   grouped_table(names, mismatch_columns(comparison), home_law, colours)]
     if ablation:
         parts += ["<h2>What each part of the default law is worth</h2>", ablation]
-    for move, picture in pictures:
-        encoded = base64.b64encode(picture).decode("ascii")
+    for move, *drawn in pictures:
+        wide, narrow = ("data:image/png;base64," + base64.b64encode(one).decode("ascii")
+                        for one in drawn)
         parts += [f"<h2>{html.escape(move.title[0].upper() + move.title[1:])}</h2>",
+                  f'<picture><source media="({NARROW})" srcset="{narrow}">'
                   f'<img alt="position error of every law, {html.escape(move.title)}" '
-                  f'src="data:image/png;base64,{encoded}">']
+                  f'src="{wide}"></picture>']
     parts += ["<h2>Current and voltage</h2>",
               "<p>rms of one phase; ripple of the q current.</p>",
               costs_section(comparison, nominal),
@@ -227,5 +262,6 @@ def page(comparison, *, pictures, cycles, ablation, command, version, numeric, h
               "<h2>Conditions</h2>", conditions(comparison, numeric)]
     body = "\n".join(parts)
     return (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
+            '<meta name="viewport" content="width=device-width, initial-scale=1">'
             f"<title>Position laws compared: {html.escape(comparison.motor.id)}</title>"
             f"<style>{STYLE}</style></head><body>\n{body}\n</body></html>\n")

@@ -28,6 +28,7 @@ OWN_SCALE = "#fff4e5"  # behind a law whose error leaves the common scale
 SHOWN_AFTER_STEP_s = 0.04
 SHOWN_BEFORE_LOAD_s = 0.005
 COMMON_SCALE = 3.0  # times the largest error of the law at the lower quartile; others have their own
+WIDE_in, NARROW_in = 9.2, 4.4  # of a page on a screen, and on a telephone
 
 
 def trace_of(folder):
@@ -108,29 +109,31 @@ def draw_reference(axes, trace):
     load.spines["right"].set_visible(True)
 
 
-def profile_picture(comparison, plant, move):
+def profile_picture(comparison, plant, move, narrow):
     traces = traces_of(comparison, move)
     colours = colour_of(comparison)
     first = next(iter(traces.values()))
     end_s = float(first["time_s"][-1])
     limit = common_limit(traces, 0, end_s)
-    rows = math.ceil(len(traces) / 2)
-    figure = plt.figure(figsize=(9.2, 1.5 + 1.45 * rows), layout="constrained")
-    grid = figure.add_gridspec(rows + 1, 2, height_ratios=[0.9] + rows * [1])
+    columns = 1 if narrow else 2
+    rows = math.ceil(len(traces) / columns)
+    figure = plt.figure(figsize=(NARROW_in if narrow else WIDE_in, 1.5 + 1.45 * rows),
+                        layout="constrained")
+    grid = figure.add_gridspec(rows + 1, columns, height_ratios=[0.9] + rows * [1])
     draw_reference(figure.add_subplot(grid[0, :]), first)
     entries = [entry for entry in comparison.entries if entry.name in traces]
     for place, entry in enumerate(entries):
-        axes = figure.add_subplot(grid[1 + place // 2, place % 2])
+        axes = figure.add_subplot(grid[1 + place // columns, place % columns])
         draw_error(axes, traces[entry.name], colours[entry.name], 0, end_s, limit)
         title(axes, entry.name, figures_line(comparison, entry, plant, move), colours[entry.name])
-        if place < len(entries) - 2:
+        if place < len(entries) - columns:
             axes.tick_params(labelbottom=False)
     figure.supylabel("position error, reference − true / mrad", fontsize=9)
     figure.supxlabel("time / s", fontsize=9)
     return figure
 
 
-def step_picture(comparison, plant, move):
+def step_picture(comparison, plant, move, narrow):
     """The answer to the step beside the answer to the load."""
     traces = traces_of(comparison, move)
     colours = colour_of(comparison)
@@ -139,7 +142,8 @@ def step_picture(comparison, plant, move):
     begin_s = load_s - SHOWN_BEFORE_LOAD_s
     limit = common_limit(traces, begin_s, first["time_s"][-1])
     step_mrad = 1e3 * comparison.motor.full_step_rad
-    figure, panels = plt.subplots(len(traces), 2, figsize=(9.2, 0.5 + 1.25 * len(traces)),
+    figure, panels = plt.subplots(len(traces), 2, figsize=(NARROW_in if narrow else WIDE_in,
+                                                           0.5 + 1.25 * len(traces)),
                                   layout="constrained", sharex="col", squeeze=False)
     entries = [entry for entry in comparison.entries if entry.name in traces]
     for (left, right), entry in zip(panels, entries):
@@ -147,20 +151,22 @@ def step_picture(comparison, plant, move):
         draw_error(left, trace, colour, 0, SHOWN_AFTER_STEP_s, math.inf)
         left.set_ylim(-0.75 * step_mrad, 1.1 * step_mrad)
         draw_error(right, trace, colour, begin_s, first["time_s"][-1], limit)
-        title(left, entry.name, "step of one full step", colour)
-        title(right, "", figures_line(comparison, entry, plant, move), colour)
+        title(left, entry.name, "" if narrow else "step of one full step", colour)
+        line = figures_line(comparison, entry, plant, move)
+        title(right, "", line.replace(", ", ",\n") if narrow else line, colour)
     figure.supylabel("position error, reference − true / mrad", fontsize=9)
-    figure.supxlabel("time / s;   left: from the step, right: from the load step", fontsize=9)
+    figure.supxlabel("time / s;   left: from the step" + (",\n" if narrow else ", ")
+                     + "right: from the load step", fontsize=9)
     return figure
 
 
-def draw(comparison, plant, move):
-    """The picture of a move as PNG bytes; None if no law ran."""
+def draw(comparison, plant, move, narrow=False):
+    """The picture of a move as PNG bytes, for a wide page or a narrow one; None if no law ran."""
     if not traces_of(comparison, move):
         return None
     with plt.rc_context(STYLE):
         picture = step_picture if move.name == "step" else profile_picture
-        figure = picture(comparison, plant, move)
+        figure = picture(comparison, plant, move, narrow)
         drawn, small = io.BytesIO(), io.BytesIO()
         figure.savefig(drawn)
         plt.close(figure)
