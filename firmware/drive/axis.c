@@ -14,7 +14,7 @@
      FAULT_BIT(DEADLINE_MISSED) | FAULT_BIT(BUS_VOLTAGE) | FAULT_BIT(PHASE_IMBALANCE))
 
 /* May come of an encoder that does not count what the rotor does, or of a search that failed. */
-#define DOUBT_ENCODER                                                                              \
+#define SAY_ENCODER_MAY_FAIL                                                                       \
     (FAULT_BIT(FOLLOWING_ERROR) | FAULT_BIT(ESTIMATE_RANGE) | FAULT_BIT(POSITION_NOT_FOUND))
 
 static bool is_one_of(enum drive_fault fault, uint32_t faults)
@@ -68,7 +68,7 @@ void axis_note_ready(struct drive *drive)
     drive->axis.aligned = estimator_has_encoder(&drive->params.estimator);
 }
 
-void axis_doubt(struct drive *drive)
+void axis_note_uncertain(struct drive *drive)
 {
     drive->axis.reference = DRIVE_POSITION_UNCERTAIN;
 }
@@ -91,7 +91,7 @@ static void leave_rotor(struct drive *drive, bool powered, bool sound)
     struct position position = drive->reference.next.position;
 
     if (!sound || (powered && !rests(drive))) {
-        axis_doubt(drive);
+        axis_note_uncertain(drive);
         position = drive->estimator.estimate.rotor.position;
     } else if (drive->axis.reference == DRIVE_POSITION_REFERENCED) {
         drive->axis.reference = DRIVE_POSITION_KEPT;
@@ -113,7 +113,7 @@ static void leave_encoder(struct drive *drive, const struct encoder *encoder, bo
     }
     if (!sound) {
         axis->aligned = false;
-        axis_doubt(drive);
+        axis_note_uncertain(drive);
     }
 }
 
@@ -125,7 +125,7 @@ void axis_note_bridge_off(struct drive *drive, enum drive_fault fault)
     if (encoder == NULL) {
         leave_rotor(drive, powered, is_one_of(fault, SAY_NOTHING_OF_ROTOR));
     } else if (powered) {
-        leave_encoder(drive, encoder, !is_one_of(fault, DOUBT_ENCODER));
+        leave_encoder(drive, encoder, !is_one_of(fault, SAY_ENCODER_MAY_FAIL));
     }
 }
 

@@ -53,7 +53,7 @@ void axis_note_bridge_off(struct drive *drive, enum drive_fault fault);
 void axis_note_disabled(struct drive *drive);
 
 /* Interrupt: the rotor may no longer be where it is said to be. */
-void axis_doubt(struct drive *drive);
+void axis_note_uncertain(struct drive *drive);
 
 /* Interrupt, with the bridge off: takes the reference along with the rotor as it is counted. */
 void axis_follow_encoder(struct drive *drive);

@@ -166,7 +166,7 @@ static enum drive_fault act(struct drive *drive, enum synchronism verdict)
         drive->synchronism.shown = shown[verdict];
     }
     if (verdict > SYNCHRONISM_DOUBTFUL) {
-        axis_doubt(drive);
+        axis_note_uncertain(drive);
     }
     if (verdict == SYNCHRONISM_DOUBTFUL || drive->synchronism.policy != DRIVE_SYNCHRONISM_FAULT) {
         return DRIVE_FAULT_NONE;

@@ -203,6 +203,7 @@ void settings_act(Expectations &expectations, const std::string &image);
 /* stm32g474_lines.cpp */
 void lines_overflow(Expectations &expectations, const std::string &image);
 void line_ends(Expectations &expectations, const std::string &image);
+void position_outlives_disable(Expectations &expectations, const std::string &image);
 
 } // namespace stm32g474_bench
 

@@ -155,6 +155,7 @@ const Case cases[] = {
     {"no-crystal", starts_without_crystal},
     {"lines-overflow", lines_overflow},
     {"line-ends", line_ends},
+    {"position-outlives-disable", position_outlives_disable},
     {"supply-fails-in-store", supply_fails_in_store},
     {"supply-fails-in-erase", supply_fails_in_erase},
     {"supply-fails-beside-weak-cell", supply_fails_beside_weak_cell},

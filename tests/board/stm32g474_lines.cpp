@@ -71,4 +71,32 @@ void line_ends(Expectations &expectations, const std::string &image)
                         "nothing is lost of lines that CR alone ends");
 }
 
+void position_outlives_disable(Expectations &expectations, const std::string &image)
+{
+    Powered run(image);
+    (void)run.start();
+    expectations.expect(count(run.type("set-position 3\n", 20 * ms), "ok set-position") == 1,
+                        "the zero is set while disabled");
+    const std::string ready = run.type("enable\n", enable_time);
+    expectations.expect(count(ready, "reference_rad=3 ") == 1 && count(ready, "position=kept") == 1,
+                        "and the drive begins there");
+    expectations.expect(count(run.type("set-position 12.5\n", 20 * ms), "ok set-position") == 1 &&
+                            count(run.type("move 13\n", 400 * ms), "ok move") == 1,
+                        "a move from another zero");
+    expectations.expect(count(run.type("state\n", 30 * ms), "position=referenced") == 1,
+                        "the axis is referenced then");
+    (void)run.type("disable\n", 20 * ms);
+    const std::string again = run.type("enable\n", enable_time);
+    expectations.expect(count(again, "reference_rad=13 ") == 1 &&
+                            count(again, "position=kept") == 1,
+                        "disabled and enabled, it is where it was");
+    (void)run.type("velocity 5 acceleration_rad_s2=500 jerk_rad_s3=1e5\n", 100 * ms);
+    expectations.expect(
+        count(run.type("set-position 0\n", 20 * ms), "error: set-position refused: ") == 1,
+        "in motion its zero stays");
+    (void)run.type("disable\n", 20 * ms);
+    expectations.expect(count(run.type("enable\n", enable_time), "home the axis again") == 1,
+                        "a rotor that was left in motion is not where it was");
+}
+
 } // namespace stm32g474_bench

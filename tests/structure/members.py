@@ -25,6 +25,7 @@ WRITERS = {
     "params": ["drive", "estimator_design", "settings_in_motion"],
     "settings": ["drive"],
     "supervision": ["state_machine"],
+    "axis": ["axis"],
     "synchronism": ["synchronism", "settings_in_motion"],
     "input": ["prepared_input"],
     "standstill": ["standstill_angle"],

@@ -166,7 +166,7 @@ static void test_a_period_too_far_ahead_is_refused_with_the_range(void)
     answers("stop", "ok stop at=26\n");
 }
 
-/* Commands act in the order in which they came: one answer tells when, no line says less. */
+/* Commands act in the order in which they came: each answer says when. */
 static void test_a_line_behind_one_that_waits_answers_when_it_will_act(void)
 {
     enable();
