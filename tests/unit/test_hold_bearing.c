@@ -1,4 +1,5 @@
 /* What a drive without an encoder bears of a motor: what it says of it, and when it refuses. */
+#include "firmware/drive/hold_bearing.c" /* no part of a drive: who asks on the host has it */
 #include "tests/unit/drive_bench.h"
 
 static struct drive_hold_bearing bearing;

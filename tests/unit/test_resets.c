@@ -125,6 +125,18 @@ static void test_the_reference(void)
     TEST_ASSERT_EQUAL_UINT32(drive.reference.epoch, 2u);
 }
 
+static void test_a_plan(void)
+{
+    const struct motion_state from = {.turns = 3, .fraction = 5, .speed = 7, .acceleration = 8};
+
+    /* where it lands is told last; segments follow */
+    BEGINS_ANEW(struct motion_plan, motion_plan_begin(block, &from, 9u),
+                PADDING(struct motion_plan, from.turns, from.fraction),
+                PADDING(struct motion_plan, epoch, speed_jump),
+                PADDING(struct motion_plan, lands, target), LEAVES(struct motion_plan, target),
+                PADDING(struct motion_plan, target, segment), LEAVES(struct motion_plan, segment));
+}
+
 static void test_the_estimators(void)
 {
     const struct estimator_params *p = &drive.params.estimator;
@@ -186,6 +198,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_blocks_of_the_control);
     RUN_TEST(test_the_reference);
+    RUN_TEST(test_a_plan);
     RUN_TEST(test_the_estimators);
     RUN_TEST(test_what_runs_between_switched_off_and_operation);
     return UNITY_END();
