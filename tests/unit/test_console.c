@@ -479,6 +479,8 @@ static void test_a_motion_stops_when_no_line_comes_for_the_command_timeout(void)
     answers("move 0.1", "ok move at=");
     bench_periods(20);
     TEST_ASSERT_TRUE(drive->reference.now.moving);
+    bench_periods(40); /* and again */
+    assert_begins(bench_heard(), "warning: stop: no line for command_timeout_s\n");
 }
 
 /* Nothing to stop: nothing is said. What waits for its period is flushed like a motion. */

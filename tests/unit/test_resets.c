@@ -136,7 +136,7 @@ static void test_a_plan(void)
 {
     const struct motion_state from = {.turns = 3, .fraction = 5, .speed = 7, .acceleration = 8};
 
-    /* where it lands is told last; segments follow */
+    /* where it lands is set last; segments follow */
     BEGINS_ANEW(struct motion_plan, motion_plan_begin(block, &from, 9u),
                 PADDING(struct motion_plan, from.turns, from.fraction),
                 PADDING(struct motion_plan, epoch, speed_jump),
