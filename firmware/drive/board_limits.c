@@ -68,7 +68,7 @@ static bool check_low_state(const struct hal_facts *facts, char error[DRIVE_ERRO
 
     return facts->low_state_s <= limit_s ||
            refuse("low_state_s", facts->low_state_s, limit_s, "s",
-                  "a fifth of the control period, ", facts->control_period_s, " s", error);
+                  "a fifth of the control period, ", facts->control_period_s, "", error);
 }
 
 bool board_limits_apply(struct drive_settings *settings, const struct hal_facts *facts,

@@ -9,4 +9,25 @@ EQUIVALENT = [
      "const bool offset = gains->bias_return_V_Nm != 1.0 || gains->k_bias_q_V_A != 0.0;",
      "adds an offset that nothing corrects: a mode at rest, which the damping leaves out as drift, "
      "and that begins and stays at zero in the answer to a load"),
+    ("firmware/drive/encoder_aligning.c",
+     "const double allowed = rated < settings->current_limit_A ? rated : "
+     "settings->current_limit_A;",
+     "const double allowed = rated <= settings->current_limit_A ? rated : "
+     "settings->current_limit_A;",
+     "the lesser of two that are equal"),
+    ("firmware/design/refusal.c",
+     ".limit = value > high ? high : low,", ".limit = value >= high ? high : low,",
+     "a value on a bound is not refused"),
+    ("firmware/design/refusal.c",
+     '.relation = value > high ? "at most" : "at least",',
+     '.relation = value >= high ? "at most" : "at least",',
+     "a value on a bound is not refused"),
+    ("firmware/design/servocompensator_design.c",
+     "return 0.5 * y * alternating_series(y, 3, 4);",
+     "return 0.5 * y * alternating_series(y, 3, 5);",
+     "a term more of a series that is cut below 1e-14"),
+    ("firmware/motion/profile.c", "uint32_t ramp = 0;", "uint32_t ramp = 1;",
+     "is written before it is read: whole_periods() fails or writes"),
+    ("firmware/motion/profile.c", "uint32_t duration = 0;", "uint32_t duration = 1;",
+     "is written before it is read: whole_periods() fails or writes"),
 ]

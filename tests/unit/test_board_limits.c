@@ -129,6 +129,16 @@ static void test_a_speed_limit_that_is_lower_or_widened_by_hand_counts_instead(v
     TEST_ASSERT_EQUAL_DOUBLE(200.0, board_limits_speed(&settings, &bench_facts).rad_s);
 }
 
+/* A bridge that has to be low for longer leaves no modulation. */
+static void test_a_low_state_beyond_a_fifth_of_the_period_is_refused(void)
+{
+    facts.low_state_s = 20e-6;
+    accepted();
+    facts.low_state_s = 20.1e-6;
+    refused("low_state_s 2.01e-05 s: must be at most 2e-05 s, a fifth of the control period, "
+            "0.0001 s");
+}
+
 /* A code of 2.93 mA through the winding of a NEMA 11, 6.8 ohm, and its bridge. */
 static void test_the_blind_speed_is_that_whose_back_emf_the_offset_covers(void)
 {
@@ -159,6 +169,7 @@ int main(void)
     RUN_TEST(test_a_zero_beside_the_middle_of_the_codes_takes_from_the_range);
     RUN_TEST(test_reference_speeds_end_where_back_emf_and_friction_take_the_supply);
     RUN_TEST(test_a_speed_limit_that_is_lower_or_widened_by_hand_counts_instead);
+    RUN_TEST(test_a_low_state_beyond_a_fifth_of_the_period_is_refused);
     RUN_TEST(test_the_blind_speed_is_that_whose_back_emf_the_offset_covers);
     RUN_TEST(test_with_an_encoder_no_speed_is_blind);
     return UNITY_END();

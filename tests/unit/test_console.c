@@ -557,6 +557,8 @@ static void test_a_motion_stops_when_no_line_comes_for_the_command_timeout(void)
     answers("move 0.1", "ok move at=");
     bench_periods(20);
     TEST_ASSERT_TRUE(drive->reference.now.moving);
+    bench_periods(40); /* and again */
+    assert_begins(bench_heard(), "warning: stop: no line for command_timeout_s\n");
 }
 
 /* Nothing to stop: nothing is said. What waits for its period is flushed like a motion. */
@@ -630,6 +632,10 @@ static void test_every_command_says_what_it_takes(void)
         {"help state", "state: what it does and measures"},
         {"help cycles", "cycles: cycles of the control interrupt, mean and most; cycles reset"},
         {"help move", "move position_rad= [ duration_s= ramp_s= jerk_s= at= ]: jerk-limited move;"},
+        {"help signals", "signals: all signals\n"},
+        {"help defaults", "defaults: all settings but the motor's to defaults\n"},
+        {"help hold", "hold [ at= ]: ramps the hold current in"},
+        {"help stop", "stop [ at= ]: brings the reference to rest\n"},
         {"help get", "get: a setting: value, unit, range, default; get hold* lists those"},
         {"help set", "set: set hold_current_A 1.2, or default; acts at the next enable"},
         {"help enable", "enable [ at= ]: offset calibration, then the hold"},

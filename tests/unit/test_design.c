@@ -326,6 +326,10 @@ static void numbers_in_refusals_have_four_digits(void)
         {9e-5, "9e-05"},
         {1.562e-5, "1.562e-05"},
         {1.5e-123, "1.5e-123"},
+        {1e99, "1e+99"},
+        {1e100, "1e+100"},
+        {-2.5e100, "-2.5e+100"},
+        {9.9999e99, "1e+100"},
     };
 
     for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {

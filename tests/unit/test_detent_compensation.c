@@ -54,6 +54,29 @@ static double played_Nm(void)
     return num_to_double(detent.torque) * base.torque_Nm;
 }
 
+static void step_at(int32_t angle)
+{
+    detent_compensation_step(&detent, &params, (angle_t)angle, sincos_of((angle_t)angle), NUM(0.0),
+                             NUM(0.0), true);
+}
+
+/* Which way the angle goes makes no difference to what follows it. */
+static void test_the_follower_keeps_its_play_on_either_side(void)
+{
+    for (int32_t side = -1; side <= 1; side += 2) {
+        setUp();
+        step_at(0);
+        step_at(side * params.play);
+        TEST_ASSERT_EQUAL_INT32(0, (int32_t)detent.follower);
+        step_at(side * (params.play + 5000));
+        TEST_ASSERT_EQUAL_INT32(side * 5000, (int32_t)detent.follower);
+        step_at(side * (5000 - params.play + 7));
+        TEST_ASSERT_EQUAL_INT32(side * 5000, (int32_t)detent.follower);
+        step_at(side * (5000 - params.play - 9));
+        TEST_ASSERT_EQUAL_INT32(side * (5000 - 9), (int32_t)detent.follower);
+    }
+}
+
 /* One period at a speed: the observer sees what the compensation leaves, three lags late. */
 static void run_period(double speed_rad_s)
 {
@@ -222,6 +245,7 @@ static void test_no_coefficient_passes_its_bound(void)
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_the_follower_keeps_its_play_on_either_side);
     RUN_TEST(test_all_harmonics_are_learned_at_creep_either_way_round);
     RUN_TEST(test_the_delay_of_the_observer_is_known_to_the_learning);
     RUN_TEST(test_at_rest_nothing_is_learned_of_a_dither_between_counts);

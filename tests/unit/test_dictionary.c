@@ -80,6 +80,22 @@ static void test_a_parameter_is_put_where_the_drive_reads_it(void)
     TEST_ASSERT_TRUE(parameter_get(&command, parameter_at(DRIVE_PARAMETER_speed_rad_s)) == 3.0);
 }
 
+static void test_no_command_has_more_parameters_than_it_names(void)
+{
+    for (int kind = 0; kind < DRIVE_COMMANDS; kind++) {
+        const struct command_row *row = command_at((enum drive_command_kind)kind);
+        const unsigned all = (unsigned)row->required | row->optional;
+        size_t count = 0;
+
+        for (unsigned left = all; left != 0u; left &= left - 1u) {
+            count++;
+        }
+        for (size_t i = 0; i < 20; i++) {
+            TEST_ASSERT_EQUAL(i < count, parameter_of((enum drive_command_kind)kind, i) != NULL);
+        }
+    }
+}
+
 /* What the interrupt asks of a command. */
 static void test_a_command_is_planned_in_one_way(void)
 {
@@ -107,6 +123,7 @@ int main(void)
     RUN_TEST(test_every_fault_has_a_name_and_a_code_of_its_own);
     RUN_TEST(test_every_command_has_a_name_and_a_number_of_its_own);
     RUN_TEST(test_a_command_has_its_parameters_in_the_order_of_the_table);
+    RUN_TEST(test_no_command_has_more_parameters_than_it_names);
     RUN_TEST(test_a_parameter_is_put_where_the_drive_reads_it);
     RUN_TEST(test_a_command_is_planned_in_one_way);
     RUN_TEST(test_a_fault_names_the_setting_that_limits);

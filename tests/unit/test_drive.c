@@ -253,6 +253,29 @@ static void test_a_bus_that_sags_to_14_V_in_motion_is_made_up_for_in_two_periods
     }
 }
 
+/* The frame moves every fourth period, and acts in the middle of those it is for: 0.24 mrad. */
+static void test_a_held_rotor_is_led_along_without_lag(void)
+{
+    for (int direction = -1; direction <= 1; direction += 2) {
+        double mean_rad = 0.0;
+
+        setUp();
+        bridge.background = true;
+        enable();
+        post((struct drive_command){.kind = DRIVE_COMMAND_VELOCITY,
+                                    .speed_rad_s = direction * 0.8,
+                                    .acceleration_rad_s2 = 20.0,
+                                    .jerk_rad_s3 = 1e4});
+        run(1500);
+        for (int k = 0; k < 2000; k++) {
+            run(1);
+            mean_rad += following_error_rad() / 2000.0;
+        }
+        TEST_ASSERT_TRUE(signals().holding);
+        TEST_ASSERT_DOUBLE_WITHIN(0.08e-3, 0.0, mean_rad);
+    }
+}
+
 static void test_the_pid_holds_its_place_and_follows(void)
 {
     settings.law = POSITION_LAW_PID;
@@ -357,6 +380,7 @@ int main(void)
     RUN_TEST(test_a_load_is_estimated_and_carried_while_turning);
     RUN_TEST(test_both_directions_are_the_same_to_the_drive);
     RUN_TEST(test_a_bus_that_sags_to_14_V_in_motion_is_made_up_for_in_two_periods);
+    RUN_TEST(test_a_held_rotor_is_led_along_without_lag);
     RUN_TEST(test_the_pid_holds_its_place_and_follows);
     RUN_TEST(test_the_steady_state_ekf_serves_a_slow_move);
     RUN_TEST(test_twenty_electrical_degrees_assumed_wrong_are_found_by_the_first_move);

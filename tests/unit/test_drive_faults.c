@@ -113,7 +113,7 @@ static void shows(const struct row *row)
     const int periods = periods_until_fault();
 
     TEST_ASSERT_EQUAL_STRING_MESSAGE(row->fault, drive_fault_name(drive.supervision.fault), words);
-    TEST_ASSERT_INT_WITHIN_MESSAGE((row->latest - row->earliest) / 2,
+    TEST_ASSERT_INT_WITHIN_MESSAGE((unsigned)(row->latest - row->earliest) / 2u,
                                    (row->latest + row->earliest) / 2, periods, words);
     TEST_ASSERT_EQUAL_INT(DRIVE_FAULT, drive.supervision.state);
     period();

@@ -1,4 +1,5 @@
 /* What a drive without an encoder bears of a motor: what it says of it, and when it refuses. */
+#include "firmware/drive/hold_bearing.c" /* no part of a drive: who asks on the host has it */
 #include "tests/unit/drive_bench.h"
 
 static struct drive_hold_bearing bearing;
@@ -86,6 +87,23 @@ static void test_a_heavy_rotor_is_refused_with_what_the_winding_would_do(void)
                              error);
 }
 
+/* Of the sampled loop of damping, current control and held rotor: by the eigenvalues that another
+   program finds of it. */
+static void test_the_hold_is_damped_as_its_sampled_loop_is(void)
+{
+    static const double expected[] = {0.5497, 0.6205, 0.5035};
+
+    default_settings_apply(&settings, PERIOD_S, 0u);
+    for (int i = 0; i < 3; i++) {
+        struct hold_task task = hold_task_of(&settings, PERIOD_S);
+        double damping_As_rad;
+
+        task.bandwidth_rad_s = 100.0 * (i + 1);
+        TEST_ASSERT_TRUE_MESSAGE(hold_damping_design(&task, &damping_As_rad, error), error);
+        near(3e-3, expected[i], hold_control_damping(&task, damping_As_rad));
+    }
+}
+
 /* J w0^2, with 300 rad/s without an encoder and 900 with one. */
 static void test_the_law_is_as_stiff_as_its_bandwidth(void)
 {
@@ -103,6 +121,7 @@ int main(void)
     RUN_TEST(test_half_the_current_bears_half_as_much_for_a_quarter_of_the_heat);
     RUN_TEST(test_a_light_rotor_is_thrown_less_and_led_as_fast_as_its_back_emf_bears);
     RUN_TEST(test_a_heavy_rotor_is_refused_with_what_the_winding_would_do);
+    RUN_TEST(test_the_hold_is_damped_as_its_sampled_loop_is);
     RUN_TEST(test_the_law_is_as_stiff_as_its_bandwidth);
     return UNITY_END();
 }

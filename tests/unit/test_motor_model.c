@@ -49,6 +49,22 @@ static void test_per_unit_makes_back_emf_equal_to_speed_and_torque_equal_to_curr
                               base.turns_per_period);
 }
 
+/* A mean acceleration of (1 - e^-y)/y over the period, y = T Kv/J. */
+static void test_friction_takes_its_part_of_a_torque_within_the_period(void)
+{
+    for (int i = 1; i <= 3; i++) {
+        struct motor_params sticky = bench_params;
+        const double y = 0.1 * i;
+
+        sticky.viscous_friction_Nms_rad = y * sticky.inertia_kgm2 / PERIOD_S;
+        const struct motor_model_params m = motor_model_design(&sticky, &base, PERIOD_S, 0.0);
+
+        TEST_ASSERT_DOUBLE_WITHIN(y * y * y / 20.0, (1.0 - exp(-y)) / y,
+                                  coef_to_double(m.speed_per_torque) * base.speed_rad_s /
+                                      base.acceleration_rad_s2 / PERIOD_S);
+    }
+}
+
 /* i(t) = u/R (1 - exp(-t R/L)); the steps are exact, so nothing adds up over time but rounding. */
 static void test_the_current_of_a_locked_rotor_rises_exponentially(void)
 {
@@ -221,6 +237,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_per_unit_makes_back_emf_equal_to_speed_and_torque_equal_to_current);
+    RUN_TEST(test_friction_takes_its_part_of_a_torque_within_the_period);
     RUN_TEST(test_the_current_of_a_locked_rotor_rises_exponentially);
     RUN_TEST(test_a_calibrated_resistance_gives_the_admittance_of_its_exponential);
     RUN_TEST(test_a_calibrated_resistance_stays_between_a_quarter_and_three_times_nominal);

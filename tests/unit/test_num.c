@@ -360,13 +360,35 @@ static void test_products_to_nearest_do_not_lean_to_either_side(void)
     TEST_ASSERT_DOUBLE_WITHIN(STEADYSTEP_NUM == NUM_FIXED ? 0.1 / 67108864.0 : 1e-8, 0.0, lean);
 }
 
+/* Of two quantities, and of a quantity and a sine: the factors are exact here. */
+static void test_products_of_quantities_to_nearest_do_not_lean_to_either_side(void)
+{
+    const double resolution = STEADYSTEP_NUM == NUM_FIXED ? 1.0 / 67108864.0 : 1e-7;
+    double lean[2] = {0.0, 0.0};
+
+    for (int i = -100; i < 100; i++) {
+        const num_t a = num_from_double(0.01234567 * i + 0.0005);
+        const double x = num_to_double(a);
+        const double by_num = num_to_double(num_mul_nearest(a, NUM(0.34375))) - 0.34375 * x;
+        const double by_unit = num_to_double(num_mul_unit_nearest(a, UNIT(0.40625))) - 0.40625 * x;
+
+        TEST_ASSERT_DOUBLE_WITHIN(0.51 * resolution, 0.0, by_num);
+        TEST_ASSERT_DOUBLE_WITHIN(0.51 * resolution, 0.0, by_unit);
+        lean[0] += by_num / 200.0;
+        lean[1] += by_unit / 200.0;
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(0.1 * resolution, 0.0, lean[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.1 * resolution, 0.0, lean[1]);
+}
+
 /* k (1 + more), also where its mantissa grows by a bit. */
 static void test_a_gain_is_changed_by_a_share(void)
 {
-    static const double gains[] = {1.0, 0.99, 0.75, -0.99, 1e-3, 31.9, 1000.0, 12000.0, -3e-4};
+    static const double gains[] = {1.0,  0.99,   0.75,    -0.99, 1e-3,
+                                   31.9, 1000.0, 12000.0, -3e-4, 1.8e-3};
     static const double shares[] = {-0.45, -0.1, -1e-3, 0.0, 1e-3, 0.02, 0.1, 0.45};
 
-    for (int g = 0; g < 9; g++) {
+    for (int g = 0; g < 10; g++) {
         for (int s = 0; s < 8; s++) {
             const coef_t gain = coef_from_double(gains[g]);
             const double expected = coef_to_double(gain) * (1.0 + shares[s]);
@@ -532,6 +554,7 @@ int main(void)
     RUN_TEST(test_a_gain_applied_is_the_gain_asked_for);
     RUN_TEST(test_a_converter_code_becomes_a_number);
     RUN_TEST(test_products_to_nearest_do_not_lean_to_either_side);
+    RUN_TEST(test_products_of_quantities_to_nearest_do_not_lean_to_either_side);
     RUN_TEST(test_a_gain_is_changed_by_a_share);
     RUN_TEST(test_a_number_becomes_the_nearest_count);
     RUN_TEST(test_a_square_root_keeps_16_bits);

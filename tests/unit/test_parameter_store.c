@@ -97,6 +97,18 @@ static double kept(void)
     return parameter_store_read(&board, &learned) ? learned.detent_torque_Nm[0] : -1.0;
 }
 
+/* In steps of 1e-7 N m, to nearest, up to 2^31 - 1 of them on either side. */
+static void test_a_torque_is_kept_to_nearest_and_within_its_range(void)
+{
+    static const double given_Nm[] = {0.6e-7, 0.4e-7, -0.6e-7, -0.4e-7, 1.4e-7, 1e3, -1e3};
+    static const double kept_Nm[] = {1e-7, 0.0, -1e-7, 0.0, 1e-7, 214.7483647, -214.7483647};
+
+    for (int i = 0; i < 7; i++) {
+        TEST_ASSERT_TRUE(save(given_Nm[i]));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-10, kept_Nm[i], kept());
+    }
+}
+
 static void test_what_is_saved_is_found_again(void)
 {
     struct learned_parameters learned;
@@ -208,6 +220,7 @@ static void test_a_board_without_a_store_keeps_nothing(void)
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_a_torque_is_kept_to_nearest_and_within_its_range);
     RUN_TEST(test_what_is_saved_is_found_again);
     RUN_TEST(test_an_erased_store_keeps_nothing);
     RUN_TEST(test_the_last_of_many_savings_counts);

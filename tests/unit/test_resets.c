@@ -115,14 +115,33 @@ static void test_the_reference(void)
         struct reference, reference_reset(block, at), PADDING(struct reference, course, now),
         PADDING(struct reference, now.moving, next),
         PADDING(struct reference, next.moving, slow_periods),
-        PADDING(struct reference, slow_periods, profile), LEAVES(struct reference, profile),
+        PADDING(struct reference, slow_periods, profile),
+        PADDING(struct reference, phase, periods_left), LEAVES(struct reference, profile),
         LEAVES(struct reference, creeps), LEAVES(struct reference, stopped),
         PADDING(struct reference, jerks, at), PADDING(struct reference, at.turns, at.fraction),
         LEAVES_UP_TO(struct reference, plan, segment), LEAVES(struct reference, epoch),
         PADDING(struct reference, epoch, continuation), LEAVES(struct reference, continuation));
+    TEST_ASSERT_EQUAL_INT64(0, drive.reference.at.speed);
+    TEST_ASSERT_EQUAL_INT64(0, drive.reference.at.acceleration);
+    TEST_ASSERT_EQUAL_INT64(0, drive.reference.jerk);
+    TEST_ASSERT_EQUAL_INT64(0, drive.reference.jerk_sixth);
+    TEST_ASSERT_EQUAL_UINT32(0, drive.reference.slow_periods);
+    TEST_ASSERT_EQUAL_UINT32(0, drive.reference.periods_left);
     TEST_ASSERT_EQUAL_UINT32(drive.reference.epoch, 1u); /* plans of before are void */
     reference_reset(&drive.reference, at);
     TEST_ASSERT_EQUAL_UINT32(drive.reference.epoch, 2u);
+}
+
+static void test_a_plan(void)
+{
+    const struct motion_state from = {.turns = 3, .fraction = 5, .speed = 7, .acceleration = 8};
+
+    /* where it lands is set last; segments follow */
+    BEGINS_ANEW(struct motion_plan, motion_plan_begin(block, &from, 9u),
+                PADDING(struct motion_plan, from.turns, from.fraction),
+                PADDING(struct motion_plan, epoch, speed_jump),
+                PADDING(struct motion_plan, lands, target), LEAVES(struct motion_plan, target),
+                PADDING(struct motion_plan, target, segment), LEAVES(struct motion_plan, segment));
 }
 
 static void test_the_estimators(void)
@@ -160,6 +179,7 @@ static void test_what_runs_between_switched_off_and_operation(void)
                 PADDING_BEHIND(struct offset_calibration, bridge_on));
     BEGINS_ANEW(struct initial_position,
                 initial_position_start(block, &drive.enabling.detection_params, 5u),
+                PADDING(struct initial_position, stage, periods),
                 PADDING(struct initial_position, impulse, expected),
                 PADDING(struct initial_position, repetitions, final_angle),
                 PADDING(struct initial_position, direction, current_reference),
@@ -169,10 +189,12 @@ static void test_what_runs_between_switched_off_and_operation(void)
     /* found anew before they are asked for */
     BEGINS_ANEW(struct encoder_alignment, encoder_alignment_start(block, 5),
                 LEAVES_UP_TO(struct encoder_alignment, lowest, mean),
+                PADDING(struct encoder_alignment, way, stop),
                 PADDING(struct encoder_alignment, held, looked),
                 PADDING(struct encoder_alignment, deviation, deviation_on_way),
                 PADDING_BEHIND(struct encoder_alignment, rotor));
     BEGINS_ANEW(struct phase_balance, phase_balance_start(block, 5u),
+                PADDING(struct phase_balance, stage, held),
                 PADDING(struct phase_balance, periods, mean),
                 LEAVES_UP_TO(struct phase_balance, difference, reciprocal));
     BEGINS_ANEW(struct standstill_pulses,
@@ -186,6 +208,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_blocks_of_the_control);
     RUN_TEST(test_the_reference);
+    RUN_TEST(test_a_plan);
     RUN_TEST(test_the_estimators);
     RUN_TEST(test_what_runs_between_switched_off_and_operation);
     return UNITY_END();

@@ -7,6 +7,8 @@
 
 #include "firmware/design/servocompensator_design.h"
 
+#define J ((double complex)I)
+
 static struct servocompensator_task task;
 static struct servocompensator_design design;
 static char error[DESIGN_ERROR_TEXT];
@@ -28,8 +30,8 @@ static double complex answer_of_design(double complex z)
 
     for (int h = 1; h <= task.harmonics; h++) {
         const struct servocompensator_mode *mode = &design.mode[h - 1];
-        const double complex input = mode->input_re + I * mode->input_im;
-        const double complex pole = 1.0 - mode->one_minus_cosine + I * mode->sine;
+        const double complex input = mode->input_re + J * mode->input_im;
+        const double complex pole = 1.0 - mode->one_minus_cosine + J * mode->sine;
 
         sum += 0.5 * (input / (z - pole) + conj(input) / (z - conj(pole)));
     }
@@ -39,7 +41,7 @@ static double complex answer_of_design(double complex z)
 /* p(z)/q(z) - 1, by the pattern of the paper. */
 static double complex answer_asked_for(double complex z)
 {
-    static const double complex pattern[] = {-1.0, -2.0 + I, -2.0 - I, -3.0 + I, -3.0 - I};
+    static const double complex pattern[] = {-1.0, -2.0 + J, -2.0 - J, -3.0 + J, -3.0 - J};
     const double angle = task.frequency_rad_s * task.period_s;
     double complex quotient = 1.0 / (z - 1.0);
 
@@ -47,7 +49,7 @@ static double complex answer_asked_for(double complex z)
         quotient *= z - cexp(task.decay_1_s * task.period_s * pattern[i]);
     }
     for (int h = 1; h <= task.harmonics; h++) {
-        quotient /= (z - cexp(I * h * angle)) * (z - cexp(-I * h * angle));
+        quotient /= (z - cexp(J * (h * angle))) * (z - cexp(-J * (h * angle)));
     }
     return quotient - 1.0;
 }
@@ -55,8 +57,8 @@ static double complex answer_asked_for(double complex z)
 static void test_its_poles_are_the_pattern_of_the_paper_at_any_period(void)
 {
     static const double frequencies_rad_s[] = {0.5, 30.0, 600.0};
-    static const double complex places[] = {1.01, 1.002 + 0.003 * I, 0.97 - 0.05 * I, -0.4,
-                                            2.0 * I};
+    static const double complex places[] = {1.01, 1.002 + 0.003 * J, 0.97 - 0.05 * J, -0.4,
+                                            2.0 * J};
 
     for (int i = 0; i < 18; i++) {
         task.harmonics = 1 + i % 2;

@@ -291,6 +291,18 @@ static void test_every_element_has_an_index_of_its_own(void)
     TEST_ASSERT_NULL(setting_of_index(0x2000));
 }
 
+static void test_a_setting_is_found_by_its_place_and_its_index(void)
+{
+    size_t i = 0;
+
+    for (; setting_number(i) != NULL; i++) {
+        TEST_ASSERT_TRUE(setting_at(setting_number(i)->offset) == setting_number(i));
+    }
+    TEST_ASSERT_TRUE(i > 40u);
+    TEST_ASSERT_NULL(setting_at(sizeof settings));
+    TEST_ASSERT_NULL(setting_of_index(0x3fff));
+}
+
 /* So many indices are theirs for good. */
 static void test_arrays_keep_their_number_of_elements(void)
 {
@@ -399,6 +411,7 @@ int main(void)
     RUN_TEST(test_every_setting_is_refused_beyond_its_range_by_name_bound_and_unit);
     RUN_TEST(test_a_setting_that_is_not_finite_is_refused);
     RUN_TEST(test_every_element_has_an_index_of_its_own);
+    RUN_TEST(test_a_setting_is_found_by_its_place_and_its_index);
     RUN_TEST(test_arrays_keep_their_number_of_elements);
     RUN_TEST(test_a_refusal_says_what_was_asked_and_what_is_allowed);
     RUN_TEST(test_the_rated_current_has_a_range_of_its_own);

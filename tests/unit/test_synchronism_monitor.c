@@ -339,6 +339,19 @@ static void test_a_load_angle_of_a_quarter_turn_is_pull_out(void)
     expect(SYNCHRONISM_SURE, c, 1.0);
 }
 
+/* On either side: a rotor that catches up is not behind. */
+static void test_a_rotor_that_catches_up_is_not_stalled(void)
+{
+    for (int side = -1; side <= 1; side += 2) {
+        struct course c = {.wanted_A = 3.0, .speed_rad_s = 20.0, .error_turns = side * 0.6};
+
+        c.deficit_rad_s = -side * 40.0;
+        expect(SYNCHRONISM_SURE, c, 0.3);
+        c.deficit_rad_s = side * 40.0;
+        expect(SYNCHRONISM_STALLED, c, 0.3);
+    }
+}
+
 static void test_doubtful_lasts_for_20_ms(void)
 {
     const struct course doubtful = {.holding = true, .error_turns = 0.2};
@@ -401,6 +414,7 @@ int main(void)
     RUN_TEST(test_a_lag_with_current_to_spare_is_the_laws_own);
     RUN_TEST(test_a_load_far_beyond_the_rated_torque_is_a_stall);
     RUN_TEST(test_a_load_angle_of_a_quarter_turn_is_pull_out);
+    RUN_TEST(test_a_rotor_that_catches_up_is_not_stalled);
     RUN_TEST(test_doubtful_lasts_for_20_ms);
 #if STEADYSTEP_NUM != NUM_FIXED
     RUN_TEST(test_a_disturbance_that_is_no_number_is_a_loss);
