@@ -187,6 +187,7 @@ CALLED_FROM_OUTSIDE void application_background(struct application *application)
     drive_feed_watchdog(&application->drive);
     drive_background(&application->drive);
     phase_watch_background(&application->drive);
+    rotor_watch_background(&application->drive);
     stop_if_unheard(application);
     control_cycles_gather(&application->cycle_statistics, &application->cycles);
     console_background(application);

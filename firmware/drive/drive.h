@@ -14,6 +14,7 @@
 #include "firmware/drive/expectation.h"
 #include "firmware/interface/drive_interface.h"
 #include "firmware/drive/following_error.h"
+#include "firmware/drive/rotor_watch.h"
 #include "firmware/drive/measurement.h"
 #include "firmware/drive/offset_calibration.h"
 #include "firmware/drive/parameter_store.h"
@@ -176,6 +177,7 @@ struct drive {
     /* background */
     struct phase_watch phase_watch;
     struct phase_watch_params phase_watch_params;
+    struct rotor_watch rotor_watch;
     const struct hal *board;
     uint32_t fed_in; /* period in which the watchdog was fed */
     struct drive_settings settings;

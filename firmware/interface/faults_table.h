@@ -61,6 +61,8 @@
     FAULT(CURRENT_SENSOR_A, 0xff05, "current-sensor-a", "it is stuck", NO_LIMIT,                   \
           "check shunt, amplifier and converter of phase a")                                       \
     FAULT(CURRENT_SENSOR_B, 0xff06, "current-sensor-b", "it is stuck", NO_LIMIT,                   \
-          "check shunt, amplifier and converter of phase b")
+          "check shunt, amplifier and converter of phase b")                                       \
+    FAULT(ENCODER, 0x7305, "encoder", "the torque rises at rest and no count comes", NO_LIMIT,     \
+          "check the encoder, its cable and its supply; free the axis if it is held")
 
 #endif

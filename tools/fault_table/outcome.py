@@ -34,7 +34,7 @@ def outcome_of(cell, numeric, run):
         in_next = next_s is not None and time_s >= next_s
         return Outcome(numeric, seed, "", first["fault"], time_s - (next_s if in_next else at_s),
                        in_next, time_s < at_s - 1e-9, peak_A)
-    if cell.fault.said and cell.point.name != "rest":
+    if cell.fault.said and not cell.point.rests:
         return Outcome(numeric, seed, "", "warning", cell.fault.said[1], peak_A=peak_A)
     return Outcome(numeric, seed, peak_A=peak_A)
 
