@@ -161,8 +161,7 @@ static enum drive_fault judge_resistance(const struct drive *drive, const struct
 /* Never at the same place of a voltage that repeats itself. */
 static uint32_t interval(const struct drive *drive)
 {
-    return LOOK_PERIODS +
-           (chatters(drive) ? drive->phase_watch.period / LOOK_PERIODS % 2u : 0u);
+    return LOOK_PERIODS + (chatters(drive) ? drive->phase_watch.period / LOOK_PERIODS % 2u : 0u);
 }
 
 void phase_watch_background(struct drive *drive)

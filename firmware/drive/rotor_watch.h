@@ -34,7 +34,8 @@ struct rotor_watch {
 bool rotor_watch_swings(struct rotor_swing *swing, num_t error, num_t limit, uint32_t period,
                         uint32_t within);
 
-/* Whether no count has come for longer; pushed: the torque is at its limit, at rest and in place. */
+/* Whether no count has come for longer; pushed: the torque is at its limit, at rest and in place.
+ */
 bool rotor_watch_count_stands(struct rotor_watch *watch, int32_t count, bool pushed,
                               uint32_t period, uint32_t longer);
 

@@ -62,7 +62,7 @@
           "check shunt, amplifier and converter of phase a")                                       \
     FAULT(CURRENT_SENSOR_B, 0xff06, "current-sensor-b", "it is stuck", NO_LIMIT,                   \
           "check shunt, amplifier and converter of phase b")                                       \
-    FAULT(ENCODER, 0x7305, "encoder", "no count comes at full torque", NO_LIMIT,     \
+    FAULT(ENCODER, 0x7305, "encoder", "no count comes at full torque", NO_LIMIT,                   \
           "check the encoder, its cable and its supply; free the axis if it is held")
 
 #endif

@@ -169,8 +169,8 @@ std::string faults_page()
     for (int i = DRIVE_FAULT_NONE + 1; i < DRIVE_FAULTS; ++i) {
         const auto fault = static_cast<drive_fault>(i);
         const std::string name = drive_fault_name(fault);
-        text += format("| 0x%04x | ", unsigned(fault_code(fault))) + "<a id=\"" + name + "\"></a>`" +
-                name + "` | " + cause_of(fault) + " | " + fault_remedy(fault) + " |\n";
+        text += format("| 0x%04x | ", unsigned(fault_code(fault))) + "<a id=\"" + name +
+                "\"></a>`" + name + "` | " + cause_of(fault) + " | " + fault_remedy(fault) + " |\n";
     }
     return text;
 }

@@ -306,8 +306,7 @@ void set_defaults(Scenario &scenario)
     const motor_params &motor = scenario.motor.params;
     drive_settings_default(&scenario.drive, &motor);
     scenario.plant.bridge.bus_V = motor.supply_V;
-    scenario.comparator_trip_A =
-        sil::comparator_trip_A(scenario.plant.sensors.current_range_A);
+    scenario.comparator_trip_A = sil::comparator_trip_A(scenario.plant.sensors.current_range_A);
     scenario.plant.imperfections.rated_current_A = motor.rated_current_A;
     scenario.plant.sensors.phase_voltage_range_V = supply_headroom * motor.supply_V;
     scenario.plant.sensors.bus_range_V = supply_headroom * motor.supply_V;

@@ -41,7 +41,7 @@ struct Scenario {
     plant::Config plant; /* motor: as the plant starts, scales applied */
     PlantScales scales;
     double comparator_trip_A = 0; /* of the simulated board; 0: not fitted */
-    std::vector<Event> events; /* sorted by time */
+    std::vector<Event> events;    /* sorted by time */
     std::vector<Expectation> expectations;
     std::vector<Expectation> reports; /* figures without a bound */
     std::string parameters;           /* name of the parameter set in use; "": none */
