@@ -10,8 +10,14 @@
 
 #define SWINGS       3u
 #define SWING_TURNS  NUM(1.0) /* electrical */
-#define COUNTS_ASIDE 2.0
+#define COUNTS_OFF 2.0
 #define AT_LIMIT     0.99
+
+void rotor_watch_reset(struct rotor_watch *watch, uint32_t period)
+{
+    watch->free = period;
+    watch->swing.turns = 0u;
+}
 
 bool rotor_watch_swings(struct rotor_swing *swing, num_t error, num_t limit, uint32_t period,
                         uint32_t within)
@@ -39,13 +45,13 @@ bool rotor_watch_count_stands(struct rotor_watch *watch, int32_t count, bool pus
 static bool is_pushed(const struct drive *drive, num_t error)
 {
     const struct drive_settings *settings = &drive->settings;
-    const double turns_aside = COUNTS_ASIDE * settings->motor.rotor_teeth /
+    const double turns_off = COUNTS_OFF * settings->motor.rotor_teeth /
                                (double)drive->board->facts->encoder_counts_per_turn;
     const double limit = AT_LIMIT * settings->current_limit_A / drive->base.current_A;
 
     return !interrupt_view_moves(drive) &&
            num_abs(drive->current_reference.q) > num_from_double(limit) &&
-           num_abs(error) < num_from_double(turns_aside);
+           num_abs(error) < num_from_double(turns_off);
 }
 
 static enum drive_fault look(struct drive *drive, uint32_t period)
@@ -75,8 +81,7 @@ void rotor_watch_background(struct drive *drive)
     const uint32_t period = interrupt_view_period(drive);
 
     if (interrupt_view_state(drive) != DRIVE_OPERATION_ENABLED) {
-        drive->rotor_watch.free = period;
-        drive->rotor_watch.swing.turns = 0u;
+        rotor_watch_reset(&drive->rotor_watch, period);
         return;
     }
     atomic_signal_fence(memory_order_seq_cst);

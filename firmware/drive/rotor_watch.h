@@ -30,6 +30,9 @@ struct rotor_watch {
     int32_t count;
 };
 
+/* Nothing has been seen by then. */
+void rotor_watch_reset(struct rotor_watch *watch, uint32_t period);
+
 /* Whether the rotor is thrown to and fro; error: reference less rotor. */
 bool rotor_watch_swings(struct rotor_swing *swing, num_t error, num_t limit, uint32_t period,
                         uint32_t within);

@@ -11,7 +11,8 @@ static uint32_t period;
 void setUp(void)
 {
     period = START;
-    watch = (struct rotor_watch){.free = START};
+    watch = (struct rotor_watch){.count = 0};
+    rotor_watch_reset(&watch, START);
 }
 
 void tearDown(void)
