@@ -8,10 +8,10 @@
 #define SWING_LOOKS 100u
 #define STAND_LOOKS 30u
 
-#define SWINGS       3u
-#define SWING_TURNS  NUM(1.0) /* electrical */
-#define COUNTS_OFF 2.0
-#define AT_LIMIT     0.99
+#define SWINGS      3u
+#define SWING_TURNS NUM(1.0) /* electrical */
+#define COUNTS_OFF  2.0
+#define AT_LIMIT    0.99
 
 void rotor_watch_reset(struct rotor_watch *watch, uint32_t period)
 {
@@ -46,7 +46,7 @@ static bool is_pushed(const struct drive *drive, num_t error)
 {
     const struct drive_settings *settings = &drive->settings;
     const double turns_off = COUNTS_OFF * settings->motor.rotor_teeth /
-                               (double)drive->board->facts->encoder_counts_per_turn;
+                             (double)drive->board->facts->encoder_counts_per_turn;
     const double limit = AT_LIMIT * settings->current_limit_A / drive->base.current_A;
 
     return !interrupt_view_moves(drive) &&
