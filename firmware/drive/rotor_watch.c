@@ -45,12 +45,15 @@ bool rotor_watch_count_stands(struct rotor_watch *watch, int32_t count, bool pus
 static bool is_pushed(const struct drive *drive, num_t error)
 {
     const struct drive_settings *settings = &drive->settings;
+
+    if (interrupt_view_moves(drive)) {
+        return false;
+    }
     const double turns_off = COUNTS_OFF * settings->motor.rotor_teeth /
                              (double)drive->board->facts->encoder_counts_per_turn;
     const double limit = AT_LIMIT * settings->current_limit_A / drive->base.current_A;
 
-    return !interrupt_view_moves(drive) &&
-           num_abs(drive->current_reference.q) > num_from_double(limit) &&
+    return num_abs(drive->current_reference.q) > num_from_double(limit) &&
            num_abs(error) < num_from_double(turns_off);
 }
 
