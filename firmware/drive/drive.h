@@ -16,6 +16,7 @@
 #include "firmware/interface/drive_interface.h"
 #include "firmware/drive/following_error.h"
 #include "firmware/drive/idle_current.h"
+#include "firmware/drive/rotor_watch.h"
 #include "firmware/drive/measurement.h"
 #include "firmware/drive/offset_calibration.h"
 #include "firmware/drive/parameter_store.h"
@@ -182,6 +183,7 @@ struct drive {
     struct idle_current idle;
     struct idle_current_params idle_params;
     struct thermal_watch thermal;
+    struct rotor_watch rotor_watch;
     const struct hal *board;
     uint32_t fed_in; /* period in which the watchdog was fed */
     struct drive_settings settings;

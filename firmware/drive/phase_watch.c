@@ -9,7 +9,7 @@
 /* Six sigma of a noisy board, or 2 % of the rated current. */
 #define NOISE_CODES       8u
 #define NOISE_SHARE       0.02
-#define LOOK_PERIODS      4u /* from look to look */
+#define LOOK_PERIODS      4u /* from look to look, or one more */
 #define LOOKS             4u /* two currents of a moving rotor can be the same */
 #define GAP_PERIODS       14u
 #define PUSHED_MAX        NUM(1.0) /* twice the rated current */
@@ -63,11 +63,11 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
             watch->pushed[phase] = NUM(0.0);
             continue;
         }
-        for (uint32_t k = 0; k < passed && watch->pushed[phase] <= PUSHED_MAX; k++) {
+        for (uint32_t k = 0; k < passed && num_abs(watch->pushed[phase]) <= PUSHED_MAX; k++) {
             watch->pushed[phase] += look->push[phase];
         }
         watch->looks[phase]++;
-        if (watch->looks[phase] >= LOOKS && watch->pushed[phase] > PUSHED_MAX) {
+        if (watch->looks[phase] >= LOOKS && num_abs(watch->pushed[phase]) > PUSHED_MAX) {
             fault = (enum drive_fault)((int)(look->flows[phase] ? DRIVE_FAULT_CURRENT_SENSOR_A
                                                                 : DRIVE_FAULT_OPEN_PHASE_A) +
                                        phase);
@@ -76,13 +76,23 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
     return fault;
 }
 
+/* Whether the law's voltage may change its sign from period to period. */
+static bool chatters(const struct drive *drive)
+{
+    const enum position_law law = drive->params.position_law;
+
+    return position_law_gives_voltage(law) && law != POSITION_LAW_FEEDBACK_LINEARISATION;
+}
+
 static num_t push(const struct drive *drive, num_t current, num_t voltage, num_t emf)
 {
     const num_t drop = num_mul(drive->estimator.estimate.winding.resistance, current);
-    const num_t sure = num_abs(voltage - drop - emf) - drive->phase_watch_params.voltage_error -
+    const num_t left = voltage - drop - emf;
+    const num_t sure = num_abs(left) - drive->phase_watch_params.voltage_error -
                        num_mul(RESISTANCE_ERROR, num_abs(drop));
+    const num_t size = sure > NUM(0.0) ? num_mul_coef(sure, drive->params.model.rate) : NUM(0.0);
 
-    return sure > NUM(0.0) ? num_mul_coef(sure, drive->params.model.rate) : NUM(0.0);
+    return left < NUM(0.0) && chatters(drive) ? -size : size;
 }
 
 /* What is measured, in the frame of the control. */
@@ -130,16 +140,28 @@ static void look_at(struct phase_look *look, const struct drive *drive)
         follow ? NUM(0.0) : push(drive, current.a, actuation->command.a + actuation->loss.a, emf.a);
     look->push[1] =
         follow ? NUM(0.0) : push(drive, current.b, actuation->command.b + actuation->loss.b, emf.b);
+    look->larger = num_abs(current.b) > num_abs(current.a);
     look->flows[0] = num_abs(current.a) > CURRENT_MIN;
     look->flows[1] = num_abs(current.b) > CURRENT_MIN;
 }
 
-static bool is_watched(const struct drive *drive)
+/* A hold whose winding shows a resistance that none has: its current is not what is measured. */
+static enum drive_fault judge_resistance(const struct drive *drive, const struct phase_look *look)
 {
-    const enum position_law law = drive->params.position_law;
+    const struct motor_model_params *model = &drive->params.model;
+    const num_t resistance = drive->estimator.estimate.winding.resistance;
 
-    return !has_zero_delay(&drive->params.path) &&
-           (law == POSITION_LAW_FEEDBACK_LINEARISATION || !position_law_gives_voltage(law));
+    if (!drive->hold.active ||
+        (resistance > model->resistance_min && resistance < model->resistance_max)) {
+        return DRIVE_FAULT_NONE;
+    }
+    return look->larger == 0 ? DRIVE_FAULT_CURRENT_SENSOR_A : DRIVE_FAULT_CURRENT_SENSOR_B;
+}
+
+/* Never at the same place of a voltage that repeats itself. */
+static uint32_t interval(const struct drive *drive)
+{
+    return LOOK_PERIODS + (chatters(drive) ? drive->phase_watch.period / LOOK_PERIODS % 2u : 0u);
 }
 
 void phase_watch_background(struct drive *drive)
@@ -147,8 +169,9 @@ void phase_watch_background(struct drive *drive)
     struct phase_look look = {.period = interrupt_view_period(drive)};
     enum drive_fault fault;
 
-    if (look.period - drive->phase_watch.period < LOOK_PERIODS ||
-        interrupt_view_state(drive) != DRIVE_OPERATION_ENABLED || !is_watched(drive)) {
+    if (look.period - drive->phase_watch.period < interval(drive) ||
+        interrupt_view_state(drive) != DRIVE_OPERATION_ENABLED ||
+        has_zero_delay(&drive->params.path)) {
         return;
     }
     atomic_signal_fence(memory_order_seq_cst);
@@ -158,6 +181,9 @@ void phase_watch_background(struct drive *drive)
         return; /* an interrupt has come in between */
     }
     fault = phase_watch_step(&drive->phase_watch, &drive->phase_watch_params, &look);
+    if (fault == DRIVE_FAULT_NONE) {
+        fault = judge_resistance(drive, &look);
+    }
     if (fault != DRIVE_FAULT_NONE) {
         state_machine_ask_for_fault(drive, fault);
     }

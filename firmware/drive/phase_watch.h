@@ -42,6 +42,7 @@ struct phase_look {
     uint16_t code[2];
     num_t push[2]; /* by how much the voltage would change the current in each period, at least */
     bool flows[2]; /* there is a current worth the name */
+    bool larger;   /* the phase of the larger one */
 };
 
 struct drive;

@@ -142,7 +142,7 @@ void Board::sample()
 
 void Board::short_circuit(int, double current_A)
 {
-    impl_->shorted = current_A > comparator_trip_A;
+    impl_->shorted = impl_->hardware_trip_A > 0.0 && current_A > impl_->hardware_trip_A;
 }
 
 void Board::stall_control_interrupt(double until_s)

@@ -21,8 +21,8 @@ class Board : public DriveBoard
 {
   public:
     /* Powers the board up: the image designs its gains. Throws std::invalid_argument with the
-       drive's or the plant's own text when settings are refused. hardware_trip_A: a comparator
-       opens the bridge at an S(k) where a phase current is beyond it; 0: not fitted. */
+       drive's or the plant's own text when settings are refused. hardware_trip_A: comparators
+       open the bridge where a phase current is beyond it at an S(k); 0: not fitted. */
     Board(const plant::Config &plant, const firmware_image &image, const drive_settings &settings,
           double hardware_trip_A = 0.0);
     ~Board() override;

@@ -16,10 +16,17 @@
 namespace sil
 {
 
-/* Of the reference board (hal/stm32g474: pin map, board.h): trip of its comparators, and the share
-   of a period that its deadline guard leaves the control interrupt. */
-constexpr double comparator_trip_A = 7.0;
+/* Of the reference board (hal/stm32g474: pin map, board.h): trip of its comparators in full scales
+   of its current sensing, 7.0 A of 6, and the share of a period that its deadline guard leaves the
+   control interrupt. The comparators see the shunts an eighth as large as the converters, and trip
+   beyond code 555 of theirs: (8 x 555 - 2048) of 2048 codes. */
+constexpr double comparator_trip_share = (8.0 * 555.0 - 2048.0) / 2048.0;
 constexpr double control_deadline_share = 0.9;
+
+inline double comparator_trip_A(double current_range_A)
+{
+    return comparator_trip_share * current_range_A;
+}
 
 class DriveBoard
 {

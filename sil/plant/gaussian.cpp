@@ -35,6 +35,11 @@ std::uint64_t gaussian_key(std::uint64_t seed, std::uint64_t channel)
     return scatter(scatter(seed + golden) + channel);
 }
 
+double uniform_number(std::uint64_t key, std::uint64_t period)
+{
+    return uniform(scatter(key + period));
+}
+
 Phases gaussian_pair(std::uint64_t key, std::uint64_t period)
 {
     /* Counter mode: one number per period and deviate. */

@@ -170,7 +170,7 @@ void Plant::step(const Duties &duties)
 /* True values, codes and energies of the present S(k). */
 void Plant::observe()
 {
-    const Parts &plant = *parts_;
+    Parts &plant = *parts_;
     std::visit([this](const auto &motor) { observe(motor); }, plant.motor);
     samples_ =
         plant.sensors.sample(plant.period, {Phases{state_.i_a_A, state_.i_b_A}, plant.measured_V,
@@ -349,9 +349,14 @@ void Plant::add_noise(Channel channel, double rms)
     parts_->sensors.add_noise(channel, rms);
 }
 
-void Plant::set_encoder(EncoderCondition condition)
+void Plant::set_encoder(EncoderCondition condition, double rate)
 {
-    parts_->sensors.set_encoder(condition, state_.theta_rad);
+    const bool noisy = condition == EncoderCondition::noisy;
+    require(rate >= 0.0 && rate * (noisy ? parts_->period_s : 1.0) <= 1.0,
+            noisy ? "miscounts_per_s" : "lost_share", rate,
+            noisy ? "at most one in a period" : "0...1");
+    parts_->sensors.set_encoder(condition, state_.theta_rad,
+                                noisy ? rate * parts_->period_s : rate);
 }
 
 } // namespace plant

@@ -166,7 +166,9 @@ enum class EncoderCondition {
     sound,
     frozen,   /* no edge comes: a broken cable, a loose disc */
     reversed, /* its channels are exchanged */
-    half      /* counts half of what passes: one channel of two */
+    half,     /* counts half of what passes: one channel of two */
+    noisy,    /* now and then a count too many or too few, which stays: interference */
+    lossy     /* an edge now and then is not counted: dirt, a weak signal */
 };
 
 /* Energy bookkeeping since the start, J: supplied = the sum of the others, to 1e-6 of it. All 0
@@ -224,12 +226,14 @@ class Plant
     /* Friction beside the motor's own; 0 frees the rotor, held_Nm stops it within this S(k). */
     static constexpr double held_Nm = 1e9;
     void jam(double torque_Nm);
-    void open_phase(int phase, bool open);        /* 0 a, 1 b: a lead of the winding is broken */
-    void stick(Channel channel);                  /* at the code of the present samples */
-    void stick(Channel channel, int code);        /* at this one */
-    void release(Channel channel);                /* sticks no more */
-    void add_noise(Channel channel, double rms);  /* Gaussian, in codes, beside the channel's own */
-    void set_encoder(EncoderCondition condition); /* its count goes on from where it is */
+    void open_phase(int phase, bool open);       /* 0 a, 1 b: a lead of the winding is broken */
+    void stick(Channel channel);                 /* at the code of the present samples */
+    void stick(Channel channel, int code);       /* at this one */
+    void release(Channel channel);               /* sticks no more */
+    void add_noise(Channel channel, double rms); /* Gaussian, in codes, beside the channel's own */
+    /* Its count goes on from where it is. rate: of noisy, miscounts in a second, at most one in a
+       period; of lossy, the share of the edges that is lost. */
+    void set_encoder(EncoderCondition condition, double rate = 0);
 
   private:
     struct Parts; /* motor, bridge, sensors */

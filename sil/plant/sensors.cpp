@@ -16,6 +16,7 @@ enum Stream : std::uint64_t {
     phase_voltage_stream = 2,
     fault_stream = 3,     /* and behind it, one a channel of the first five */
     crosstalk_stream = 8, /* and of the sixth, behind this one */
+    encoder_stream = 10
 };
 
 /* A code 0...highest; the clamp first, so that no conversion is out of range. */
@@ -203,6 +204,8 @@ std::int32_t Sensors::encoder_count(double theta_rad) const
     std::uint32_t counted = 0;
     switch (encoder_.condition) {
     case EncoderCondition::sound:
+    case EncoderCondition::noisy:
+    case EncoderCondition::lossy:
         counted = static_cast<std::uint32_t>(passed);
         break;
     case EncoderCondition::frozen:
@@ -217,16 +220,37 @@ std::int32_t Sensors::encoder_count(double theta_rad) const
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(encoder_.count) + counted);
 }
 
-void Sensors::set_encoder(EncoderCondition condition, double theta_rad)
+void Sensors::set_encoder(EncoderCondition condition, double theta_rad, double share)
 {
     require(config_.encoder_counts_per_turn > 0, "encoder_counts_per_turn",
             config_.encoder_counts_per_turn, "1 at least: without an encoder none can fail");
     encoder_.count = encoder_count(theta_rad);
     encoder_.edges = encoder_edges(theta_rad);
     encoder_.condition = condition;
+    encoder_.share = share;
 }
 
-Samples Sensors::sample(std::uint64_t period, const True &now) const
+/* What goes wrong with the edges since the last period; the count goes on from here. */
+void Sensors::miscount(std::uint64_t period, double theta_rad)
+{
+    const double drawn = uniform_number(gaussian_key(seed_, encoder_stream), period);
+    const std::int32_t count = encoder_count(theta_rad);
+    const std::int32_t edges = encoder_edges(theta_rad);
+    const auto passed = static_cast<std::int32_t>(static_cast<std::uint32_t>(edges) -
+                                                  static_cast<std::uint32_t>(encoder_.edges));
+    std::int32_t wrong = 0;
+    if (encoder_.condition == EncoderCondition::lossy) {
+        const double lost = magnitude(static_cast<double>(passed)) * encoder_.share + drawn;
+        wrong = static_cast<std::int32_t>(lost) * (passed > 0 ? -1 : 1);
+    } else if (drawn < encoder_.share) {
+        wrong = drawn < 0.5 * encoder_.share ? 1 : -1;
+    }
+    encoder_.edges = edges;
+    encoder_.count = static_cast<std::int32_t>(static_cast<std::uint32_t>(count) +
+                                               static_cast<std::uint32_t>(wrong));
+}
+
+Samples Sensors::sample(std::uint64_t period, const True &now)
 {
     Phases current_A = now.current_A;
     Phases phase_voltage_V = now.phase_voltage_V;
@@ -263,6 +287,9 @@ Samples Sensors::sample(std::uint64_t period, const True &now) const
         static_cast<std::int16_t>(converted(voltage[1], highest_code_) - zero_V_code);
     samples.bridge_temperature = bridge_temperature_code_;
     if (config_.encoder_counts_per_turn > 0) {
+        if (encoder_.condition >= EncoderCondition::noisy) {
+            miscount(period, now.theta_rad);
+        }
         samples.encoder_count = encoder_count(now.theta_rad);
     }
     if (faulty_) {

@@ -47,15 +47,18 @@ class Sensors
     void stick(Channel channel, int code);
     void release(Channel channel);
     void add_noise(Channel channel, double rms_codes);
-    void set_encoder(EncoderCondition condition, double theta_rad); /* from this angle on */
+    /* From this angle on. share: of the periods in which a noisy one miscounts, of the edges that a
+       lossy one does not count. */
+    void set_encoder(EncoderCondition condition, double theta_rad, double share = 0.0);
 
     /* At S(period); phase_voltage_V: mean over the period that ends there, in which the bridge
        was on or off. */
-    Samples sample(std::uint64_t period, const True &now) const;
+    Samples sample(std::uint64_t period, const True &now);
 
   private:
     void apply_faults(Samples &samples, std::uint64_t period) const;
     void write(Samples &samples, Channel channel, int code) const;
+    void miscount(std::uint64_t period, double theta_rad);
     std::int32_t encoder_edges(double theta_rad) const;
     std::int32_t encoder_count(double theta_rad) const;
 
@@ -77,7 +80,8 @@ class Sensors
     Fault faults_[channels];
     struct Encoder {
         EncoderCondition condition = EncoderCondition::sound;
-        std::int32_t edges = 0, count = 0; /* where it came into this condition */
+        std::int32_t edges = 0, count = 0; /* where it came into this condition, or miscounted */
+        double share = 0.0;
     };
     Encoder encoder_;
     bool faulty_ = false;

@@ -130,10 +130,17 @@ PlantFault read_noisy_adc(TableReader &event)
 PlantFault read_encoder(TableReader &event)
 {
     std::size_t condition = 0;
-    event.choice("encoder", condition, {"sound", "frozen", "reversed", "half"});
-    return [condition = static_cast<plant::EncoderCondition>(condition)](plant::Plant &plant) {
-        plant.set_encoder(condition);
-    };
+    double rate = 0;
+    event.choice("encoder", condition, {"sound", "frozen", "reversed", "half", "noisy", "lossy"});
+    const plant::EncoderCondition given = static_cast<plant::EncoderCondition>(condition);
+    if (given == plant::EncoderCondition::noisy) {
+        event.require("miscounts_per_s");
+        event.number("miscounts_per_s", rate, 0, 1e6);
+    } else if (given == plant::EncoderCondition::lossy) {
+        event.require("lost_share");
+        event.number("lost_share", rate, 0, 1);
+    }
+    return [given, rate](plant::Plant &plant) { plant.set_encoder(given, rate); };
 }
 
 struct FaultReader {

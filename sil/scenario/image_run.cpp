@@ -34,6 +34,11 @@ void check_image(const Scenario &scenario, const std::string &numeric)
 {
     try {
         virtual_board::VirtualBoard::require(scenario.given.image, scenario.plant, numeric);
+        const double fitted_A = sil::comparator_trip_A(scenario.plant.sensors.current_range_A);
+        if (scenario.comparator_trip_A != fitted_A) {
+            throw std::invalid_argument(format("plant.comparator_trip_A: %g; the image has %g",
+                                               scenario.comparator_trip_A, fitted_A));
+        }
     } catch (const std::invalid_argument &refusal) {
         throw InputError(scenario.locate(refusal.what()) + refusal.what());
     }

@@ -168,8 +168,9 @@ std::string faults_page()
         "| code | fault | cause | what to do |\n| --- | --- | --- | --- |\n";
     for (int i = DRIVE_FAULT_NONE + 1; i < DRIVE_FAULTS; ++i) {
         const auto fault = static_cast<drive_fault>(i);
-        text += format("| 0x%04x | ", unsigned(fault_code(fault))) + "`" + drive_fault_name(fault) +
-                "` | " + cause_of(fault) + " | " + fault_remedy(fault) + " |\n";
+        const std::string name = drive_fault_name(fault);
+        text += format("| 0x%04x | ", unsigned(fault_code(fault))) + "<a id=\"" + name +
+                "\"></a>`" + name + "` | " + cause_of(fault) + " | " + fault_remedy(fault) + " |\n";
     }
     return text;
 }

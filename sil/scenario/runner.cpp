@@ -537,7 +537,7 @@ double row_period_s(const Scenario &scenario)
 
 Run run(const Scenario &scenario, const firmware_image &image, std::uint64_t seed, Record &record)
 {
-    sil::Board board(plant_of(scenario, seed), image, scenario.drive);
+    sil::Board board(plant_of(scenario, seed), image, scenario.drive, scenario.comparator_trip_A);
     return Runner(scenario, board, scenario.given.typed ? nullptr : &board, record).run();
 }
 

@@ -344,6 +344,8 @@ void read_plant(const Value &table, Scenario &scenario)
     std::int64_t encoder_counts_per_turn = sensors.encoder_counts_per_turn;
 
     read_current_range(reader, sensors, scenario.motor);
+    scenario.comparator_trip_A = sil::comparator_trip_A(sensors.current_range_A);
+    reader.number("comparator_trip_A", scenario.comparator_trip_A, 0, 1000);
     read_plant_model(reader, plant, scenario.motor);
     read_imperfections(reader, plant.imperfections);
     read_supply(reader, plant);
@@ -390,6 +392,7 @@ void set_defaults(Scenario &scenario)
     const motor_params &motor = scenario.motor.params;
     drive_settings_default(&scenario.drive, &motor);
     scenario.plant.bridge.bus_V = motor.supply_V;
+    scenario.comparator_trip_A = sil::comparator_trip_A(scenario.plant.sensors.current_range_A);
     scenario.plant.imperfections.rated_current_A = motor.rated_current_A;
     scenario.plant.sensors.phase_voltage_range_V = supply_headroom * motor.supply_V;
     scenario.plant.sensors.bus_range_V = supply_headroom * motor.supply_V;

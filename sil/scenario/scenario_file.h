@@ -40,7 +40,8 @@ struct Scenario {
     drive_settings drive{};
     plant::Config plant; /* motor: as the plant starts, scales applied */
     PlantScales scales;
-    std::vector<Event> events; /* sorted by time */
+    double comparator_trip_A = 0; /* of the simulated board; 0: not fitted */
+    std::vector<Event> events;    /* sorted by time */
     std::vector<Expectation> expectations;
     std::vector<Expectation> reports; /* figures without a bound */
     std::string parameters;           /* name of the parameter set in use; "": none */

@@ -288,7 +288,8 @@ void VirtualBoard::short_circuit(int leg, double current_A)
     const Ticks at =
         std::max(board.machine.now(), board.sampled_at + board.share_of_period(short_in_period));
     board.device.power_stage().short_circuit(at, leg, current_A);
-    if (current_A > sil::comparator_trip_A) {
+    const double current_range_A = board.facts.current_A_per_code * board.facts.current_zero_code;
+    if (current_A > sil::comparator_trip_A(current_range_A)) {
         board.machine.schedule(board.trip_check, at + opening_time);
     }
 }

@@ -14,6 +14,7 @@ import check
 
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
+ANCHOR = re.compile(r'<a id="([^"]+)"></a>')
 WORKFLOW = ".github/workflows/ci.yml"
 MOST_LINES = 150  # of the README: what does not fit stands beside what it describes
 
@@ -31,7 +32,8 @@ def without_code(text):
 
 
 def anchors(text):
-    """As the common renderers make them of headings."""
+    """Those that are set, and as the common renderers make them of headings."""
+    yield from ANCHOR.findall(without_code(text))
     for heading in HEADING.findall(without_code(text)):
         heading = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading)
         yield re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")

@@ -107,6 +107,17 @@ static void test_without_a_push_a_current_may_stand(void)
     TEST_ASSERT_EQUAL_INT(NEVER, periods_until(DRIVE_FAULT_NONE, 0));
 }
 
+/* A voltage that changes its sign from look to look moves no current on the whole. */
+static void test_pushes_to_and_fro_cancel(void)
+{
+    for (int n = 0; n < 1000; n++) {
+        look.push[0] = n % 2 == 0 ? NUM(0.3) : NUM(-0.3);
+        TEST_ASSERT_EQUAL_INT(DRIVE_FAULT_NONE, period(0));
+    }
+    look.push[0] = NUM(-0.3);
+    TEST_ASSERT_TRUE(periods_until(DRIVE_FAULT_OPEN_PHASE_A, 0) < 6);
+}
+
 /* What has not been seen may have moved. */
 static void test_a_background_that_was_busy_begins_anew(void)
 {
@@ -142,6 +153,7 @@ int main(void)
     RUN_TEST(test_noise_stands_and_more_does_not);
     RUN_TEST(test_four_looks_at_least_find_it_standing);
     RUN_TEST(test_without_a_push_a_current_may_stand);
+    RUN_TEST(test_pushes_to_and_fro_cancel);
     RUN_TEST(test_a_background_that_was_busy_begins_anew);
     RUN_TEST(test_what_passes_for_noise);
     return UNITY_END();

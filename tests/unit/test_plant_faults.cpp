@@ -409,10 +409,56 @@ void test_nonsense_is_refused_by_name()
     is_refused("bus_V", [&] { plant.set_bus(0.0); });
     is_refused("encoder_counts_per_turn",
                [&] { plant.set_encoder(plant::EncoderCondition::frozen); });
+    config.sensors.encoder_counts_per_turn = 4000;
+    plant::Plant counting(config);
+    is_refused("miscounts_per_s",
+               [&] { counting.set_encoder(plant::EncoderCondition::noisy, 10001.0); });
+    is_refused("lost_share", [&] { counting.set_encoder(plant::EncoderCondition::lossy, 1.01); });
     is_refused("brake_V", [&] { plant.set_bus(30.0); });
     is_refused("coulomb_friction", [&] { plant.set_coulomb_friction(0.1); });
     config.imperfections.phase_voltage_filter_s = 1.0;
     is_refused("phase_voltage_filter_s", [&] { plant::Plant refused(config); });
+}
+
+/* 4,000 periods at 1,000 in a second: 400 +- 4 sigma of 19; half of them up. */
+void test_a_noisy_encoder_miscounts_at_the_rate_that_was_asked_for()
+{
+    using Condition = plant::EncoderCondition;
+    plant::Config config = at_rest(bench::config());
+    config.sensors.encoder_counts_per_turn = 4000;
+    plant::Plant plant(config);
+    plant.set_encoder(Condition::noisy, 1000.0);
+    int miscounts = 0;
+    std::int32_t last = plant.samples().encoder_count;
+    for (int k = 0; k < 4000; k++) {
+        plant.step({});
+        const std::int32_t change = plant.samples().encoder_count - last;
+        TEST_ASSERT_INT_WITHIN(1, 0, change);
+        miscounts += change != 0 ? 1 : 0;
+        last = plant.samples().encoder_count;
+    }
+    TEST_ASSERT_INT_WITHIN(76, 400, miscounts);
+    TEST_ASSERT_INT_WITHIN(80, 0, last);
+    plant.set_encoder(Condition::sound);
+    plant.step({});
+    TEST_ASSERT_EQUAL_INT32(last, plant.samples().encoder_count); /* what was miscounted stays */
+}
+
+void test_a_lossy_encoder_loses_its_share_of_the_edges()
+{
+    using Condition = plant::EncoderCondition;
+    plant::Config config = coasting(bench::config());
+    config.sensors.encoder_counts_per_turn = 4000;
+    plant::Plant sound(config), lossy(config);
+    lossy.set_encoder(Condition::lossy, 0.25);
+    for (int k = 0; k < 5000; k++) {
+        sound.step({});
+        lossy.step({});
+    }
+    const int passed = sound.samples().encoder_count;
+    TEST_ASSERT_GREATER_THAN_INT(200, passed);
+    const int sigma = static_cast<int>(std::sqrt(0.25 * 0.75 * passed)) + 1;
+    TEST_ASSERT_INT_WITHIN(4 * sigma, (3 * passed) / 4, lossy.samples().encoder_count);
 }
 
 void test_the_count_of_a_faulty_encoder_goes_on_from_where_it_was()
@@ -471,6 +517,8 @@ int main()
     RUN_TEST(test_the_filter_shifts_and_reduces_a_sine);
     RUN_TEST(test_the_filter_loses_no_voltage_over_time);
     RUN_TEST(test_the_count_of_a_faulty_encoder_goes_on_from_where_it_was);
+    RUN_TEST(test_a_noisy_encoder_miscounts_at_the_rate_that_was_asked_for);
+    RUN_TEST(test_a_lossy_encoder_loses_its_share_of_the_edges);
     RUN_TEST(test_nonsense_is_refused_by_name);
     return UNITY_END();
 }

@@ -1,0 +1,50 @@
+/*
+ * What shows only beside the reference, in the background.
+ *
+ * A load that swings beyond the torque throws the rotor to and fro, and no side of it lasts. The
+ * sign: the rotor is further off its reference than it may be, on the other side than the last
+ * time, for the third time, each within 0.1 s of the last. It may be off by the following error, or
+ * without an encoder, where the monitor's policy is to end in faults, by an electrical turn.
+ *
+ * With an encoder, a count that stands still at rest looks like a rotor at rest, and the observer
+ * takes the torque that does not move it for the load's. The law answers it, and both rise to the
+ * limit; a load beyond the limit moves the rotor by a count within milliseconds. The sign: for 30
+ * ms no count with the q current's demand at its limit, at rest and in its place: a rotor that is
+ * pressed against a stop is not.
+ */
+#ifndef STEADYSTEP_ROTOR_WATCH_H
+#define STEADYSTEP_ROTOR_WATCH_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "firmware/numeric/num.h"
+
+struct rotor_watch {
+    struct rotor_swing {
+        uint32_t turned; /* period in which the side was another one last */
+        int8_t side;     /* of the reference; 0: not yet so far */
+        uint8_t turns;   /* in a row */
+    } swing;
+    uint32_t free; /* the last period with a count, or in which none was due */
+    int32_t count;
+};
+
+/* Nothing has been seen by then. */
+void rotor_watch_reset(struct rotor_watch *watch, uint32_t period);
+
+/* Whether the rotor is thrown to and fro; error: reference less rotor. */
+bool rotor_watch_swings(struct rotor_swing *swing, num_t error, num_t limit, uint32_t period,
+                        uint32_t within);
+
+/* Whether no count has come for longer; pushed: the torque is at its limit, at rest and in place.
+ */
+bool rotor_watch_count_stands(struct rotor_watch *watch, int32_t count, bool pushed,
+                              uint32_t period, uint32_t longer);
+
+struct drive;
+
+/* Background: looks at a drive in operation, at each call, for the sake of the counts. */
+void rotor_watch_background(struct drive *drive);
+
+#endif
