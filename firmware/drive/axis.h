@@ -18,12 +18,12 @@
 #include "firmware/motor/encoder.h"
 
 struct axis {
+    struct encoder encoder; /* while the bridge is off: where the rotor was left, or is counted */
     struct position offset; /* the user's coordinates less the motor's */
     struct position origin; /* the motor's zero, a constant: a signal shows it */
     enum drive_position_reference reference;
-    struct encoder encoder; /* while the bridge is off: where the rotor was left, or is counted */
-    bool counts;            /* it is */
-    bool aligned;           /* its zero has been found, and nothing has doubted it since */
+    bool counts;  /* the encoder does, while the bridge is off */
+    bool aligned; /* its zero has been found, and nothing has questioned it since */
 };
 
 struct drive;

@@ -13,8 +13,8 @@ struct encoder_params {
 };
 
 struct encoder {
-    int32_t turns;
     uint64_t fraction;
+    int32_t turns;
     int32_t count; /* of the last sample; wraps */
 };
 

@@ -292,6 +292,25 @@ static void test_a_reference_at_rest_does_not_vouch_for_a_rotor_on_its_way(void)
     the_position_is("uncertain", &one);
 }
 
+/* Beside it by more than the hold draws back in any case, or too fast to stop within that. */
+static void test_a_rotor_beside_its_reference_or_passing_it_is_not_kept(void)
+{
+    for (int passing = 0; passing < 2; passing++) {
+        power_up(&one, false);
+        enable(&one);
+        struct rotor *rotor = &one.drive.estimator.estimate.rotor;
+
+        if (passing != 0) {
+            rotor->speed = 2 * one.drive.params.hold.speed_limit;
+        } else {
+            rotor->position.fraction += 0x50000000u;
+        }
+        post_kind(&one, DRIVE_COMMAND_DISABLE);
+        run(&one, 1);
+        the_position_is("uncertain", &one);
+    }
+}
+
 static void test_a_rotor_that_is_lost_leaves_the_position_uncertain(void)
 {
     power_up(&one, false);
@@ -605,6 +624,7 @@ int main(void)
     RUN_TEST(test_without_an_encoder_a_reference_is_kept_unseen_with_one_it_stays);
     RUN_TEST(test_without_an_encoder_a_disable_in_motion_leaves_the_position_uncertain);
     RUN_TEST(test_a_reference_at_rest_does_not_vouch_for_a_rotor_on_its_way);
+    RUN_TEST(test_a_rotor_beside_its_reference_or_passing_it_is_not_kept);
     RUN_TEST(test_a_rotor_that_is_lost_leaves_the_position_uncertain);
     RUN_TEST(test_a_warning_of_a_lost_rotor_does_so_at_once);
     RUN_TEST(test_an_encoder_sees_a_rotor_that_is_turned_while_disabled);
