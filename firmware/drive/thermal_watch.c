@@ -131,7 +131,7 @@ static enum drive_fault judge_bridge(struct thermal_watch *watch, const struct h
     watch->bridge_derated = (uint8_t)(steps < STEPS ? steps : STEPS);
     show(watch, THERMAL_NO_SENSOR, broken ? STEPS : 0u);
     show(watch, THERMAL_BRIDGE_DERATES, watch->bridge_derated);
-    return steps >= STEPS ? DRIVE_FAULT_BRIDGE_OVERHEATED : DRIVE_FAULT_NONE;
+    return code <= fault && !broken ? DRIVE_FAULT_BRIDGE_OVERHEATED : DRIVE_FAULT_NONE;
 }
 
 /* A resistance that has just been calibrated. */

@@ -15,6 +15,7 @@
  * In the background: the currents once in every eight periods, at a place among them that is as
  * good as random, so that no speed hides a phase's peaks; all the rest every 256 periods. Heat goes
  * on, and falls, while the bridge is off, and through settings that change; a start begins cold.
+ * The impulses that detect a position are too short to count.
  */
 #ifndef STEADYSTEP_THERMAL_WATCH_H
 #define STEADYSTEP_THERMAL_WATCH_H
