@@ -64,6 +64,29 @@ static bool check(const struct drive_settings *now, const struct drive_settings 
     return true;
 }
 
+static void put(volatile num_t *in_force, num_t value)
+{
+    *in_force = value;
+}
+
+void settings_in_motion_derate(struct drive *drive)
+{
+    struct drive_params *params = &drive->params;
+    num_t *const of_law = position_law_current_limit(params->position_law, &params->law);
+    const double set_A = drive->thermal.limit_A;
+    const double base_A = drive->base.current_A;
+    const num_t set = num_from_double(set_A / base_A);
+    const num_t left = thermal_watch_limit(&drive->thermal, set, params->hold.motion_current);
+
+    if (of_law != NULL) {
+        put(of_law, left);
+        put(&drive->synchronism.params.full_current, num_mul_unit(left, UNIT(FULL_CURRENT)));
+        drive->settings.current_limit_A = left < set ? num_to_double(left) * base_A : set_A;
+    }
+    put(&params->hold.current_limit,
+        thermal_watch_limit(&drive->thermal, set, params->hold.current));
+}
+
 bool settings_in_motion_change(struct drive *drive, const struct drive_settings *wanted,
                                char error[DRIVE_ERROR_TEXT])
 {
@@ -94,9 +117,9 @@ bool settings_in_motion_change(struct drive *drive, const struct drive_settings 
         synchronism->policy = next.synchronism_policy;
     }
     drive->settings = next;
-    drive->thermal.limit_A = next.current_limit_A;
+    thermal_watch_set_limit(&drive->thermal, next.current_limit_A);
     if (drive->thermal.motor_in_force + drive->thermal.bridge_in_force > 0) {
-        thermal_watch_derate(drive);
+        settings_in_motion_derate(drive);
     }
     return true;
 }

@@ -20,4 +20,8 @@
 bool settings_in_motion_change(struct drive *drive, const struct drive_settings *wanted,
                                char error[DRIVE_ERROR_TEXT]);
 
+/* Background: what thermal_watch.h leaves of current_limit_A, in force within microseconds, so that
+   it acts in the same period on every board. */
+void settings_in_motion_derate(struct drive *drive);
+
 #endif

@@ -1,8 +1,8 @@
 #include "firmware/drive/thermal_watch.h"
 
-#include "firmware/control/position_law_dispatch.h"
 #include "firmware/drive/drive.h"
 #include "firmware/drive/interrupt_view.h"
+#include "firmware/drive/settings_in_motion.h"
 #include "firmware/drive/state_machine.h"
 
 #define SLOT_PERIODS 8u
@@ -35,6 +35,11 @@ void thermal_watch_design(struct drive *drive)
     }
 }
 
+void thermal_watch_set_limit(struct thermal_watch *watch, double limit_A)
+{
+    watch->limit_A = limit_A;
+}
+
 /* Where in its slot the currents are looked at: no two slots go together. */
 static uint32_t place_of(uint32_t slot)
 {
@@ -47,8 +52,7 @@ static num_t less_steps(num_t of, uint32_t steps)
     return num_mul_unit(of, UNIT(1.0 / (STEPS + 1))) * (num_t)steps;
 }
 
-/* What is left of a limit of the q current beside this one along d. */
-static num_t left_of(const struct thermal_watch *watch, num_t limit, num_t along)
+num_t thermal_watch_limit(const struct thermal_watch *watch, num_t limit, num_t along)
 {
     const num_t square = NUM(RATED * RATED) - num_mul(along, along);
     const num_t excess = limit - (square > NUM(0.0) ? num_sqrt(square) : NUM(0.0));
@@ -58,28 +62,6 @@ static num_t left_of(const struct thermal_watch *watch, num_t limit, num_t along
         left -= less_steps(excess, watch->motor_derated);
     }
     return left - less_steps(left, watch->bridge_derated);
-}
-
-/* In a few microseconds, so that it acts in the same period on any board. */
-void thermal_watch_derate(struct drive *drive)
-{
-    struct thermal_watch *watch = &drive->thermal;
-    struct drive_params *params = &drive->params;
-    num_t *const of_law = position_law_current_limit(params->position_law, &params->law);
-    const double base_A = drive->base.current_A;
-    const num_t limit = num_from_double(watch->limit_A / base_A);
-    const num_t left = left_of(watch, limit, params->hold.motion_current);
-
-    if (of_law != NULL) {
-        *(volatile num_t *)of_law = left;
-        *(volatile num_t *)&drive->synchronism.params.full_current =
-            num_mul_unit(left, UNIT(FULL_CURRENT));
-        drive->settings.current_limit_A =
-            left < limit ? num_to_double(left) * base_A : watch->limit_A;
-    }
-    *(volatile num_t *)&params->hold.current_limit = left_of(watch, limit, params->hold.current);
-    watch->motor_in_force = watch->motor_derated;
-    watch->bridge_in_force = watch->bridge_derated;
 }
 
 /* Begins and ends a step apart. */
@@ -131,7 +113,7 @@ static enum drive_fault judge_bridge(struct thermal_watch *watch, const struct h
     watch->bridge_derated = (uint8_t)(steps < STEPS ? steps : STEPS);
     show(watch, THERMAL_NO_SENSOR, broken ? STEPS : 0u);
     show(watch, THERMAL_BRIDGE_DERATES, watch->bridge_derated);
-    return steps >= STEPS ? DRIVE_FAULT_BRIDGE_OVERHEATED : DRIVE_FAULT_NONE;
+    return code <= fault && !broken ? DRIVE_FAULT_BRIDGE_OVERHEATED : DRIVE_FAULT_NONE;
 }
 
 /* A resistance that has just been calibrated. */
@@ -163,7 +145,9 @@ static void judge(struct drive *drive)
     }
     if (watch->motor_derated != watch->motor_in_force ||
         watch->bridge_derated != watch->bridge_in_force) {
-        thermal_watch_derate(drive);
+        settings_in_motion_derate(drive);
+        watch->motor_in_force = watch->motor_derated;
+        watch->bridge_in_force = watch->bridge_derated;
     }
     if (of_motor != DRIVE_FAULT_NONE || of_bridge != DRIVE_FAULT_NONE) {
         state_machine_ask_for_fault(drive, of_motor != DRIVE_FAULT_NONE ? of_motor : of_bridge);

@@ -13,8 +13,9 @@
  * (microstepping), or that draws more than its limit, ends in the fault.
  *
  * In the background: the currents once in every eight periods, at a place among them that is as
- * good as random, so that no speed hides a phase's peaks; all the rest every 256 periods. Heat goes
- * on, and falls, while the bridge is off, and through settings that change; a start begins cold.
+ * good as random, so that no speed keeps a phase's peaks out of sight; all the rest every 256
+ * periods. Heat goes on, and falls, while the bridge is off, and through settings that change; a
+ * start begins cold. The impulses that detect a position are too short to count.
  */
 #ifndef STEADYSTEP_THERMAL_WATCH_H
 #define STEADYSTEP_THERMAL_WATCH_H
@@ -47,8 +48,11 @@ struct drive;
 /* With the drive's design. The heat is as it is. */
 __attribute__((cold)) void thermal_watch_design(struct drive *drive);
 
-/* Background: the limits in force, of what was set in motion. */
-void thermal_watch_derate(struct drive *drive);
+/* Another current_limit_A has been set in motion. */
+void thermal_watch_set_limit(struct thermal_watch *watch, double limit_A);
+
+/* What is left of a limit of the q current beside this one along d, in per-unit. */
+num_t thermal_watch_limit(const struct thermal_watch *watch, num_t limit, num_t along);
 
 /* Background: looks at a drive in any state. */
 void thermal_watch_background(struct drive *drive);

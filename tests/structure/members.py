@@ -23,13 +23,14 @@ VIEW = "firmware/drive/interrupt_view.h"
 # Sources that write the members of a block. Those of the others are written by what knows no drive.
 WRITERS = {
     "params": ["drive", "estimator_design", "settings_in_motion"],
-    "settings": ["drive"],
+    "settings": ["drive", "settings_in_motion"],
     "supervision": ["state_machine"],
     "axis": ["axis"],
     "synchronism": ["synchronism", "settings_in_motion"],
     "input": ["prepared_input"],
     "standstill": ["standstill_angle"],
     "enabling": ["drive", "encoder_aligning", "phase_balancing", "state_machine"],
+    "thermal": ["thermal_watch"],
     "planner": ["planner"],
     "planned_end": ["planned_end"],
 }

@@ -282,6 +282,22 @@ void test_noise_has_the_rms_that_was_asked_for_and_no_mean()
     TEST_ASSERT_EQUAL_INT(quiet.samples().bus_voltage, loud.samples().bus_voltage);
 }
 
+void test_the_bridge_is_as_hot_as_it_is_told_to_be()
+{
+    plant::Plant plant(noisy());
+    plant.step(bench::off());
+    TEST_ASSERT_EQUAL_INT(2048, plant.samples().bridge_temperature);
+    plant.set_bridge_temperature(100.0); /* 0.987 of 10 kOhm */
+    plant.step(bench::off());
+    TEST_ASSERT_INT_WITHIN(2, 368, plant.samples().bridge_temperature);
+    plant.set_bridge_temperature(0.0); /* 28.7 */
+    plant.step(bench::off());
+    TEST_ASSERT_INT_WITHIN(4, 3037, plant.samples().bridge_temperature);
+    plant.stick(plant::Channel::bridge_temperature, 0);
+    plant.step(bench::off());
+    TEST_ASSERT_EQUAL_INT(0, plant.samples().bridge_temperature);
+}
+
 void test_offsets_and_gains_that_drift_reach_the_next_samples()
 {
     plant::Config config = noisy();
@@ -405,6 +421,7 @@ void test_nonsense_is_refused_by_name()
     is_refused("phase", [&] { plant.open_phase(2, true); });
     is_refused("-2048...2047", [&] { plant.stick(plant::Channel::phase_voltage_a, 2048); });
     is_refused("0...4095", [&] { plant.stick(plant::Channel::bus_voltage, -1); });
+    is_refused("bridge_temperature_C", [&] { plant.set_bridge_temperature(200.0); });
     is_refused("noise_codes", [&] { plant.add_noise(plant::Channel::current_a, -1.0); });
     is_refused("bus_V", [&] { plant.set_bus(0.0); });
     is_refused("encoder_counts_per_turn",
@@ -516,6 +533,7 @@ int main()
     RUN_TEST(test_the_filter_takes_every_edge_of_a_switched_bridge);
     RUN_TEST(test_the_filter_shifts_and_reduces_a_sine);
     RUN_TEST(test_the_filter_loses_no_voltage_over_time);
+    RUN_TEST(test_the_bridge_is_as_hot_as_it_is_told_to_be);
     RUN_TEST(test_the_count_of_a_faulty_encoder_goes_on_from_where_it_was);
     RUN_TEST(test_a_noisy_encoder_miscounts_at_the_rate_that_was_asked_for);
     RUN_TEST(test_a_lossy_encoder_loses_its_share_of_the_edges);

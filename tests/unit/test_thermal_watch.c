@@ -280,6 +280,17 @@ static void test_a_hot_bridge_takes_the_limit_evenly_and_opens_at_its_end(void)
     TEST_ASSERT_EQUAL_UINT8(0, drive.thermal.shown);
 }
 
+/* That begins where the bridge is open: there is no derating. */
+static void test_a_derating_that_begins_too_late_leaves_the_fault_where_it_is(void)
+{
+    settings.bridge_derate_C = 120.0;
+    start();
+    heat_bridge(99.0f);
+    TEST_ASSERT_EQUAL_INT(DRIVE_FAULT_NONE, drive.supervision.asked_for);
+    heat_bridge(101.0f);
+    TEST_ASSERT_EQUAL_INT(DRIVE_FAULT_BRIDGE_OVERHEATED, drive.supervision.asked_for);
+}
+
 static void test_a_sensor_that_is_broken_is_said_and_takes_nothing(void)
 {
     static const uint16_t broken[] = {0, 4095};
@@ -329,6 +340,7 @@ int main(void)
     RUN_TEST(test_a_time_constant_of_zero_watches_no_motor);
     RUN_TEST(test_every_law_is_derated);
     RUN_TEST(test_a_hot_bridge_takes_the_limit_evenly_and_opens_at_its_end);
+    RUN_TEST(test_a_derating_that_begins_too_late_leaves_the_fault_where_it_is);
     RUN_TEST(test_a_sensor_that_is_broken_is_said_and_takes_nothing);
     RUN_TEST(test_a_board_without_sensor_is_not_asked_and_watches_the_motor_all_the_same);
     RUN_TEST(test_a_motor_that_is_warm_begins_there);
