@@ -202,6 +202,9 @@ static void test_the_estimators(void)
 
 static void test_what_runs_between_switched_off_and_operation(void)
 {
+    struct initial_position in_start;
+
+    initial_position_start(&in_start, &drive.enabling.detection_params, 5u);
     BEGINS_ANEW(struct held_angle, held_angle_start(block), NOTHING);
     BEGINS_ANEW(struct offset_calibration, offset_calibration_reset(block),
                 PADDING_BEHIND(struct offset_calibration, bridge_on));
@@ -214,6 +217,10 @@ static void test_what_runs_between_switched_off_and_operation(void)
                 PADDING(struct initial_position, attempts, by_impulses),
                 PADDING(struct initial_position, by_impulses, angle),
                 PADDING(struct initial_position, angle, asymmetry));
+    TEST_ASSERT_TRUE(in_start.resistance == NUM(0.0) && in_start.voltage == NUM(0.0) &&
+                     in_start.current_reference == NUM(0.0) && in_start.asymmetry == NUM(0.0));
+    TEST_ASSERT_TRUE(in_start.attempts == 0u && in_start.repetitions == 0u &&
+                     in_start.periods == 0u && in_start.impulse == 0u && !in_start.by_impulses);
     /* found anew before they are asked for */
     BEGINS_ANEW(struct encoder_alignment, encoder_alignment_start(block, 5),
                 LEAVES_UP_TO(struct encoder_alignment, lowest, mean),
