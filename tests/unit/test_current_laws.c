@@ -82,7 +82,8 @@ static void test_errors_count_up_to_twice_the_speed_limit(void)
     const double speed = 2.0 * 50.0 / base.speed_rad_s;
 
     TEST_ASSERT_NUM_WITHIN(1e-4 * speed, speed, feedback->speed_error_limit);
-    TEST_ASSERT_NUM_WITHIN(1e-3, fmin(10.0 / coef_to_double(feedback->position), POSITION_DIFFERENCE_MAX),
+    TEST_ASSERT_NUM_WITHIN(1e-3,
+                           fmin(10.0 / coef_to_double(feedback->position), POSITION_DIFFERENCE_MAX),
                            feedback->position_error_limit);
     task.speed_limit_rad_s = 1e6;
     design(POSITION_LAW_STATE_FEEDBACK);

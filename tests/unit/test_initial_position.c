@@ -274,9 +274,8 @@ static void test_the_design_in_figures(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 25.0, coef_to_double(params.certainty));
     TEST_ASSERT_NUM_WITHIN(1e-6, 0.02, params.quiet_voltage_max);
     TEST_ASSERT_NUM_WITHIN(1e-5, 0.01 * 0.7 * TRIP_A / base.current_A, params.quiet_max);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 3.2,
-                              num_to_double(params.response_max) /
-                                  num_to_double(params.response_min));
+    TEST_ASSERT_DOUBLE_WITHIN(
+        1e-3, 3.2, num_to_double(params.response_max) / num_to_double(params.response_min));
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, base.voltage_V * PERIOD_S / magnet_Vs,
                               coef_to_double(params.flux));
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, bench_params.inductance_H * base.current_A / magnet_Vs,
