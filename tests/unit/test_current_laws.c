@@ -73,6 +73,24 @@ static void is_current(double expected_A, double terms_A, double actual_A)
 }
 
 /* (19) as published: no reference speed, no reference acceleration. */
+/* Reference and rotor as fast as they may be, against one another; or what a term of 10 leaves. */
+static void test_errors_count_up_to_twice_the_speed_limit(void)
+{
+    task.speed_limit_rad_s = 50.0;
+    design(POSITION_LAW_STATE_FEEDBACK);
+    const struct error_feedback_params *feedback = &params.state_feedback.feedback;
+    const double speed = 2.0 * 50.0 / base.speed_rad_s;
+
+    TEST_ASSERT_NUM_WITHIN(1e-4 * speed, speed, feedback->speed_error_limit);
+    TEST_ASSERT_NUM_WITHIN(1e-3,
+                           fmin(10.0 / coef_to_double(feedback->position), POSITION_DIFFERENCE_MAX),
+                           feedback->position_error_limit);
+    task.speed_limit_rad_s = 1e6;
+    design(POSITION_LAW_STATE_FEEDBACK);
+    TEST_ASSERT_NUM_WITHIN(1e-2, 10.0, num_mul_coef(feedback->speed_error_limit, feedback->speed));
+    TEST_ASSERT_NUM_WITHIN(1e-6, 3.0 / base.current_A, feedback->current_limit);
+}
+
 static void test_state_feedback_without_feed_forward_is_equation_19(void)
 {
     static const double cases[][3] = {
@@ -226,6 +244,7 @@ static void test_a_law_too_quick_for_the_current_control_is_refused_with_its_lim
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_errors_count_up_to_twice_the_speed_limit);
     RUN_TEST(test_state_feedback_without_feed_forward_is_equation_19);
     RUN_TEST(test_state_feedback_with_feed_forward_adds_the_torque_of_the_reference);
     RUN_TEST(test_state_feedback_in_place_carries_the_load_and_nothing_else);

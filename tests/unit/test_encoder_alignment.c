@@ -5,6 +5,7 @@
 
 #include "firmware/estimator/encoder_alignment.h"
 #include "tests/unit/bench.h"
+#include "tests/unit/num_assert.h"
 #include "tests/unit/emulated.h"
 
 #define DEGREES (360.0 / TWO_PI)
@@ -463,6 +464,44 @@ static void test_the_rotor_is_placed_before_it_is_led_so_that_the_hold_can_damp(
     TEST_ASSERT_DOUBLE_WITHIN(count_rad(), 0.0, remainder(placed, TWO_PI));
 }
 
+/* 80 counts in an electrical turn: bounds in turns, spacing of the angles in 2^-32 of one. */
+static void test_the_design_in_figures(void)
+{
+    const double count = 1.0 / 80.0;
+    const double turn = 4294967296.0;
+
+    motor = bench_params;
+    counts = 4000;
+    design();
+    const struct alignment_hold *weak = &params.hold[ALIGNMENT_WEAK];
+    const struct alignment_hold *strong = &params.hold[ALIGNMENT_STRONG];
+
+    TEST_ASSERT_NUM_WITHIN(1e-6, 0.5 * num_to_double(strong->current), weak->current);
+    TEST_ASSERT_NUM_WITHIN(1e-6, 3.0 / base.current_A, strong->current);
+    TEST_ASSERT_NUM_WITHIN(1e-6, 0.1 * 3.0 / base.current_A, strong->tolerance);
+    TEST_ASSERT_EQUAL_UINT32(2u * weak->lead.swing, weak->look);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5 / weak->look, 1.0 / weak->look, coef_to_double(weak->per_look));
+    TEST_ASSERT_EQUAL_UINT32(1, params.band);
+    TEST_ASSERT_EQUAL_UINT32(750, params.settling);
+    TEST_ASSERT_EQUAL_UINT32(750u + 40u * weak->lead.swing, params.patience);
+    TEST_ASSERT_NUM_WITHIN(1e-6, 0.125 + count, params.deviation_max);
+    TEST_ASSERT_NUM_WITHIN(1e-6, 0.3 * count, params.load_min);
+    TEST_ASSERT_NUM_WITHIN(1e-6, 1.0 / 16.0, params.load_max);
+    TEST_ASSERT_NUM_WITHIN(1e-6, 1.0 / 32.0, params.friction_max);
+    TEST_ASSERT_NUM_WITHIN(1e-6, 0.75 * count, params.error_max);
+    TEST_ASSERT_NUM_WITHIN(1e-6, 0.25 * count, params.zero_error_max);
+    TEST_ASSERT_NUM_WITHIN(1e-6, 0.45 * count, params.outlier_max);
+    TEST_ASSERT_DOUBLE_WITHIN(1.0, turn / 7.0, params.spacing);
+    TEST_ASSERT_DOUBLE_WITHIN(1.0, 0.5 * count / 7.0 * turn, params.interleave);
+    counts = 4200; /* 84 in a turn, which seven divides: one less */
+    design();
+    TEST_ASSERT_DOUBLE_WITHIN(1.0, 83.0 / 84.0 * turn / 7.0, params.spacing);
+    counts = 40000; /* of which rest may be more than one, and 3 degrees are more than 3/4 */
+    design();
+    TEST_ASSERT_EQUAL_UINT32(2, params.band);
+    TEST_ASSERT_NUM_WITHIN(1e-6, 3.0 / 360.0, params.error_max);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -485,5 +524,6 @@ int main(void)
     RUN_TEST(test_four_times_the_inertia_that_it_assumes_does_no_harm);
     RUN_TEST(test_it_stays_within_half_a_turn_and_takes_as_long_as_it_says);
     RUN_TEST(test_the_rotor_is_placed_before_it_is_led_so_that_the_hold_can_damp);
+    RUN_TEST(test_the_design_in_figures);
     return UNITY_END();
 }

@@ -260,6 +260,30 @@ static void test_the_full_asymmetry_is_that_of_the_response_designed_for(void)
     TEST_ASSERT_TRUE(params.response_max > params.response_min);
 }
 
+/* The times at 10 kHz, the bounds as shares, and what the motor's data say of flux. */
+static void test_the_design_in_figures(void)
+{
+    const double magnet_Vs = bench_params.torque_constant_Nm_A / bench_params.rotor_teeth;
+
+    TEST_ASSERT_EQUAL_UINT32(4, params.quiet_begin);
+    TEST_ASSERT_EQUAL_UINT32(64, params.quiet_periods);
+    TEST_ASSERT_EQUAL_UINT32(250, params.quarter_periods);
+    TEST_ASSERT_EQUAL_UINT32(0x40000000u / 250u, params.quarter_step);
+    TEST_ASSERT_EQUAL_UINT32(400, params.rest_periods);
+    TEST_ASSERT_EQUAL_UINT32(1, params.lag);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 25.0, coef_to_double(params.certainty));
+    TEST_ASSERT_NUM_WITHIN(1e-6, 0.02, params.quiet_voltage_max);
+    TEST_ASSERT_NUM_WITHIN(1e-5, 0.01 * 0.7 * TRIP_A / base.current_A, params.quiet_max);
+    TEST_ASSERT_DOUBLE_WITHIN(
+        1e-3, 3.2, num_to_double(params.response_max) / num_to_double(params.response_min));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, base.voltage_V * PERIOD_S / magnet_Vs,
+                              coef_to_double(params.flux));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, bench_params.inductance_H * base.current_A / magnet_Vs,
+                              coef_to_double(params.flux_per_current));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 1.0 / 64.0,
+                              num_to_double(num_mul_unit(NUM(1.0), params.per_quiet_period)));
+}
+
 static void test_no_impulse_reaches_the_overcurrent_trip(void)
 {
     for (int step = 0; step < 8; step += EVERY) {
@@ -452,6 +476,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_impulses_find_the_rotor_all_around_and_leave_it_where_it_was);
     RUN_TEST(test_the_asymmetry_is_what_saturation_makes);
+    RUN_TEST(test_the_design_in_figures);
     RUN_TEST(test_the_full_asymmetry_is_that_of_the_response_designed_for);
     RUN_TEST(test_no_impulse_reaches_the_overcurrent_trip);
     RUN_TEST(test_a_lower_trip_makes_smaller_impulses);

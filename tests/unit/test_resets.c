@@ -81,6 +81,34 @@ void tearDown(void)
 {
 }
 
+/* All that it is begins at zero. */
+#define BEGINS_AT_ZERO(type, begin)                                                                \
+    do {                                                                                           \
+        static const type zero;                                                                    \
+        static type used;                                                                          \
+        type *block = &used;                                                                       \
+                                                                                                   \
+        memset(&used, 1, sizeof used);                                                             \
+        begin;                                                                                     \
+        TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&zero, &used, sizeof used, #type);                        \
+    } while (0)
+
+static void test_blocks_that_begin_at_zero(void)
+{
+    BEGINS_AT_ZERO(struct current_control, current_control_reset(block));
+    BEGINS_AT_ZERO(struct actuation, actuation_reset(block));
+    BEGINS_AT_ZERO(union position_law_state, position_law_reset(block));
+    BEGINS_AT_ZERO(struct following_error, following_error_reset(block));
+    BEGINS_AT_ZERO(struct held_angle, held_angle_start(block));
+    expectation_reset(&drive.expectation);
+    TEST_ASSERT_TRUE(drive.expectation.demanded_voltage.a == NUM(0.0));
+    TEST_ASSERT_TRUE(drive.expectation.demanded_voltage.b == NUM(0.0));
+    TEST_ASSERT_TRUE(drive.expectation.current.a == NUM(0.0));
+    TEST_ASSERT_TRUE(drive.expectation.current.b == NUM(0.0));
+    TEST_ASSERT_TRUE(drive.expectation.frame.cos == UNIT(1.0));
+    TEST_ASSERT_TRUE(drive.expectation.frame.sin == UNIT(0.0));
+}
+
 static void test_the_blocks_of_the_control(void)
 {
     const struct drive_params *p = &drive.params;
@@ -174,6 +202,9 @@ static void test_the_estimators(void)
 
 static void test_what_runs_between_switched_off_and_operation(void)
 {
+    struct initial_position in_start;
+
+    initial_position_start(&in_start, &drive.enabling.detection_params, 5u);
     BEGINS_ANEW(struct held_angle, held_angle_start(block), NOTHING);
     BEGINS_ANEW(struct offset_calibration, offset_calibration_reset(block),
                 PADDING_BEHIND(struct offset_calibration, bridge_on));
@@ -186,6 +217,10 @@ static void test_what_runs_between_switched_off_and_operation(void)
                 PADDING(struct initial_position, attempts, by_impulses),
                 PADDING(struct initial_position, by_impulses, angle),
                 PADDING(struct initial_position, angle, asymmetry));
+    TEST_ASSERT_TRUE(in_start.resistance == NUM(0.0) && in_start.voltage == NUM(0.0) &&
+                     in_start.current_reference == NUM(0.0) && in_start.asymmetry == NUM(0.0));
+    TEST_ASSERT_TRUE(in_start.attempts == 0u && in_start.repetitions == 0u &&
+                     in_start.periods == 0u && in_start.impulse == 0u && !in_start.by_impulses);
     /* found anew before they are asked for */
     BEGINS_ANEW(struct encoder_alignment, encoder_alignment_start(block, 5),
                 LEAVES_UP_TO(struct encoder_alignment, lowest, mean),
@@ -206,6 +241,7 @@ static void test_what_runs_between_switched_off_and_operation(void)
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_blocks_that_begin_at_zero);
     RUN_TEST(test_the_blocks_of_the_control);
     RUN_TEST(test_the_reference);
     RUN_TEST(test_a_plan);

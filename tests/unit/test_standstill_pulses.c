@@ -125,6 +125,28 @@ static double degrees_of(angle_t angle)
     return (double)(int32_t)angle / 4294967296.0 * 360.0;
 }
 
+/* 2.8 A in one period of 0.9 mH: all but the last of the supply that may be used. */
+static void test_the_design_in_figures(void)
+{
+    const double pulse_A = 4.3 - HOLD_A;
+    const double admittance = num_to_double(model.nominal_admittance);
+    const double resistance = num_to_double(model.nominal_resistance);
+    const double twice = admittance * (2.0 - resistance * admittance);
+    const double response = params.pulse_periods == 1u ? admittance : twice;
+
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, pulse_A / base.current_A,
+                              response * num_to_double(params.voltage));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, base.current_A / pulse_A, coef_to_double(params.per_response));
+    TEST_ASSERT_NUM_WITHIN(1e-5, 1.15 * pulse_A / base.current_A, params.largest_change);
+    TEST_ASSERT_NUM_WITHIN(1e-5, (5.07 - 1.15 * pulse_A) / base.current_A, params.current_max);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, pulse_A * pulse_A / (IMPULSE_A * IMPULSE_A),
+                              coef_to_double(params.signal));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, base.current_A / MAGNET_A, coef_to_double(params.per_magnet));
+    TEST_ASSERT_EQUAL_UINT32(40, params.pause_periods);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 1.0 / (16.0 * (2.0 * params.pulse_periods + 9.0)),
+                              coef_to_double(params.per_period));
+}
+
 static void test_the_angle_of_a_displaced_rotor_is_found(void)
 {
     for (int degrees = -60; degrees <= 60; degrees += 15) {
@@ -295,6 +317,7 @@ static void test_the_hold_behind_a_pulse_has_the_loss_of_the_current_it_left(voi
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_the_design_in_figures);
     RUN_TEST(test_the_angle_of_a_displaced_rotor_is_found);
     RUN_TEST(test_the_first_pulse_waits_for_the_hold_to_settle);
     RUN_TEST(test_only_a_pulse_blanks_samples);

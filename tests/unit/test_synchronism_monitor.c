@@ -375,6 +375,34 @@ static void test_a_disturbance_that_is_no_number_is_a_loss(void)
 }
 #endif
 
+/* Of 24 V, 3 A and 0.157 N m/A; blocks of 1.6 ms. */
+static void test_the_design_in_figures(void)
+{
+    const double standing_rad_s = 0.05 * 0.157 * 3.0 / bench_params.inertia_kgm2 * 14.4e-3;
+
+    TEST_ASSERT_NUM_WITHIN(1e-5, 0.25 / 24.0, params.voltage_floor);
+    TEST_ASSERT_NUM_WITHIN(1e-5, 0.06 / 24.0, params.settled_floor);
+    TEST_ASSERT_NUM_WITHIN(1e-5, standing_rad_s / base.speed_rad_s, params.standing_speed);
+    TEST_ASSERT_NUM_WITHIN(1e-5, standing_rad_s / base.speed_rad_s, params.standing_speed_at_first);
+    TEST_ASSERT_NUM_WITHIN(1e-4, 1.6 * 0.157 * 3.0 / base.torque_Nm, params.load_limit);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.05 * 0.37 / base.resistance_ohm,
+                              coef_to_double(params.voltage_per_current));
+    TEST_ASSERT_EQUAL_UINT32(9, params.standing_blocks);
+    TEST_ASSERT_EQUAL_UINT32(63, params.behind_blocks);
+    TEST_ASSERT_EQUAL_UINT32(2, params.pull_out_blocks);
+    TEST_ASSERT_EQUAL_UINT32(69, params.settled_blocks);
+    TEST_ASSERT_EQUAL_UINT32(4, params.opposite_blocks);
+    TEST_ASSERT_EQUAL_UINT32(3, params.warning_blocks);
+    TEST_ASSERT_EQUAL_UINT32(13, params.doubtful_blocks);
+    task.resistance_calibrated = false;
+    design();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, 0.75 * 0.37 / base.resistance_ohm,
+                              coef_to_double(params.voltage_per_current_at_first));
+    TEST_ASSERT_NUM_WITHIN(1e-4,
+                           (standing_rad_s + 0.75 * 0.37 * LIMIT_A / 0.157) / base.speed_rad_s,
+                           params.standing_speed_at_first);
+}
+
 /* A block is a time and no number of periods, so its number in a time stays what it is; at long
    periods it has a period for each of its steps. */
 static void test_the_times_follow_the_control_period(void)
@@ -419,6 +447,7 @@ int main(void)
 #if STEADYSTEP_NUM != NUM_FIXED
     RUN_TEST(test_a_disturbance_that_is_no_number_is_a_loss);
 #endif
+    RUN_TEST(test_the_design_in_figures);
     RUN_TEST(test_the_times_follow_the_control_period);
     return UNITY_END();
 }
