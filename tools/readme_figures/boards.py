@@ -3,8 +3,6 @@ import json
 import re
 import subprocess
 
-from arm_image import memory
-from arm_image.image import Image
 from comparison.simulator import ROOT
 from readme_figures.reading import spelled
 from readme_figures.registry import Cost, entry, table
@@ -81,6 +79,8 @@ def interrupt(sources):
 
 def sizes(path):
     """Bytes of flash, and of those the ones that run from CCM SRAM."""
+    from arm_image import memory  # wants pyelftools
+    from arm_image.image import Image
     found = Image(path)
     ccm = sum(size for _, start, size, _, _ in found.sections if memory.region(start) == "ccm")
     return sum(len(data) for _, data in memory.loaded(path)), ccm
@@ -155,6 +155,7 @@ def g071(sources):
 
 @entry("g071-memory", "tools/stack_bound build/board-stm32g071/steadystep.elf")
 def g071_memory(sources):
+    from arm_image import memory
     elf = image(sources, G071)
     sections = section_sizes(elf)
     used = re.search(r"stack: (\d+) bytes used",
