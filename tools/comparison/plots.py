@@ -97,6 +97,10 @@ def title(axes, name, line, colour):
     axes.set_title(line, loc="right", fontsize=7.5, color="#444444", pad=3)
 
 
+def in_lines(text, narrow):
+    return text.replace(", ", ",\n") if narrow else text
+
+
 def draw_reference(axes, trace):
     axes.plot(trace["time_s"], trace["omega_ref_rad_s"], color="black")
     axes.set_ylabel("reference\nrad/s")
@@ -125,7 +129,8 @@ def profile_picture(comparison, plant, move, narrow):
     for place, entry in enumerate(entries):
         axes = figure.add_subplot(grid[1 + place // columns, place % columns])
         draw_error(axes, traces[entry.name], colours[entry.name], 0, end_s, limit)
-        title(axes, entry.name, figures_line(comparison, entry, plant, move), colours[entry.name])
+        title(axes, entry.name, in_lines(figures_line(comparison, entry, plant, move), narrow),
+              colours[entry.name])
         if place < len(entries) - columns:
             axes.tick_params(labelbottom=False)
     figure.supylabel("position error, reference − true / mrad", fontsize=9)
@@ -152,8 +157,7 @@ def step_picture(comparison, plant, move, narrow):
         left.set_ylim(-0.75 * step_mrad, 1.1 * step_mrad)
         draw_error(right, trace, colour, begin_s, first["time_s"][-1], limit)
         title(left, entry.name, "" if narrow else "step of one full step", colour)
-        line = figures_line(comparison, entry, plant, move)
-        title(right, "", line.replace(", ", ",\n") if narrow else line, colour)
+        title(right, "", in_lines(figures_line(comparison, entry, plant, move), narrow), colour)
     figure.supylabel("position error, reference − true / mrad", fontsize=9)
     figure.supxlabel("time / s;   left: from the step" + (",\n" if narrow else ", ")
                      + "right: from the load step", fontsize=9)

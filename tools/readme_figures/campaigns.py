@@ -48,7 +48,7 @@ def slip_warned(sources):
     found = campaign(sources, "slip", "1-10000", *WARN)
     slips, missed = int(found["figures"]["slips"]["sum"]), verdicts(found, "missed")
     late = [run for run in found["runs"] if "missed" in run["verdict"]]
-    return {"slips": f"{slips}", "reported": f"{slips - missed}", "missed": f"{missed}",
+    return {"slips": f"{slips}", "reported": f"{slips - missed}",
             "doubted": f"{found['figures']['slips_doubted_before']['sum']:.0f}",
             "false": f"{verdicts(found, 'false alarm')}",
             "late": "; ".join(f"{run['delay_ms']:.0f} ms with `warn`, seed {run['seed']}"

@@ -102,16 +102,25 @@ def laws(sources):
     return found
 
 
-@entry("laws-learned", "tools/compare --plants nominal --seeds 1-8 --moves learned-creep --ablation", Cost.DEAR,
+@entry("laws-all-learn", f"{COMPARE} --detent-learning", Cost.DEAR,
+       probe=tuple(f"{one} --set drive.detent_learning=true" for one in PROBES))
+def laws_all_learn(sources):
+    rows, _ = compared(sources, "--detent-learning")
+    return {**{f"lead-{move}": lead(rows, move) for move in MOVES},
+            "lead-step": lead(rows, "step", "settling_time_s")}
+
+
+@entry("laws-learned", "tools/compare --plants nominal --seeds 1-8 --moves learned-creep --ablation "
+       f"--laws {DEFAULT}", Cost.DEAR,
        probe=("run compare-learned-creep --json",
               "run compare-learned-creep --json --parameters bendjedia-2012/foc"))
 def laws_learned(sources):
-    rows, parts = compared(sources, "--seeds", "1-8", "--moves", "learned-creep", "--ablation")
+    rows, parts = compared(sources, "--seeds", "1-8", "--moves", "learned-creep", "--ablation",
+                           "--laws", DEFAULT)
     creep = "learned-creep"
     return {"default": short(rows[DEFAULT, creep]["position_error_rms_rad"]),
             "up": up(1e3 * rows[DEFAULT, creep]["position_error_rms_rad"], 2),
-            "without": short(parts["no detent learning", creep]["position_error_rms_rad"]),
-            "lead": lead(rows, creep)}
+            "without": short(parts["no detent learning", creep]["position_error_rms_rad"])}
 
 
 @entry("default-law", "steadystep-sil run default-law-move default-law-creep-learned --seeds 1-32")

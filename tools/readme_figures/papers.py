@@ -2,7 +2,6 @@
 import json
 
 from comparison.results import percentile_95
-from comparison.trace import read_trace
 from readme_figures.reading import mrad, p95, spelled, up, value_of
 from readme_figures.registry import entry
 
@@ -76,6 +75,7 @@ def csmc_steps(sources):
 
 @entry("csmc-observer", f"steadystep-sil run {OBSERVER} --trace npy --out FOLDER")
 def csmc_observer(sources):
+    from comparison.trace import read_trace  # wants numpy
     names = OBSERVER.split()
     folder = sources.out_of("run", *names, "--trace", "npy")
     reference, *others = (read_trace(folder / name)["theta_rad"] for name in names)

@@ -8,7 +8,10 @@ FILE = pathlib.Path(__file__).resolve().parent / "record.json"
 class Record:
     def __init__(self, file=FILE):
         self.file = file
-        self.rows = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
+        self.rows = self.kept()
+
+    def kept(self):
+        return json.loads(self.file.read_text(encoding="utf-8")) if self.file.is_file() else {}
 
     def figures(self, entry):
         """None: never run, or by another command."""
@@ -20,6 +23,7 @@ class Record:
         return self.rows[entry.name]["probe"] == sources.probe(entry.probe)
 
     def keep(self, entry, sources, figures):
+        self.rows = self.kept()  # others may have been found meanwhile
         self.rows[entry.name] = {"command": entry.command, "probe": sources.probe(entry.probe),
                                  "figures": figures}
         text = json.dumps(self.rows, indent=1, sort_keys=True, ensure_ascii=False)

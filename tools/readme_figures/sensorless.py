@@ -107,7 +107,9 @@ def electrical(value_rad):
 PULSE_WINDOWS = ("0.1...0.3", "0.6...0.8", "1.1...1.3", "1.6...1.8", "2.1...2.3")
 
 
-@entry("pulses", "steadystep-sil run standstill-pulses standstill-pulses-real --seeds 1-32")
+@entry("pulses", "steadystep-sil run standstill-pulses standstill-pulses-real --seeds 1-32", Cost.DEAR,
+       probe=("run standstill-pulses standstill-pulses-real --json --seeds 1-2",
+              "run standstill-pulses --json --numeric fixed"))
 def pulses(sources):
     rows = []
     for plant, scenario in (("bench", "standstill-pulses"), ("real", "standstill-pulses-real")):
