@@ -42,6 +42,9 @@ static inline void take_samples(struct hal_samples *samples)
     uint32_t flags = 0;
 
     if (__builtin_expect(pwm_begin_period(), false)) {
+        if (PWR->sr2 & PWR_SR2_PVDO) {
+            board_fault(BOARD_FAULT_SUPPLY);
+        }
         flags = HAL_FLAG_OVERCURRENT_TRIP;
         control.allowed = false;
     }

@@ -153,6 +153,7 @@ const Case cases[] = {
     {"starts-fail", starts_fail},
     {"starts-fail-for-ever", starts_fail_for_ever},
     {"no-crystal", starts_without_crystal},
+    {"chip-supply-sags", chip_supply_sags},
     {"lines-overflow", lines_overflow},
     {"line-ends", line_ends},
     {"supply-fails-in-store", supply_fails_in_store},
