@@ -74,6 +74,8 @@ struct hal_facts {
     uint32_t encoder_counts_per_turn; /* 0: no encoder */
     bool zero_delay; /* only in a simulation: the duties of S(k) act S(k)...S(k+1), without the
                         period of delay of the diagram */
+    bool has_brake;  /* a resistor that the board's control interrupt connects to the bus as
+                        application_brake says, for S(k)...S(k+1); off after a reset */
     double bridge_resistance_ohm; /* both conducting switches in series with a phase */
     uint32_t cycle_counter_Hz;
     uint32_t parameter_page_bytes; /* unit of erase of the parameter store */

@@ -35,6 +35,7 @@ struct console_announced {
     bool start;
     bool refused_settings;
     bool unheard;
+    bool brake_rests;
     enum drive_state state;
     uint32_t state_since;
     uint32_t underruns;

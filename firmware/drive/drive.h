@@ -10,6 +10,7 @@
 #include "firmware/control/modulator.h"
 #include "firmware/control/position_law_dispatch.h"
 #include "firmware/control/standstill_hold.h"
+#include "firmware/drive/brake.h"
 #include "firmware/drive/command_queue.h"
 #include "firmware/drive/expectation.h"
 #include "firmware/interface/drive_interface.h"
@@ -186,6 +187,7 @@ struct drive {
     /* behind all that an interrupt in operation uses */
     struct standstill standstill;
     struct enabling enabling;
+    struct brake brake;
 };
 
 /*

@@ -16,6 +16,8 @@
  *                         A and B, LEG_A_PLUS_CHANNEL..., BUS_CHANNEL, TEMPERATURE_CHANNEL
  *   CURRENT_A_PER_CODE, CURRENT_ZERO_CODE, BUS_V_PER_CODE
  *   PHASE_VOLTAGE_V_PER_CODE   of the difference of two legs: a code is two codes of a leg
+ *   HAS_BRAKE             1: an output BRAKE_PORT, BRAKE_PIN connects the brake resistor while it
+ *                         is high; pulled down, here and outside. 0: none
  *   BAUD                  of LPUART1
  */
 #ifndef STEADYSTEP_STM32G071_BOARD_H

@@ -83,6 +83,20 @@ static inline void actuate(const struct hal_outputs *outputs)
     control.wanted = on;
 }
 
+/* Low from the start, by pins_connect, and after a reset, by what pulls it down. */
+static inline void switch_brake(const struct hal_samples *samples)
+{
+#if HAS_BRAKE
+    if (!application_brake_idles(&application, samples)) {
+        const bool on = application_brake(&application, samples);
+
+        BRAKE_PORT->bsrr = on ? BIT(BRAKE_PIN) : BIT(BRAKE_PIN + 16);
+    }
+#else
+    (void)samples;
+#endif
+}
+
 static inline void have_actuated(uint32_t peak)
 {
     deadline_guard_met();
@@ -98,5 +112,6 @@ void control_interrupt(void)
     const uint32_t peak = deadline_guard_sampling_instant();
 
     actuate(application_control_interrupt(&application, &control.samples));
+    switch_brake(&control.samples);
     have_actuated(peak);
 }

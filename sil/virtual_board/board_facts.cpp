@@ -61,6 +61,7 @@ hal_facts facts_of(const plant::Config &config, int half_period_counts)
     facts.bus_V_per_code = bus_V_per_code;
     facts.phase_voltage_V_per_code = phase_voltage_V_per_code;
     facts.has_phase_voltages = true;
+    facts.has_brake = true;
     facts.encoder_counts_per_turn =
         static_cast<std::uint32_t>(config.sensors.encoder_counts_per_turn);
     facts.cycle_counter_Hz = 170'000'000;

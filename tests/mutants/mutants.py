@@ -581,6 +581,15 @@ MUTANTS = [
            "if (settings->feedback == DRIVE_FEEDBACK_ENCODER)", "if (false)"),
     Mutant(DRIVE + "state_machine.c", "state_machine", "a_fault_that_comes_too_late_is_none",
            "    drive->supervision.asked_for = DRIVE_FAULT_NONE;\n", ""),
+    Mutant(DRIVE + "brake.c", "brake", "is_on_from_the_upper_voltage_to_the_lower",
+           "brake->on ? brake->off_code : brake->on_code", "brake->on_code"),
+    Mutant(DRIVE + "brake.c", "brake", "rests_when_it_has_been_on_for_its_pulse",
+           "brake->rests = brake->heat > brake->heat_limit;", "brake->rests = false;"),
+    Mutant(DRIVE + "brake.c", "brake", "is_ready_again_when_half_of_the_heat_is_gone",
+           "brake->heat_limit / 2u", "brake->heat_limit"),
+    Mutant(DRIVE + "brake.c", "brake",
+           "idles_while_the_bus_is_where_it_should_be_and_the_resistor_cold",
+           "brake->on || brake->heat > 0u ? 0u : brake->on_code", "brake->on_code"),
 
     # ---- application ----
     Mutant(APPLICATION + "console.c", "console",

@@ -69,6 +69,8 @@
 #define BUS_V_PER_CODE           (60.0 / 4096.0)
 #define TEMPERATURE_CHANNEL      5
 
+#define HAS_BRAKE 0
+
 #define ENCODER_TIMER 8
 
 #define BAUD 115200
