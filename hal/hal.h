@@ -73,6 +73,8 @@ struct hal_facts {
     uint32_t encoder_counts_per_turn; /* 0: no encoder */
     bool zero_delay; /* only in a simulation: the duties of S(k) act S(k)...S(k+1), without the
                         period of delay of the diagram */
+    bool has_brake;  /* a resistor that the board's control interrupt connects to the bus as
+                        application_brake says, for S(k)...S(k+1); off after a reset */
     double bridge_resistance_ohm; /* both conducting switches in series with a phase */
     double bridge_ntc_beta_K;     /* of the NTC resistor that measures the bridge's temperature:
                                      drive/thermal_model.h; 0: none is fitted */

@@ -89,6 +89,22 @@ const struct hal_outputs *application_control_interrupt(struct application *appl
                                                         const struct hal_samples *samples);
 
 /*
+ * The control interrupt of a board that has a brake resistor (facts.has_brake), behind the outputs:
+ * whether it stays off; and if not, whether it is to be on until the next S(k).
+ */
+static inline bool application_brake_idles(const struct application *application,
+                                           const struct hal_samples *samples)
+{
+    return brake_idles(&application->drive.brake, samples->bus_voltage);
+}
+
+static inline bool application_brake(struct application *application,
+                                     const struct hal_samples *samples)
+{
+    return brake_switch(&application->drive.brake, samples->bus_voltage);
+}
+
+/*
  * The main loop calls it all the time, at least once in 3 ms. One call takes at most one typed line
  * (1 ms on a Cortex-M4F) and lets the planner plan once (1 ms); a line that writes the parameter
  * store takes up to 60 ms, an enable behind changed settings as long as drive_init, of a refused

@@ -125,6 +125,19 @@ static bool announce_heat(const struct application *application,
     return true;
 }
 
+/* That the bus is no longer held by its brake resistor. */
+static bool announce_brake(const struct application *application,
+                           struct console_announced *announced, struct text *text)
+{
+    const bool rests = interrupt_view_brake_rests(&application->drive);
+
+    if (rests && !announced->brake_rests) {
+        text_put(text, "warning: brake off: at its limit");
+    }
+    announced->brake_rests = rests;
+    return text->length > 0u;
+}
+
 static bool announce(struct application *application)
 {
     struct console *console = &application->console;
@@ -141,6 +154,7 @@ static bool announce(struct application *application)
         announced->underruns = application->drive.planner.underruns;
         text_put(&text, "warning: the reference rests: what continues it came too late");
     } else if (!announce_unheard(application, announced, &text) &&
+               !announce_brake(application, announced, &text) &&
                !announce_state(application, announced, &text) &&
                !announce_dropped(application, announced, &text) &&
                !announce_heat(application, announced, &text) &&

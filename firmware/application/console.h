@@ -36,6 +36,7 @@ struct console_announced {
     bool refused_settings;
     bool unheard;
     uint8_t heat; /* THERMAL_... of drive/thermal_watch.h */
+    bool brake_rests;
     enum drive_state state;
     uint32_t state_since;
     uint32_t underruns;

@@ -83,6 +83,7 @@ void report_start(struct text *text, const struct application *application)
         put_number(text, "hold_load_step_Nm", HOLD_LOAD_STEP_SHARE * torque_Nm);
         put_number(text, "hold_heat_W", hold_heat_W(&settings->motor, settings->hold_current_A));
     }
+    put_count(text, "brake", board->facts->has_brake);
     text_put(text, "; started by: ");
     text_put(text, board->start_cause(board->context));
 }

@@ -323,6 +323,7 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
     params->modulator = modulator_design(facts->pwm_half_period_counts,
                                          modulation_max(facts->low_state_s, period_s));
     params->protection = protection_design(&drive->base, facts, &drive->settings);
+    brake_design(&drive->brake, settings, facts);
     params->following = design_following_error(drive, period_s);
     thermal_watch_design(drive);
     drive->phase_watch_params = phase_watch_design(&drive->base, facts, settings);

@@ -11,6 +11,7 @@
 #include "firmware/control/position_law_dispatch.h"
 #include "firmware/control/standstill_hold.h"
 #include "firmware/drive/axis.h"
+#include "firmware/drive/brake.h"
 #include "firmware/drive/command_queue.h"
 #include "firmware/drive/expectation.h"
 #include "firmware/interface/drive_interface.h"
@@ -194,6 +195,7 @@ struct drive {
     /* behind all that an interrupt in operation uses */
     struct standstill standstill;
     struct enabling enabling;
+    struct brake brake;
 };
 
 /*

@@ -48,6 +48,11 @@ static inline uint32_t interrupt_view_commands_dropped(const struct drive *drive
     return INTERRUPT_VIEW(uint32_t, drive->commands.dropped);
 }
 
+static inline bool interrupt_view_brake_rests(const struct drive *drive)
+{
+    return INTERRUPT_VIEW(bool, drive->brake.rests);
+}
+
 /* The plan that the reference has begun last. */
 static inline const struct motion_plan *interrupt_view_plan(const struct drive *drive)
 {

@@ -97,6 +97,14 @@
          "temperature of the bridge from which the current limit falls")                           \
     REAL(0x2153, bridge_fault_C, "degC", FIXED(0.0), FIXED(150.0), FIXED(100.0), AT_ENABLE,        \
          "to which it has fallen to nothing, and the bridge opens; 0: not watched")                \
+    REAL(0x2158, brake_on_ratio, "", FIXED(1.05), FIXED(1.28), FIXED(1.25), AT_ENABLE,             \
+         "of supply_V: from there on the brake resistor is on, if the board has one")              \
+    REAL(0x2159, brake_hysteresis, "", FIXED(0.005), FIXED(0.03), FIXED(0.03), AT_ENABLE,          \
+         "of supply_V: so far below brake_on_ratio it is off")                                     \
+    REAL(0x215a, brake_duty, "", FIXED(1e-3), FIXED(1.0), FIXED(0.1), AT_ENABLE,                   \
+         "share of time for which the brake resistor may be on for good")                          \
+    REAL(0x215b, brake_pulse_s, "s", FIXED(1e-3), FIXED(30.0), FIXED(1.0), AT_ENABLE,              \
+         "for which it may be on from cold; beyond it rests until half of the heat is gone")       \
     REAL(0x2130, observer_bandwidth_rad_s, "rad/s", FIXED(1.0), FIXED(1e6), FOLLOWS, AT_ENABLE,    \
          "triple pole of the model observer: 1000, of the default law with an encoder 1400, of a " \
          "light rotor what its swings ask for, or what period and counts bear")                    \

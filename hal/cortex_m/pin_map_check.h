@@ -33,4 +33,12 @@ REQUIRE((1 << CHANNEL_A_PLUS | 1 << CHANNEL_A_MINUS | 1 << CHANNEL_B_PLUS | 1 <<
             0x1e,
         "CHANNEL_A_PLUS...B_MINUS must be the channels 1, 2, 3 and 4 of TIM1, each once");
 
+#if !defined HAS_BRAKE
+#error pin map: HAS_BRAKE must be 1, or 0: none
+#elif HAS_BRAKE && (!defined BRAKE_PORT || !defined BRAKE_PIN)
+#error pin map: a brake needs BRAKE_PORT and BRAKE_PIN; HAS_BRAKE 0: none
+#elif HAS_BRAKE
+REQUIRE(BRAKE_PIN >= 0 && BRAKE_PIN <= 15, "BRAKE_PIN must be 0...15");
+#endif
+
 #endif

@@ -31,6 +31,14 @@ static struct hal_outputs image_control_cycle(void *drive, const struct hal_samp
     return *outputs;
 }
 
+static bool image_brake(void *drive, const struct hal_samples *samples)
+{
+    struct instance *self = drive;
+
+    return !application_brake_idles(&self->application, samples) &&
+           application_brake(&self->application, samples);
+}
+
 static const char *image_law_gain(enum position_law law, size_t gain)
 {
     const struct law_gain_list list = position_law_gains(law);
@@ -81,6 +89,7 @@ EXPORTED const struct firmware_image IMAGE_OF(NUM_FORMAT) = {
     .drive_bytes = sizeof(struct instance),
     .init = image_init,
     .control_cycle = image_control_cycle,
+    .brake = image_brake,
     .law_gain = image_law_gain,
     .command = image_command,
     .background = image_background,

@@ -22,6 +22,8 @@ struct firmware_image {
                  char error[DRIVE_ERROR_TEXT]);
     /* The control interrupt. */
     struct hal_outputs (*control_cycle)(void *drive, const struct hal_samples *samples);
+    /* Behind it: whether the brake resistor is to be on until the next S(k). */
+    bool (*brake)(void *drive, const struct hal_samples *samples);
     /* The gains that a law can be given by name, in the order of drive_settings.law_gains: the name
        of number `gain`, or NULL behind the last. */
     const char *(*law_gain)(enum position_law law, size_t gain);

@@ -22,6 +22,20 @@ uint32_t port_control_period(void)
     return *(const volatile uint32_t *)&control.period;
 }
 
+/* Low from the start, by pins_connect, and after a reset, by what pulls it down. */
+static inline void switch_brake(const struct hal_samples *samples)
+{
+#if HAS_BRAKE
+    if (!application_brake_idles(&application, samples)) {
+        const bool on = application_brake(&application, samples);
+
+        BRAKE_PORT->bsrr = on ? BIT(BRAKE_PIN) : BIT(BRAKE_PIN + 16);
+    }
+#else
+    (void)samples;
+#endif
+}
+
 /* The control interrupt: the group that was taken at S(k) is complete. */
 IN_RAM(control_interrupt) void control_interrupt(void)
 {
@@ -47,6 +61,7 @@ IN_RAM(control_interrupt) void control_interrupt(void)
     }
 
     bridge_end_period(application_control_interrupt(&application, &samples));
+    switch_brake(&samples);
     const uint32_t end = clock_cycles();
     bridge_deadline_met(end);
     control.end = end;

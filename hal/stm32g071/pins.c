@@ -11,18 +11,28 @@ static void set(volatile uint32_t *reg, unsigned position, unsigned width, uint3
     *reg = (*reg & ~FIELD(UINT32_MAX, position, width)) | FIELD(value, position, width);
 }
 
-static void connect(struct gpio_registers *port, unsigned pin, uint32_t mode, uint32_t alternate,
-                    uint32_t pull)
+struct pin {
+    struct gpio_registers *port;
+    uint8_t number, mode, alternate, pull;
+};
+
+#define PIN_ENTRY(port, number, mode, alternate, pull, peripheral, signal)                         \
+    {GPIO##port, number, MODE_##mode, alternate, PULL_##pull},
+
+static const struct pin pins[] = {BOARD_PINS(PIN_ENTRY)};
+
+static void connect(const struct pin *pin)
 {
-    set(pin < 8 ? &port->afrl : &port->afrh, 4u * (pin % 8u), 4, alternate);
-    set(&port->pupdr, 2u * pin, 2, pull);
-    set(&port->moder, 2u * pin, 2, mode);
+    struct gpio_registers *port = pin->port;
+
+    set(pin->number < 8 ? &port->afrl : &port->afrh, 4u * (pin->number % 8u), 4, pin->alternate);
+    set(&port->pupdr, 2u * pin->number, 2, pin->pull);
+    set(&port->moder, 2u * pin->number, 2, pin->mode);
 }
 
 void pins_connect(void)
 {
-#define CONNECT(port, number, mode, alternate, pull, peripheral, signal)                           \
-    connect(GPIO##port, number, MODE_##mode, alternate, PULL_##pull);
-    BOARD_PINS(CONNECT)
-#undef CONNECT
+    for (unsigned i = 0; i < sizeof pins / sizeof pins[0]; i++) {
+        connect(&pins[i]);
+    }
 }

@@ -23,6 +23,7 @@ const struct hal_facts port_facts = {
     .bus_V_per_code = BUS_V_PER_CODE,
     .phase_voltage_V_per_code = PHASE_VOLTAGE_V_PER_CODE,
     .has_phase_voltages = true,
+    .has_brake = HAS_BRAKE,
     .bridge_resistance_ohm = BRIDGE_RESISTANCE_OHM,
     .bridge_ntc_beta_K = BRIDGE_NTC_BETA_K,
     .cycle_counter_Hz = CORE_CLOCK_Hz,

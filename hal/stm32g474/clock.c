@@ -14,11 +14,13 @@
 enum {
     PLL_INPUT_Hz = 4000000,
     PLL_MULTIPLIER = 85,
+    SUPPLY_LEVEL = 6,      /* falls below 2.84...2.96 V, is back by 3.04 V (DS12288) */
     FLASH_WAIT_STATES = 4, /* 136...170 MHz in range 1 boost (RM0440, table of wait states) */
 };
 
 /* Passes of wait_until at 16 MHz: 4 cycles and more each, so these are lower bounds of time. */
 enum {
+    SUPPLY_WAIT = 400000,  /* 100 ms */
     CRYSTAL_WAIT = 80000,  /* 20 ms; the crystal takes 2 ms */
     REGULATOR_WAIT = 4000, /* 1 ms */
     PLL_WAIT = 4000,
@@ -38,10 +40,19 @@ static bool start_crystal(void)
     return false;
 }
 
-static void boost_regulator(void)
+/* The monitor stays on: from pwm_configure on it opens the bridge. */
+static void await_supply(void)
 {
     RCC->apb1enr1 |= RCC_APB1ENR1_PWREN;
     (void)RCC->apb1enr1;
+    PWR->cr2 = PWR_CR2_PLS(SUPPLY_LEVEL) | PWR_CR2_PVDE;
+    if (!wait_until(&PWR->sr2, PWR_SR2_PVDO, 0, SUPPLY_WAIT)) {
+        board_fault(BOARD_FAULT_SUPPLY);
+    }
+}
+
+static void boost_regulator(void)
+{
     PWR->cr3 |= PWR_CR3_UCPD1_DBDIS; /* releases the pull-down of USB Type-C on PB6 */
     PWR->cr5 &= ~PWR_CR5_R1MODE;
     if (!wait_until(&PWR->sr2, PWR_SR2_VOSF, 0, REGULATOR_WAIT)) {
@@ -88,6 +99,7 @@ static void switch_to_pll(void)
 
 void clock_start(void)
 {
+    await_supply();
     const bool crystal = start_crystal();
 
     boost_regulator();

@@ -48,6 +48,9 @@ static inline void take_samples(struct hal_samples *samples)
     uint32_t flags = 0;
 
     if (__builtin_expect(pwm_begin_period(), false)) {
+        if (PWR->sr2 & PWR_SR2_PVDO) {
+            board_fault(BOARD_FAULT_SUPPLY);
+        }
         flags = HAL_FLAG_OVERCURRENT_TRIP;
         control.allowed = false;
     }
@@ -86,6 +89,20 @@ static inline void actuate(const struct hal_outputs *outputs)
     control.wanted = on;
 }
 
+/* Low from the start, by pins_connect, and after a reset, by what pulls it down. */
+static inline void switch_brake(const struct hal_samples *samples)
+{
+#if HAS_BRAKE
+    if (!application_brake_idles(&application, samples)) {
+        const bool on = application_brake(&application, samples);
+
+        BRAKE_PORT->bsrr = on ? BIT(BRAKE_PIN) : BIT(BRAKE_PIN + 16);
+    }
+#else
+    (void)samples;
+#endif
+}
+
 static inline void have_actuated(uint32_t peak)
 {
     deadline_guard_met();
@@ -101,5 +118,6 @@ void control_interrupt(void)
     const uint32_t peak = deadline_guard_sampling_instant();
 
     actuate(application_control_interrupt(&application, &control.samples));
+    switch_brake(&control.samples);
     have_actuated(peak);
 }

@@ -3,6 +3,7 @@
 #define STEADYSTEP_STM32G474_FAULTS_H
 
 #define BOARD_FAULTS(FAULT)                                                                        \
+    FAULT(SUPPLY, "the chip's supply is below 2.9 V")                                              \
     FAULT(CLOCK_REGULATOR, "core regulator not ready")                                             \
     FAULT(CLOCK_FLASH_LATENCY, "flash wait states not taken")                                      \
     FAULT(CLOCK_PLL, "PLL does not lock")                                                          \

@@ -29,7 +29,7 @@ void pwm_configure(void)
     (void)RCC->apb2enr;
     /* Not ECCL: a double error of the flash is the NMI's, which opens the bridge but for the store.
      */
-    SYSCFG->cfgr2 |= SYSCFG_CFGR2_CLL | SYSCFG_CFGR2_SPL;
+    SYSCFG->cfgr2 |= SYSCFG_CFGR2_CLL | SYSCFG_CFGR2_SPL | SYSCFG_CFGR2_PVDL;
 
     TIM1->cr1 = TIM_CR1_CMS(TIM_CENTRE_ALIGNED_1) | TIM_CR1_ARPE;
     TIM1->psc = 0;

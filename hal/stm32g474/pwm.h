@@ -7,7 +7,8 @@
  * The gates follow the compares while MOE is set, and the reset of an integrated bridge is high. It
  * is cleared by software, by a comparator (overcurrent_trip.h) or the fault output of an integrated
  * bridge, by a lockup of the core, a parity error of SRAM (if the option byte
- * SRAM_PE enables the check) or a stop of the crystal; set by pwm_close_bridge alone.
+ * SRAM_PE enables the check), a stop of the crystal or a supply of the chip below 2.9 V; set by
+ * pwm_close_bridge alone.
  */
 #ifndef STEADYSTEP_STM32G474_PWM_H
 #define STEADYSTEP_STM32G474_PWM_H
@@ -31,7 +32,7 @@ void pwm_watch_fault(void);
 /* An integrated bridge says that it has shut down: MOE is clear by then, its reset follows. */
 void pwm_fault_interrupt(void);
 
-/* Break flags, latched: a comparator, or the system (lockup, memory error, crystal). */
+/* Break flags, latched: a comparator, or the system (lockup, memory error, crystal, supply). */
 #define PWM_BREAK_FLAGS (TIM_SR_BIF | TIM_SR_SBIF)
 
 /* Dead time: above 127 cycles it counts in twos, 64 + DTG[5:0] of them, above 254 in eights, 32 +

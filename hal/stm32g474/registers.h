@@ -102,8 +102,11 @@ struct pwr_registers {
 };
 #define PWR ((struct pwr_registers *)0x40007000u)
 
+#define PWR_CR2_PVDE        BIT(0)
+#define PWR_CR2_PLS(value)  FIELD(value, 1, 3)
 #define PWR_CR3_UCPD1_DBDIS BIT(14)
 #define PWR_SR2_VOSF        BIT(10)
+#define PWR_SR2_PVDO        BIT(11)
 #define PWR_CR5_R1MODE      BIT(8)
 
 /* ---- Embedded flash ---- */
@@ -162,9 +165,10 @@ struct syscfg_registers {
 };
 #define SYSCFG ((struct syscfg_registers *)0x40010000u)
 
-#define SYSCFG_CFGR2_CLL BIT(0)
-#define SYSCFG_CFGR2_SPL BIT(1)
-#define SYSCFG_CFGR2_SPF BIT(8)
+#define SYSCFG_CFGR2_CLL  BIT(0)
+#define SYSCFG_CFGR2_SPL  BIT(1)
+#define SYSCFG_CFGR2_PVDL BIT(2)
+#define SYSCFG_CFGR2_SPF  BIT(8)
 
 /* ---- Timers: TIM1 and TIM8 have all of these, TIM2...TIM5 a part of them ---- */
 struct tim_registers {

@@ -34,6 +34,7 @@ hal_facts facts_of(const plant::Config &config)
     facts.phase_voltage_V_per_code = plant::phase_voltage_V_per_code(config.sensors);
     facts.has_phase_voltages = true;
     facts.zero_delay = config.bridge.delay_periods == 0;
+    facts.has_brake = config.supply.brake_by_drive && config.supply.brake_ohm > 0.0;
     facts.encoder_counts_per_turn =
         static_cast<std::uint32_t>(config.sensors.encoder_counts_per_turn);
     return facts;
@@ -62,6 +63,7 @@ struct Board::Impl {
     hal_sil hal;
     hal_samples samples = {};
     hal_outputs outputs = {};
+    bool brake_on = false;
     std::int32_t encoder_origin = 0; /* 0 until a power cycle, from which the counter begins anew */
     std::string typed;               /* arrives in the coming control() */
     bool shorted = false, stalled = false, deadline_missed = false; /* in the present period */
@@ -99,6 +101,7 @@ void Board::power_cycle()
         throw std::invalid_argument(error);
     }
     board.outputs = {};
+    board.brake_on = false;
     board.encoder_origin = board.plant.samples().encoder_count;
     sample();
 }
@@ -179,6 +182,7 @@ void Board::control()
         board.receive();
     }
     board.outputs = board.image.control_cycle(board.drive, &board.samples);
+    board.brake_on = board.hal.facts.has_brake && board.image.brake(board.drive, &board.samples);
     board.image.background(board.drive);
     board.send();
     board.image.signals(board.drive, &board.signals);
@@ -197,6 +201,7 @@ void Board::advance()
     }
     duties.bridge_on =
         board.outputs.bridge_on && hal_sil_bridge_on(&board.hal) && !board.deadline_missed;
+    duties.brake_on = board.brake_on;
     board.plant.step(duties);
     hal_sil_next_period(&board.hal);
     if (hal_sil_watchdog_expired(&board.hal)) {

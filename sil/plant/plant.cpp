@@ -63,6 +63,16 @@ double bus_of(const RealMotor &motor, double)
     return motor.bus_V();
 }
 
+/* A plain motor's bus is stiff. */
+void connect_brake(Motor &, bool)
+{
+}
+
+void connect_brake(RealMotor &motor, bool on)
+{
+    motor.connect_brake(on);
+}
+
 double capacitor_of(const Motor &)
 {
     return 0.0;
@@ -155,8 +165,9 @@ void Plant::step(const Duties &duties)
 
     const Timetable &timetable = plant.bridge.period(in_force);
     std::visit(
-        [&timetable](auto &motor) {
+        [&timetable, &duties](auto &motor) {
             motor.begin_period();
+            connect_brake(motor, duties.brake_on);
             motor.advance(timetable);
         },
         plant.motor);

@@ -69,6 +69,7 @@ struct SupplyConfig {
     double bus_capacitance_F = 470e-6; /* bus_source_ohm x bus_capacitance_F: 1e-6...1 s */
     double brake_ohm = 0;              /* 0: not fitted */
     double brake_V = 30.0;             /* connects it; below 98 % of this it is off again */
+    bool brake_by_drive = false;       /* Duties::brake_on connects it instead */
 };
 
 struct BridgeConfig {
@@ -143,6 +144,7 @@ enum class Channel {
 struct Duties {
     std::uint16_t high_counts[4] = {0, 0, 0, 0};
     bool bridge_on = false;
+    bool brake_on = false; /* at once, with SupplyConfig::brake_by_drive */
 };
 
 /* Raw codes at S(k); the fields and scales are those of hal_samples, and of hal's

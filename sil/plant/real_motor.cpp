@@ -168,6 +168,14 @@ void RealMotor::set_bus(const SupplyConfig &config, double source_V)
     }
 }
 
+void RealMotor::connect_brake(bool on)
+{
+    const Supply &supply = coefficients_.supply;
+    if (supply.brake_by_drive) {
+        state_.braking = on && supply.brake_rate > 0.0;
+    }
+}
+
 void RealMotor::jam(double torque_Nm)
 {
     require(torque_Nm >= 0.0 && torque_Nm <= Plant::held_Nm, "jam_torque_Nm", torque_Nm,

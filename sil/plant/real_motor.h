@@ -95,6 +95,7 @@ class RealMotor
     void set_coulomb_friction(double share);
     void set_magnet_rise(double rise_K);
     void set_bus(const SupplyConfig &config, double source_V);
+    void connect_brake(bool on); /* of SupplyConfig::brake_by_drive; else nothing */
     void jam(double torque_Nm);
     void open_phase(int phase, bool open);
 

@@ -1,5 +1,7 @@
 #include "sil/plant/supply.h"
 
+#include <limits>
+
 #include "sil/plant/require.h"
 
 namespace plant
@@ -25,6 +27,12 @@ Supply supply_of(const SupplyConfig &config, double source_V)
     supply.capacitance_F = config.bus_capacitance_F;
     if (config.brake_ohm > 0.0) {
         supply.brake_rate = 1.0 / (config.brake_ohm * config.bus_capacitance_F);
+        supply.brake_by_drive = config.brake_by_drive;
+    }
+    if (config.brake_ohm > 0.0 && config.brake_by_drive) {
+        supply.brake_on_V = std::numeric_limits<double>::max();
+        supply.brake_off_V = -supply.brake_on_V;
+    } else if (config.brake_ohm > 0.0) {
         supply.brake_on_V = config.brake_V;
         supply.brake_off_V = brake_hysteresis * config.brake_V;
         require(supply.brake_off_V > source_V, "brake_V", config.brake_V,

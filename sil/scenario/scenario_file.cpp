@@ -287,14 +287,12 @@ void read_mismatches(TableReader &reader, plant::SensorConfig &sensors)
 
 void read_supply(TableReader &reader, plant::Config &plant)
 {
-    constexpr double brake_headroom = 1.25; /* of the bus; the drive trips at 1.29 */
     plant::SupplyConfig &supply = plant.supply;
     reader.number("bus_V", plant.bridge.bus_V, 1, 1000);
-    supply.brake_V = brake_headroom * plant.bridge.bus_V;
     reader.number("bus_source_ohm", supply.bus_source_ohm, 0, 100);
     reader.number("bus_capacitance_F", supply.bus_capacitance_F, 1e-9, 10);
     reader.number("brake_ohm", supply.brake_ohm, 0, 1e6);
-    reader.number("brake_V", supply.brake_V, 1, 2000);
+    supply.brake_by_drive = !reader.number("brake_V", supply.brake_V, 1, 2000);
 }
 
 /* The range of the current sensing, in A or in rated currents; its noise stays the same in codes.

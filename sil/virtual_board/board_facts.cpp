@@ -62,6 +62,7 @@ hal_facts facts_of(const plant::Config &config, int half_period_counts)
     facts.phase_voltage_V_per_code = phase_voltage_V_per_code;
     facts.bridge_ntc_beta_K = 3435.0;
     facts.has_phase_voltages = true;
+    facts.has_brake = true;
     facts.encoder_counts_per_turn =
         static_cast<std::uint32_t>(config.sensors.encoder_counts_per_turn);
     facts.cycle_counter_Hz = 170'000'000;

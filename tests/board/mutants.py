@@ -230,6 +230,22 @@ MUTANTS = [
         "supply-fails-beside-weak-cell",
         "and the drive starts",
     ),
+    Mutant(
+        "the supply's monitor does not reach the PWM timer",
+        "pwm.c",
+        " | SYSCFG_CFGR2_PVDL",
+        "",
+        "chip-supply-sags",
+        "one of 2.85 V opens the bridge without the program",
+    ),
+    Mutant(
+        "the brake resistor is switched the wrong way round",
+        "control_interrupt.c",
+        "on ? BIT(BRAKE_PIN) : BIT(BRAKE_PIN + 16)",
+        "on ? BIT(BRAKE_PIN + 16) : BIT(BRAKE_PIN)",
+        "bus-is-braked",
+        "the brake is off below 1.25 of the supply",
+    ),
 ]
 
 

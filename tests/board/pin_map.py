@@ -56,6 +56,7 @@ class PinMap:
         outputs = {"BRIDGE_RESET": "RESET"} if self.integrated() else {}
         for name, signal in {
             **outputs,
+            **({"BRAKE": "BRAKE"} if self.defined.get("HAS_BRAKE") == "1" else {}),
             **({"LED": "LED"} if "LED_PIN" in self.defined else {}),
         }.items():
             port, number = self[f"{name}_PORT"], self[f"{name}_PIN"]

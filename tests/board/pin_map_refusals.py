@@ -44,6 +44,9 @@ REFUSED = [
     (GATES, "OVERCURRENT_mA", "100000", "beyond what the comparators"),
     (GATES, "LEGS_B_CONVERTER", "3", "must be two of 3, 4 and 5"),
     (GATES, "LEG_B_MINUS_CHANNEL", "3", "need two channels"),
+    (GATES, "#define BRAKE_PIN  6", "", "a brake needs BRAKE_PORT and BRAKE_PIN"),
+    (GATES, "#define HAS_BRAKE  1", "", "HAS_BRAKE must be 1, or 0"),
+    (GATES, "BRAKE_PIN", "16", "BRAKE_PIN must be 0...15"),
     (GATES, "ENCODER_TIMER", "3", "must be 4, 5 or 8"),
     (GATES, "BAUD", "300", "must be 9600...3000000"),
 ]

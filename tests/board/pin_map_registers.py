@@ -80,6 +80,7 @@ class Chip:
         self.core.hook_add(unicorn.UC_HOOK_CODE, application, begin=at, end=at)
         self.put(TIMER[1], self.get(TIMER[1]) | 1 << 4)  # CR1: counts down
         self.put(TIMER[1] + 0x24, PEAK)
+        self.put(ADC[1] + 0x84, 0xFFF)  # JDR2: the bus, as high as can be
         back = 0x08000000  # where no code is
         self.core.reg_write(arm_const.UC_ARM_REG_LR, back | 1)
         self.run(self.image.symbols["control_interrupt"], back)
@@ -192,6 +193,9 @@ def expected_rest(chosen):
     for leg, duty in DUTIES.items():
         compare = TIMER[1] + 0x30 + 4 * chosen.number(f"CHANNEL_{leg}")
         yield f"compare of leg {leg}", compare, 0, 16, duty
+    if chosen.number("HAS_BRAKE"):  # the bus is high, so it is switched on
+        port = 0x48000000 + 0x400 * (ord(chosen["BRAKE_PORT"][-1]) - ord("A"))
+        yield "BSRR of the brake", port + 0x18, chosen.number("BRAKE_PIN"), 1, 1
     timer = chosen.number("ENCODER_TIMER")
     if timer:
         yield f"TIM{timer} counts an encoder", TIMER[timer] + 0x08, 0, 3, 3
@@ -220,7 +224,7 @@ def changes(chosen):
         *("AMPLIFIER_GAIN", "CURRENT_A_CHANNEL", "CURRENT_B_CHANNEL", "BUS_CHANNEL"),
         *("LEGS_A_CONVERTER", "LEG_A_PLUS_CHANNEL", "LEG_B_MINUS_CHANNEL", "BAUD"),
         *("TEMPERATURE_CHANNEL", "OVERCURRENT_mA", "CHANNEL_A_PLUS", "CHANNEL_B_MINUS"),
-        "LOW_GATES_ACTIVE_LOW",
+        *("LOW_GATES_ACTIVE_LOW", "BRAKE_PIN"),
     ):
         if name in chosen.defined:
             other = copy.deepcopy(chosen)

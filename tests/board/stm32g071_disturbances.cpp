@@ -291,6 +291,22 @@ void program_leaves_memory(const ElfImage &image)
            "and is reported at the next start");
 }
 
+void bus_is_braked(const ElfImage &image)
+{
+    Powered run(image);
+    run.run_for(600 * ms);
+    const Gpio &port = run.board.pins().port('C');
+    run.board.plant().set_bus(29.9);
+    run.run_for(ms);
+    expect(!port.drives_high(6), "the brake is off below 1.25 of the supply");
+    run.board.plant().set_bus(30.3);
+    run.run_for(300 * us);
+    expect(port.drives_high(6), "and on above");
+    run.board.plant().set_bus(24.0);
+    run.run_for(300 * us);
+    expect(!port.drives_high(6), "until the bus is back");
+}
+
 } // namespace
 
 int main(int argc, char **argv)
@@ -311,6 +327,7 @@ int main(int argc, char **argv)
         settings_act(image);
         settings_with_encoder(image);
         program_leaves_memory(image);
+        bus_is_braked(image);
     } catch (const std::exception &error) {
         std::fprintf(stderr, "stm32g071_disturbances: %s\n", error.what());
         return 1;

@@ -188,6 +188,7 @@ struct Case {
 void starts_fail(Expectations &expectations, const std::string &image);
 void starts_fail_for_ever(Expectations &expectations, const std::string &image);
 void starts_without_crystal(Expectations &expectations, const std::string &image);
+void chip_supply_sags(Expectations &expectations, const std::string &image);
 
 /* stm32g474_storage.cpp */
 void supply_fails_in_store(Expectations &expectations, const std::string &image);

@@ -120,6 +120,26 @@ void program_leaves_memory(Expectations &expectations, const std::string &image)
                         "but not at the one behind");
 }
 
+/* With the bridge off. */
+void bus_is_braked(Expectations &expectations, const std::string &image)
+{
+    Powered run(image);
+    (void)run.start();
+    const Gpio &port = run.device.pins().port('C');
+    const auto on = [&](double bus_V, Ticks time) {
+        run.device.power_stage().plant().set_bus(bus_V);
+        run.run_for(time);
+        return port.drives_high(6);
+    };
+    expectations.expect(!on(29.9, ms), "the brake is off below 1.25 of the supply");
+    expectations.expect(on(30.1, 300 * us) && on(29.4, 300 * us), "on from there to 1.22 of it");
+    expectations.expect(!on(29.2, 300 * us) && !on(29.9, 300 * us), "and then off");
+    expectations.expect(on(30.1, 900 * ms), "it may be on for a second");
+    expectations.expect(!on(30.1, 200 * ms) &&
+                            count(run.output(), "warning: brake off: at its limit") == 1,
+                        "and no longer, which the drive says");
+}
+
 /* Of the virtual board: code that is watched by the block writes registers at its instructions' own
    times all the same. */
 void compares_are_written_in_turn(Expectations &expectations, const std::string &image)
@@ -149,10 +169,12 @@ const Case cases[] = {
     {"halt", debugger_halts},
     {"conversions-lost", conversions_are_lost},
     {"break-while-closing", break_while_closing},
+    {"bus-is-braked", bus_is_braked},
     {"program-leaves-memory", program_leaves_memory},
     {"starts-fail", starts_fail},
     {"starts-fail-for-ever", starts_fail_for_ever},
     {"no-crystal", starts_without_crystal},
+    {"chip-supply-sags", chip_supply_sags},
     {"lines-overflow", lines_overflow},
     {"line-ends", line_ends},
     {"position-outlives-disable", position_outlives_disable},

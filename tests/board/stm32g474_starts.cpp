@@ -19,6 +19,7 @@ struct Failure {
 constexpr PlantedBits pll_unlocked = {0x40021000, 1u << 25, 0}; /* RCC.CR PLLRDY */
 
 const Failure failures[] = {
+    {{0x40007014, 1u << 11, 1u << 11}, "the chip's supply is below"},   /* PWR.SR2 PVDO */
     {{0x40007014, 1u << 10, 1u << 10}, "core regulator not ready"},     /* PWR.SR2 VOSF */
     {{0x40022000, 0xfu, 0}, "flash wait states not taken"},             /* FLASH.ACR LATENCY */
     {pll_unlocked, "PLL does not lock"},                                /* */
@@ -45,7 +46,7 @@ void watch_bridge(Powered &run, int &closed)
 
 void run_until_reset(Powered &run, std::size_t resets)
 {
-    for (int i = 0; i < 100 && run.machine.resets().size() < resets; ++i) {
+    for (int i = 0; i < 400 && run.machine.resets().size() < resets; ++i) {
         run.run_for(ms);
     }
 }
@@ -98,6 +99,31 @@ void starts_without_crystal(Expectations &expectations, const std::string &image
     Powered run(image, config);
     expectations.expect(count(run.start(), "started by: power-on") == 1 && run.enable(),
                         "without its crystal the board runs from the oscillator of the chip");
+}
+
+/* For longer than a period, for longer than a start waits, and while it starts. */
+void chip_supply_sags(Expectations &expectations, const std::string &image)
+{
+    Powered run(image);
+    (void)run.start();
+    expectations.expect(run.enable(), "the drive holds the motor");
+    run.run_behind_peak(60 * us);
+    run.device.pwr().set_supply(2.95);
+    run.run_for(2 * ms);
+    expectations.expect(run.bridge_on(), "a supply of 2.95 V is enough for the chip");
+    run.device.pwr().set_supply(2.85);
+    expectations.expect(!run.bridge_on(), "one of 2.85 V opens the bridge without the program");
+    run.run_for(5 * ms);
+    expectations.expect(run.machine.resets() == std::vector<std::string>{"software"},
+                        "which stops");
+    run.run_for(80 * ms);
+    expectations.expect(run.machine.resets().size() == 1 && run.output().empty(),
+                        "and waits for it to be back");
+    run.device.pwr().set_supply(3.3);
+    expectations.expect(count(run.start(), "started by: crash: the chip's supply is below 2.9 V") ==
+                            1,
+                        "says why it has stopped");
+    expectations.expect(run.enable(), "and can be enabled again");
 }
 
 } // namespace stm32g474_bench

@@ -98,8 +98,8 @@ SCENARIOS = [
      ["event[2].plant.inertia_scale", "0.01...1000", "got 2000"]),
     ("offset of exact sensing", replaced('model = "bench"', 'model = "ideal"') + EVENT +
      "plant.current_offset_a_A = 0.02\n", 21, ["current_offset_a_A", "not exact"]),
-    ("bus above the brake", replaced('model = "bench"', 'model = "real"') + EVENT +
-     "plant.bus_V = 40.0\n", 21, ["brake_V"]),
+    ("bus above the brake", replaced('model = "bench"', 'model = "real"\nbrake_V = 30.0') + EVENT +
+     "plant.bus_V = 40.0\n", 22, ["brake_V"]),
     ("jam by a torque that has gone", SMALL + EVENT + "jam = false\njam_torque_Nm = 1.0\n", 24,
      ["event[2].jam_torque_Nm", "jam = true"]),
     ("a lead of no phase", SMALL + EVENT + 'open_phase = "c"\n', 23, ["event[2].open_phase", "a, b"]),

@@ -25,6 +25,7 @@ struct Dummy {
     hal_outputs outputs;
     int cycles;
     int commands;
+    bool brakes;
 };
 
 Dummy *dummy; /* the drive of the board under test */
@@ -47,6 +48,11 @@ hal_outputs dummy_control_cycle(void *drive, const hal_samples *samples)
     self->samples = *samples;
     self->cycles++;
     return self->outputs;
+}
+
+bool dummy_brake(void *drive, const hal_samples *)
+{
+    return static_cast<const Dummy *>(drive)->brakes;
 }
 
 const char *dummy_law_gain(position_law, std::size_t)
@@ -78,9 +84,9 @@ std::uint64_t dummy_hash(const void *drive)
     return static_cast<std::uint64_t>(static_cast<const Dummy *>(drive)->cycles);
 }
 
-const firmware_image image = {"dummy",        sizeof(Dummy), dummy_init,       dummy_control_cycle,
-                              dummy_law_gain, dummy_command, dummy_background, dummy_signals,
-                              dummy_hash};
+const firmware_image image = {"dummy",       sizeof(Dummy),  dummy_init,    dummy_control_cycle,
+                              dummy_brake,   dummy_law_gain, dummy_command, dummy_background,
+                              dummy_signals, dummy_hash};
 
 plant::Config config()
 {
@@ -190,6 +196,25 @@ void test_the_comparator_opens_the_bridge_and_stays_latched_until_disabled()
     TEST_ASSERT_EQUAL_UINT32(0, dummy->samples.flags);
 }
 
+/* 10 ohm behind 0.1 ohm take 1 % of the supply. */
+void test_the_drive_switches_the_brake_where_it_is_not_a_chopper_of_its_own()
+{
+    plant::Config braked = config();
+    braked.supply.bus_source_ohm = 0.1;
+    braked.supply.brake_ohm = 10.0;
+    for (const bool by_drive : {true, false}) {
+        braked.supply.brake_by_drive = by_drive;
+        sil::Board board(braked, image, drive_settings());
+        TEST_ASSERT_EQUAL(by_drive, board.facts().has_brake);
+        dummy->brakes = true;
+        run(board, 20);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, by_drive ? 24.0 / 1.01 : 24.0, board.plant().state().bus_V);
+        dummy->brakes = false;
+        run(board, 20);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 24.0, board.plant().state().bus_V);
+    }
+}
+
 void test_refusals_carry_the_text_of_the_drive_or_the_plant()
 {
     drive_settings settings = {};
@@ -242,6 +267,7 @@ int main()
     RUN_TEST(test_the_gates_follow_the_outputs_only_while_the_bridge_is_enabled);
     RUN_TEST(test_the_outputs_open_the_bridge_at_once);
     RUN_TEST(test_the_comparator_opens_the_bridge_and_stays_latched_until_disabled);
+    RUN_TEST(test_the_drive_switches_the_brake_where_it_is_not_a_chopper_of_its_own);
     RUN_TEST(test_refusals_carry_the_text_of_the_drive_or_the_plant);
     RUN_TEST(test_time_and_cycles_advance_with_the_periods_only);
     return UNITY_END();

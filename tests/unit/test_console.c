@@ -50,10 +50,11 @@ static void test_it_announces_the_firmware_and_why_it_started(void)
     assert_begins(heard, "version, ");
     TEST_ASSERT_NOT_NULL(strstr(heard, " on bench; settings: given resistance_ohm=0.37 "));
     TEST_ASSERT_NOT_NULL(strstr(heard, "rotor_teeth=50"));
-    TEST_ASSERT_NOT_NULL(strstr(heard, "law=state-feedback feedback=sensorless "
-                                       "blind_below_rad_s=0.00690436 hold_torque_Nm=0.471 "
-                                       "hold_load_step_Nm=0.341287 hold_heat_W=3.33; started by: "
-                                       "crash: hard fault at 0x08001234\n"));
+    TEST_ASSERT_NOT_NULL(strstr(heard,
+                                "law=state-feedback feedback=sensorless "
+                                "blind_below_rad_s=0.00690436 hold_torque_Nm=0.471 "
+                                "hold_load_step_Nm=0.341287 hold_heat_W=3.33 brake=0; started by: "
+                                "crash: hard fault at 0x08001234\n"));
     application_background(&bench.application);
     TEST_ASSERT_EQUAL_STRING("", bench_heard());
 }

@@ -29,6 +29,8 @@
     /* serial line, through the debugger's virtual port */                                         \
     PIN(A, 2, ALTERNATE, 6, NONE, LPUART1, TX)                                                     \
     PIN(A, 3, ALTERNATE, 6, UP, LPUART1, RX)                                                       \
+    /* switch of the brake resistor, on while high */                                              \
+    PIN(C, 6, OUTPUT, 0, DOWN, GPIOC, BRAKE)                                                       \
     /* light-emitting diode LD4, not driven yet */                                                 \
     PIN(A, 5, OUTPUT, 0, NONE, GPIOA, LED)
 
@@ -65,6 +67,10 @@
 #define BUS_V_PER_CODE           (31.2 / 4096.0)
 #define TEMPERATURE_CHANNEL      11
 #define BRIDGE_NTC_BETA_K        3435.0 /* 10 kOhm to ground, 10 kOhm to the supply; 0: none */
+
+#define HAS_BRAKE  1
+#define BRAKE_PORT GPIOC
+#define BRAKE_PIN  6
 
 /*
  * 115200 and not more: in double precision without FPU the background plans for some 10 ms, in

@@ -75,6 +75,8 @@ class AdvancedTimer : public RegisterBlock
 
     /* Output of COMP1...COMP7 (index 0...6). */
     void comparator(unsigned index, bool level);
+    /* Of what the system watches, by SYSCFG_CFGR2. */
+    void system_break(bool level);
     bool break_active() const;
 
     /* Stops the count and holds all outputs off, as at a halt of the core with DBG_TIM1_STOP set;
@@ -133,6 +135,7 @@ class AdvancedTimer : public RegisterBlock
     Ticks flags_until_ = 0;
     Ticks held_since_ = Event::never; /* never: it is not */
     unsigned comparators_ = 0;
+    bool system_break_ = false;
     unsigned lock_level_ = 0;
     bool moe_written_ = false;
 

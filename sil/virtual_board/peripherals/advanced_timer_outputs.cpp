@@ -12,6 +12,7 @@ namespace
 enum : std::uint32_t { CR2 = 0x04, SR = 0x10, CCER = 0x20, BDTR = 0x44, AF1 = 0x60 };
 enum : std::uint32_t { BKE = 1u << 12, BKP = 1u << 13, AOE = 1u << 14, MOE = 1u << 15 };
 constexpr std::uint32_t ossi = 1u << 10;
+constexpr std::uint32_t BIF = 1u << 7, SBIF = 1u << 13;
 
 } // namespace
 
@@ -176,6 +177,14 @@ void AdvancedTimer::comparator(unsigned index, bool level)
     interrupt();
 }
 
+void AdvancedTimer::system_break(bool level)
+{
+    system_break_ = level;
+    take_flags();
+    check_break();
+    interrupt();
+}
+
 /* The sources are OR-ed after their own inversion; BKP is the active level of the result. No pin
    carries BKIN, which reads 0. */
 bool AdvancedTimer::break_active() const
@@ -190,7 +199,7 @@ bool AdvancedTimer::break_active() const
         const bool input = bit(comparators_, i);
         level = level || (bit(sources, 1 + i) && input != inverted);
     }
-    return level == ((value & BKP) != 0);
+    return system_break_ || level == ((value & BKP) != 0);
 }
 
 /* The break acts without a clock: outputs off at once. */
@@ -199,7 +208,7 @@ void AdvancedTimer::check_break()
     if (!clocked() || !break_active()) {
         return;
     }
-    at(SR) |= 1u << 7;
+    at(SR) |= system_break_ ? SBIF : BIF;
     if (outputs_enabled()) {
         at(BDTR) &= ~MOE;
         counters.breaks++;

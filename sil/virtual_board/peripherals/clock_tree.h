@@ -24,10 +24,18 @@ class Pwr : public RegisterBlock
     {
         return range_1() && !bit(at(0x80), 8);
     }
-    std::function<void()> on_change; /* the clock tree checks its limits again */
+    void set_supply(double supply_V); /* of the chip, 3.3 V; the monitor (PVD) looks */
+    void reset() override;
+    std::function<void()> on_change;         /* the clock tree checks its limits again */
+    std::function<void(bool low)> on_supply; /* the monitor's output */
 
   protected:
     void put(std::uint32_t offset, std::uint32_t value, Master master) override;
+
+  private:
+    void watch_supply();
+
+    double supply_V_ = 3.3;
 };
 
 struct ClockConfig {

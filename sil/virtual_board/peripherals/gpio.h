@@ -32,6 +32,10 @@ class Gpio : public RegisterBlock
     {
         return bit(at(0x14), pin);
     }
+    bool drives_high(unsigned pin) const
+    {
+        return mode(pin) == 1 && output(pin);
+    }
     std::uint32_t inputs = 0; /* levels of the pins that are driven from outside */
 
   protected:

@@ -27,6 +27,9 @@ struct LegInput {
 constexpr LegInput leg_inputs[PowerStage::legs] = {
     {3, 1, {'B', 1}}, {3, 5, {'B', 13}}, {4, 3, {'B', 12}}, {4, 4, {'B', 14}}};
 
+/* Switch of the brake resistor, on while high. */
+constexpr Pin brake = {'C', 6};
+
 /* Leg by converter and channel; below 0: none. */
 constexpr int leg_of(unsigned adc, unsigned channel)
 {
@@ -82,6 +85,7 @@ void PowerStage::peak()
                 std::min(timer_.active_compare(leg), std::uint32_t{timer_.half_period()}));
         }
         duties.bridge_on = bridge_on();
+        duties.brake_on = pins_.port(brake.port).drives_high(brake.number);
         plant_.step(duties);
         period_++;
     }

@@ -3,10 +3,10 @@
  * each peak of TIM1 and answers the converters and comparators.
  *
  * The plant is stepped at S(k) for the whole period S(k-1)...S(k), with the compares in force
- * during it and the bridge as it is at its end. So the leg voltages of a period are known at its
- * end only: what DMA wrote during the period is rewritten in memory at S(k), before anything can
- * run. This is a device of the model; firmware that reads a group earlier sees the last period's
- * value. A group belongs to the period of its trigger.
+ * during it and bridge and brake as they are at its end. So the leg voltages of a period are known
+ * at its end only: what DMA wrote during the period is rewritten in memory at S(k), before anything
+ * can run. This is a device of the model; firmware that reads a group earlier sees the last
+ * period's value. A group belongs to the period of its trigger.
  */
 #ifndef STEADYSTEP_VIRTUAL_BOARD_POWER_STAGE_H
 #define STEADYSTEP_VIRTUAL_BOARD_POWER_STAGE_H

@@ -54,6 +54,11 @@ class RegisterBlock : public Peripheral
     {
         return !clocked_ || clocked_();
     }
+    /* What a register keeps, clocked or not. */
+    std::uint32_t kept(std::uint32_t offset) const
+    {
+        return at(offset);
+    }
     const std::string &name() const
     {
         return name_;

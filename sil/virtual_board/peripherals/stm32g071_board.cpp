@@ -22,6 +22,7 @@ constexpr Shunt shunts[2] = {{{0, {'A', 0}}, 1}, {{1, {'A', 1}}, 3}};
 constexpr Wire bus_in = {10, {'B', 2}}, temperature_in = {11, {'B', 10}};
 constexpr Pin gates[4] = {{'C', 8}, {'C', 9}, {'C', 10}, {'C', 11}}, fault = {'A', 6};
 constexpr unsigned reset_pin = 13; /* of port B */
+constexpr Pin brake = {'C', 6};
 
 constexpr std::uint32_t zero_code = 2048;
 constexpr int middle = 2048;
@@ -166,6 +167,7 @@ void G071Board::peak()
                 std::min(timer1_.active_compare(leg), std::uint32_t{timer1_.half_period()}));
         }
         duties.bridge_on = bridge_on();
+        duties.brake_on = pins_.port(brake.port).drives_high(brake.number);
         plant_.step(duties);
     }
     const Gpio &port = pins_.port('B');

@@ -37,6 +37,10 @@ class G071Board final : public Device
     }
     void reset(const std::string &cause) override;
 
+    const Pins &pins() const
+    {
+        return pins_;
+    }
     plant::Plant &plant()
     {
         return plant_;

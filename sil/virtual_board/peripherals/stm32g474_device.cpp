@@ -13,6 +13,8 @@ enum : std::uint32_t {
     APB1ENR2 = 0x5c,
     APB2ENR = 0x60
 };
+constexpr std::uint32_t CFGR2 = 0x1c; /* of SYSCFG */
+constexpr unsigned PVDL = 2;
 
 struct TimerPlace {
     TimerKind kind;
@@ -91,6 +93,9 @@ Stm32g474Device::Stm32g474Device(Chip &chip, const Stm32g474Config &config)
     lpuart_.tx_routed = [this] { return pins_.routed({'A', 2}, 12); };
     lpuart_.rx_routed = [this] { return pins_.routed({'A', 3}, 12); };
     pwr_.on_change = [this] { rcc_.check(); };
+    pwr_.on_supply = [this](bool low) {
+        tim1_.system_break(low && bit(syscfg_->kept(CFGR2), PVDL));
+    };
     map();
 }
 

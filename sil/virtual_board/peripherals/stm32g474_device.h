@@ -43,6 +43,10 @@ class Stm32g474Device : public Device
     {
         return rcc_;
     }
+    Pwr &pwr()
+    {
+        return pwr_;
+    }
     Pins &pins()
     {
         return pins_;

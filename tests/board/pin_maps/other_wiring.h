@@ -70,6 +70,8 @@
 #define TEMPERATURE_CHANNEL      5
 #define BRIDGE_NTC_BETA_K        3950.0 /* 10 kOhm to ground, 10 kOhm to the supply; 0: none */
 
+#define HAS_BRAKE 0
+
 #define ENCODER_TIMER 8
 
 #define BAUD 115200
