@@ -112,10 +112,16 @@ class Table(unittest.TestCase):
         runs = [said(cell, at_s + 0.01), said(cell, next_s + 0.02, peak_A=4.5),
                 outcome.outcome_of(cell, "float", summary())._replace(error_rad=0.1)]
         self.assertEqual(
-            "[stalled](../interface/faults.md#stalled) in 1 of 3, 10 ms; "
-            "[stalled](../interface/faults.md#stalled) in 1 of 3, 20 ms of the next motion; "
+            "[stalled] in 1 of 3, 10 ms; [stalled] in 1 of 3, 20 ms of the next motion; "
             "not detected in 1 of 3: 1.5 × (4.5 A), 3.2 steps",
             table.cell_text([cell] * 3, runs))
+
+    def test_each_fault_is_linked_to_its_place_on_the_page(self):
+        cell = cell_of("jam", "rest")
+        links = table.definitions_of({cell: [said(cell, cell.timeline()[1] + 0.01)]})
+        self.assertEqual("[stalled]: ../interface/faults.md#stalled", links)
+        page = (ROOT / "firmware/interface/faults.md").read_text(encoding="utf-8")
+        self.assertIn('<a id="stalled"></a>', page)
 
     def test_scenarios_are_written_once_for_each_cell(self):
         names = [cell.name for cell in cells.cells_of(HOME)]
