@@ -351,7 +351,8 @@ static void test_names_are_spelt_as_scenarios_and_the_serial_line_do(void)
                                                      "open-phase-a",
                                                      "open-phase-b",
                                                      "current-sensor-a",
-                                                     "current-sensor-b"};
+                                                     "current-sensor-b",
+                                                     "encoder"};
 
     for (int i = 0; i < DRIVE_STATES; i++) {
         TEST_ASSERT_EQUAL_STRING(states[i], drive_state_name((enum drive_state)i));
