@@ -16,7 +16,13 @@
 void rotor_watch_reset(struct rotor_watch *watch, uint32_t period)
 {
     watch->free = period;
-    watch->swing.turns = 0u;
+    rotor_watch_reset_swing(&watch->swing);
+}
+
+void rotor_watch_reset_swing(struct rotor_swing *swing)
+{
+    swing->side = 0;
+    swing->turns = 0u;
 }
 
 bool rotor_watch_swings(struct rotor_swing *swing, num_t error, num_t limit, uint32_t period,
@@ -25,11 +31,21 @@ bool rotor_watch_swings(struct rotor_swing *swing, num_t error, num_t limit, uin
     const int8_t side = error > limit ? 1 : error < -limit ? -1 : 0;
 
     if (side != 0 && side != swing->side) {
-        swing->turns = period - swing->turned < within ? (uint8_t)(swing->turns + 1u) : (uint8_t)0u;
+        swing->turns = swing->side != 0 && period - swing->turned < within
+                           ? (uint8_t)(swing->turns + 1u)
+                           : (uint8_t)0u;
         swing->turned = period;
         swing->side = side;
     }
     return swing->turns >= SWINGS;
+}
+
+bool rotor_watch_jumps(struct rotor_watch *watch, struct position reference, num_t limit)
+{
+    const num_t moved = position_difference(reference, watch->reference);
+
+    watch->reference = reference;
+    return num_abs(moved) > limit;
 }
 
 bool rotor_watch_count_stands(struct rotor_watch *watch, int32_t count, bool pushed,
@@ -67,14 +83,18 @@ static enum drive_fault look(struct drive *drive, uint32_t period)
     const num_t error = position_difference(drive->reference.now.position,
                                             drive->estimator.estimate.rotor.position);
 
-    if (watched && rotor_watch_swings(&drive->rotor_watch.swing, error,
-                                      encoder ? following->limit : SWING_TURNS, period,
-                                      SWING_LOOKS * following->periods)) {
+    const num_t limit = encoder ? following->limit : SWING_TURNS;
+    struct rotor_watch *watch = &drive->rotor_watch;
+
+    if (rotor_watch_jumps(watch, drive->reference.now.position, limit)) {
+        rotor_watch_reset_swing(&watch->swing);
+    }
+    if (watched &&
+        rotor_watch_swings(&watch->swing, error, limit, period, SWING_LOOKS * following->periods)) {
         return encoder ? DRIVE_FAULT_FOLLOWING_ERROR : DRIVE_FAULT_STALLED;
     }
-    return encoder && rotor_watch_count_stands(&drive->rotor_watch, drive->encoder_count,
-                                               is_pushed(drive, error), period,
-                                               STAND_LOOKS * following->periods)
+    return encoder && rotor_watch_count_stands(watch, drive->encoder_count, is_pushed(drive, error),
+                                               period, STAND_LOOKS * following->periods)
                ? DRIVE_FAULT_ENCODER
                : DRIVE_FAULT_NONE;
 }

@@ -3,8 +3,9 @@
  *
  * A load that swings beyond the torque throws the rotor to and fro, and no side of it lasts. The
  * sign: the rotor is further off its reference than it may be, on the other side than the last
- * time, for the third time, each within 0.1 s of the last. It may be off by the following error, or
- * without an encoder, where the monitor's policy is to end in faults, by an electrical turn.
+ * time, for the third time since a step, each within 0.1 s of the last. It may be off by the
+ * following error, or without an encoder, where the monitor's policy is to end in faults, by an
+ * electrical turn.
  *
  * With an encoder, a count that stands still at rest looks like a rotor at rest, and the observer
  * takes the torque that does not move it for the load's. The law answers it, and both rise to the
@@ -18,6 +19,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/numeric/angle.h"
 #include "firmware/numeric/num.h"
 
 struct rotor_watch {
@@ -26,12 +28,20 @@ struct rotor_watch {
         int8_t side;     /* of the reference; 0: not yet so far */
         uint8_t turns;   /* in a row */
     } swing;
-    uint32_t free; /* the last period with a count, or in which none was due */
+    struct position reference; /* looked at last */
+    uint32_t free;             /* the last period with a count, or in which none was due */
     int32_t count;
 };
 
 /* Nothing has been seen by then. */
 void rotor_watch_reset(struct rotor_watch *watch, uint32_t period);
+
+/* Where the rotor swings from now on is another thing. */
+void rotor_watch_reset_swing(struct rotor_swing *swing);
+
+/* Whether the reference is further than this from where it was at the last look: a step, whose
+   rotor may swing about it. */
+bool rotor_watch_jumps(struct rotor_watch *watch, struct position reference, num_t limit);
 
 /* Whether the rotor is thrown to and fro; error: reference less rotor. */
 bool rotor_watch_swings(struct rotor_swing *swing, num_t error, num_t limit, uint32_t period,

@@ -86,9 +86,10 @@ class Outcomes(unittest.TestCase):
 class Bounds(unittest.TestCase):
     def test_every_cell_has_its_bound_and_every_bound_its_cell_and_reason(self):
         bounds = outcome.read_bounds(BOUNDS)
-        used = [outcome.bound_of(cell, bounds, BOUNDS) for motor in
-                (HOME, *map(read_motor, ("8hs15-0604s", "17hs19-2004s1", "87hs78-4204")))
-                for cell in cells.cells_of(motor)]
+        others = map(read_motor, ("8hs15-0604s", "17hs19-2004s1", "87hs78-4204"))
+        used = [outcome.bound_of(cell, bounds, BOUNDS) for cell in
+                (*cells.cells_of(HOME), *(cell for motor in others
+                                          for cell in cells.cells_of(motor, cells.DRIVES[:2])))]
         self.assertEqual([], [bound for bound in bounds if not any(bound is one for one in used)])
         self.assertEqual([], [bound for bound in bounds if len(bound.reason) < 10])
 
@@ -112,10 +113,16 @@ class Table(unittest.TestCase):
         runs = [said(cell, at_s + 0.01), said(cell, next_s + 0.02, peak_A=4.5),
                 outcome.outcome_of(cell, "float", summary())._replace(error_rad=0.1)]
         self.assertEqual(
-            "[stalled](../interface/faults.md#stalled) in 1 of 3, 10 ms; "
-            "[stalled](../interface/faults.md#stalled) in 1 of 3, 20 ms of the next motion; "
+            "[stalled] in 1 of 3, 10 ms; [stalled] in 1 of 3, 20 ms of the next motion; "
             "not detected in 1 of 3: 1.5 × (4.5 A), 3.2 steps",
             table.cell_text([cell] * 3, runs))
+
+    def test_each_fault_is_linked_to_its_place_on_the_page(self):
+        cell = cell_of("jam", "rest")
+        links = table.definitions_of({cell: [said(cell, cell.timeline()[1] + 0.01)]})
+        self.assertEqual("[stalled]: ../interface/faults.md#stalled", links)
+        page = (ROOT / "firmware/interface/faults.md").read_text(encoding="utf-8")
+        self.assertIn('<a id="stalled"></a>', page)
 
     def test_scenarios_are_written_once_for_each_cell(self):
         names = [cell.name for cell in cells.cells_of(HOME)]

@@ -73,6 +73,21 @@ static void test_a_rotor_that_is_off_for_long_or_slowly_or_little_does_not_swing
     TEST_ASSERT_EQUAL_INT(NEVER, periods_until_swinging(1.01, 60, 2)); /* ahead, then behind */
 }
 
+/* Each step of the reference lets its rotor swing anew. */
+static void test_a_step_of_the_reference_begins_anew(void)
+{
+    setUp();
+    for (int n = 0; n < NEVER; n++) {
+        const struct position reference = {n / 150, 0u};
+
+        if (rotor_watch_jumps(&watch, reference, NUM(0.5))) {
+            rotor_watch_reset_swing(&watch.swing);
+        }
+        TEST_ASSERT_FALSE(rotor_watch_swings(&watch.swing, n / 50 % 2 == 0 ? NUM(1.1) : NUM(-1.1),
+                                             NUM(1.0), ++period, WITHIN));
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -80,5 +95,6 @@ int main(void)
     RUN_TEST(test_a_count_or_less_torque_begins_anew);
     RUN_TEST(test_a_rotor_that_is_thrown_to_and_fro_is_said_at_the_third_turn);
     RUN_TEST(test_a_rotor_that_is_off_for_long_or_slowly_or_little_does_not_swing);
+    RUN_TEST(test_a_step_of_the_reference_begins_anew);
     return UNITY_END();
 }

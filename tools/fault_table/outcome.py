@@ -77,9 +77,11 @@ class Bound(NamedTuple):
 
 def read_bounds(file):
     try:
-        tables = tomllib.loads(file.read_text(encoding="utf-8"))["bound"]
-    except (tomllib.TOMLDecodeError, KeyError) as error:
-        raise Refused(f"{file}: expected an array of [[bound]]: {error}") from error
+        tables = tomllib.loads(file.read_text(encoding="utf-8")).get("bound")
+    except tomllib.TOMLDecodeError as error:
+        raise Refused(f"{file}: {error}") from error
+    if not isinstance(tables, list):
+        raise Refused(f"{file}: expected an array of [[bound]]")
     bounds = []
     for i, table in enumerate(tables):
         unknown = set(table) - set(Bound._fields)

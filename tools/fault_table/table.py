@@ -11,7 +11,13 @@ PAGE = "../interface/faults.md"
 
 
 def linked(name):
-    return name if name == "warning" else f"[{name}]({PAGE}#{name})"
+    """By the definitions behind the tables."""
+    return name if name == "warning" else f"[{name}]"
+
+
+def definitions_of(found):
+    names = {one.fault for outcomes in found.values() for one in outcomes} - {"", "warning"}
+    return "\n".join(f"[{name}]: {PAGE}#{name}" for name in sorted(names))
 
 
 def names_of(outcomes):
@@ -77,6 +83,7 @@ def section_of(found, drives, home, conditions):
         for drive in drives[:2]:
             parts += [f"### {drive.title[0].upper()}{drive.title[1:]}: {', '.join(others)}",
                       table_of(found, drive, others)]
+    parts.append(definitions_of(found))
     return "\n\n".join(parts)
 
 
