@@ -3,8 +3,8 @@
 Kinds: relation, arithmetic, constant, sign, statement (deleted), condition (negated). No place is
 what stands in a comment, a string, a preprocessor line (so the tables of firmware/interface and the
 constants that have a name there), a static assertion, or the size of a declared array or bit field.
-The layout of clang-format distinguishes a product or difference, with a space on either side, from a pointer
-or a sign.
+The layout of clang-format distinguishes a product or difference, with a space on either side, from
+a pointer or a sign.
 """
 import re
 from typing import NamedTuple

@@ -185,6 +185,30 @@ static void state_feedback_is_near_the_printed_gains_with_the_torque_constant_th
     TEST_ASSERT_DOUBLE_WITHIN(0.0005, 6.536, gains.k_load_A_Nm);
 }
 
+/* Position, speed and integral of the error, sampled: all three eigenvalues are e^(-w0 T). */
+static void the_poles_of_the_pid_are_three_at_its_bandwidth(void)
+{
+    const struct mechanical_model model = mechanical_model_of(&motor, period_s);
+    const double z = exponential(-bandwidth_rad_s * period_s);
+    struct pid_gains pid;
+
+    TEST_ASSERT_TRUE(
+        pid_design(&motor, period_s, bandwidth_rad_s, current_bandwidth_rad_s, &pid, error));
+    /* w+ = a11 w + b1 i, x+ = x + a21 w + b2 i, s+ = s + x, i = -kw w - kp x - ki s */
+    const double kw = pid.k_speed_As_rad;
+    const double kp = pid.k_proportional_A_rad;
+    const double ki = pid.k_integral_step_A_rad;
+    const double w[3] = {-model.one_minus_a11 - model.b1 * kw, -model.b1 * kp, -model.b1 * ki};
+    const double x[3] = {model.a21 - model.b2 * kw, -model.b2 * kp, -model.b2 * ki};
+
+    for (double d = -0.05; d < 0.1; d += 0.03) { /* det(d I - loop + I) at z = 1 + d */
+        const double determinant =
+            (d - w[0]) * ((d - x[1]) * d - x[2]) + w[1] * (-x[0] * d) + w[2] * -x[0];
+
+        assert_relative(1e-9, (1.0 + d - z) * (1.0 + d - z) * (1.0 + d - z), determinant, "poles");
+    }
+}
+
 static void feed_forward_carries_the_reference_motion(void)
 {
     struct state_feedback_gains gains;
@@ -459,6 +483,7 @@ int main(void)
     RUN_TEST(riccati_refuses_what_is_not_a_number);
     RUN_TEST(state_feedback_gains_are_the_exact_ones);
     RUN_TEST(state_feedback_is_near_the_printed_gains_with_the_torque_constant_they_imply);
+    RUN_TEST(the_poles_of_the_pid_are_three_at_its_bandwidth);
     RUN_TEST(feed_forward_carries_the_reference_motion);
     RUN_TEST(designs_bear_a_motor_without_friction);
     RUN_TEST(too_fast_a_position_loop_is_refused_with_its_limit);

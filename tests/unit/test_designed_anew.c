@@ -73,6 +73,11 @@ static void is_the_same(const void *a, const void *b, size_t bytes, const char *
 
 #define SAME(member) is_the_same(&fresh.member, &drive.member, sizeof fresh.member, #member)
 
+/* Without the padding behind its last member. */
+#define SAME_UP_TO(member, type, last)                                                             \
+    is_the_same(&fresh.member, &drive.member, offsetof(type, last) + sizeof fresh.member.last,     \
+                #member)
+
 static void the_law_is_the_same(void)
 {
 #define LAW_SAME(constant, function, text)                                                         \
@@ -117,7 +122,7 @@ static void the_designs_are_the_same(void)
     SAME(params.measurement);
     SAME(params.model);
     SAME(params.reference);
-    SAME(params.hold);
+    SAME_UP_TO(params.hold, struct standstill_hold_params, enters_at_rest);
     SAME(params.current_control);
     SAME(params.modulator);
     SAME(params.protection);
@@ -135,7 +140,7 @@ static void the_designs_are_the_same(void)
     SAME(params.detent);
     SAME(params.bridge_loss);
     SAME(params.following);
-    SAME(phase_watch_params);
+    SAME_UP_TO(phase_watch_params, struct phase_watch_params, noise_codes);
     SAME(enabling.calibration_params);
     SAME(standstill);
     SAME(synchronism.policy);
@@ -146,8 +151,7 @@ static void the_designs_are_the_same(void)
         SAME(enabling.detection_params);
     }
     if (fresh.settings.feedback == DRIVE_FEEDBACK_ENCODER) {
-        is_the_same(&fresh.enabling.alignment_params, &drive.enabling.alignment_params,
-                    offsetof(struct encoder_alignment_params, outlier_max), "alignment_params");
+        SAME_UP_TO(enabling.alignment_params, struct encoder_alignment_params, outlier_max);
     } else if (fresh.settings.balance_phases) {
         SAME(enabling.balance_params);
     }

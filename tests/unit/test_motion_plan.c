@@ -191,32 +191,6 @@ static void test_where_a_speed_is_reached_there_is_no_acceleration(void)
     }
 }
 
-/* Asked for in any period of it, the last ones, too; the one that follows goes where it should. */
-static void test_a_stop_of_a_plan_does_not_stop_what_follows(void)
-{
-    for (uint32_t periods = 1; periods < 200u; periods++) {
-        const struct position target = {0, 0x10000000u};
-        const struct position next = {0, 0x20000000u};
-
-        setUp();
-        go_to(target);
-        for (uint32_t k = 0; k < periods && reference_busy(&reference); k++) {
-            step();
-        }
-        reference_stop(&reference);
-        for (int k = 0; k < 2000 && reference_busy(&reference); k++) {
-            step();
-        }
-        TEST_ASSERT_FALSE(reference_busy(&reference));
-        TEST_ASSERT_FALSE(reference.stop_requested);
-        go_to(next);
-        for (int k = 0; k < 4000; k++) {
-            step();
-        }
-        TEST_ASSERT_EQUAL_UINT32(next.fraction, reference.next.position.fraction);
-    }
-}
-
 /* Whatever the reference does, a new speed preempts without a kink. */
 static void test_speeds_follow_one_another_in_mid_change(void)
 {
@@ -626,7 +600,6 @@ int main(void)
     RUN_TEST(test_the_closed_form_is_the_sum_of_the_additions_bit_for_bit);
     RUN_TEST(test_a_speed_is_reached_without_a_kink_and_kept);
     RUN_TEST(test_where_a_speed_is_reached_there_is_no_acceleration);
-    RUN_TEST(test_a_stop_of_a_plan_does_not_stop_what_follows);
     RUN_TEST(test_speeds_follow_one_another_in_mid_change);
     RUN_TEST(test_a_new_target_is_reached_exactly_from_any_motion);
     RUN_TEST(test_a_retarget_takes_the_time_of_a_jerk_limited_move);

@@ -97,6 +97,22 @@ static double kept(void)
     return parameter_store_read(&board, &learned) ? learned.detent_torque_Nm[0] : -1.0;
 }
 
+/* CRC-32 of IEEE 802.3, as another program computes it over all before it. */
+static void test_the_check_of_a_record_is_the_standard_one(void)
+{
+    static const struct record_log log = {.first_page = 0, .format = 1, .payload_bytes = 8};
+    uint8_t record[RECORD_BYTES(8)] = {0};
+
+    for (uint8_t i = 0; i < 8; i++) {
+        record[RECORD_HEADER_BYTES + i] = (uint8_t)(17u * i);
+    }
+    record_seal(&log, record, 5u);
+    TEST_ASSERT_EQUAL_HEX32(0x4be5e43du, record_get(&record[sizeof record - 4u], 4));
+    TEST_ASSERT_TRUE(record_is_valid(&log, record));
+    record[RECORD_HEADER_BYTES] ^= 1u;
+    TEST_ASSERT_FALSE(record_is_valid(&log, record));
+}
+
 /* In steps of 1e-7 N m, to nearest, up to 2^31 - 1 of them on either side. */
 static void test_a_torque_is_kept_to_nearest_and_within_its_range(void)
 {
@@ -220,6 +236,7 @@ static void test_a_board_without_a_store_keeps_nothing(void)
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_the_check_of_a_record_is_the_standard_one);
     RUN_TEST(test_a_torque_is_kept_to_nearest_and_within_its_range);
     RUN_TEST(test_what_is_saved_is_found_again);
     RUN_TEST(test_an_erased_store_keeps_nothing);

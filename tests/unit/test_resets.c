@@ -218,7 +218,8 @@ static void test_what_runs_between_switched_off_and_operation(void)
                 PADDING(struct initial_position, by_impulses, angle),
                 PADDING(struct initial_position, angle, asymmetry));
     TEST_ASSERT_TRUE(in_start.resistance == NUM(0.0) && in_start.voltage == NUM(0.0) &&
-                     in_start.current_reference == NUM(0.0) && in_start.asymmetry == NUM(0.0));
+                     in_start.current_reference == NUM(0.0) && in_start.asymmetry == NUM(0.0) &&
+                     in_start.uncertainty == NUM(0.0));
     TEST_ASSERT_TRUE(in_start.attempts == 0u && in_start.repetitions == 0u &&
                      in_start.periods == 0u && in_start.impulse == 0u && !in_start.by_impulses);
     /* found anew before they are asked for */

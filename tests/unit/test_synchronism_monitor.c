@@ -387,6 +387,7 @@ static void test_the_design_in_figures(void)
     TEST_ASSERT_NUM_WITHIN(1e-4, 1.6 * 0.157 * 3.0 / base.torque_Nm, params.load_limit);
     TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.05 * 0.37 / base.resistance_ohm,
                               coef_to_double(params.voltage_per_current));
+    TEST_ASSERT_NUM_WITHIN(1e-5, 0.99 * LIMIT_A / base.current_A, params.full_current);
     TEST_ASSERT_EQUAL_UINT32(9, params.standing_blocks);
     TEST_ASSERT_EQUAL_UINT32(63, params.behind_blocks);
     TEST_ASSERT_EQUAL_UINT32(2, params.pull_out_blocks);
