@@ -527,7 +527,7 @@ static void test_a_hold_begins_with_the_load_of_the_motion(void)
 {
     motor.load_torque_Nm = 0.1;
     turn(10.0, 2000);
-    invariant_ekf_settle(&ekf);
+    invariant_ekf_settle(&ekf, &params);
     TEST_ASSERT_NUM_WITHIN(0.0, num_to_double(ekf.estimate.rotor.load_torque), ekf.settled_load);
 }
 
