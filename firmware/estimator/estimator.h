@@ -89,7 +89,7 @@ static inline void estimator_begin_hold(struct estimator *estimator,
                                         const struct estimator_params *params)
 {
     if (estimator_is(params, ESTIMATOR_INVARIANT_EKF)) {
-        invariant_ekf_settle(&estimator->invariant_ekf);
+        invariant_ekf_settle(&estimator->invariant_ekf, &params->invariant_ekf);
     }
 }
 

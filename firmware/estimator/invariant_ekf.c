@@ -83,7 +83,20 @@ void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_p
     ekf->unloaded_periods = unloaded_periods;
     ekf->swing_end =
         unloaded_periods > params->swing_periods ? unloaded_periods - params->swing_periods : 0u;
-    invariant_ekf_settle(ekf);
+    ekf->settled_load = NUM(0.0);
+    ekf->settled_bias = ekf->bias;
+    ekf->following_periods = 0u;
+}
+
+void invariant_ekf_settle(struct invariant_ekf *ekf, const struct invariant_ekf_params *params)
+{
+    ekf->settled_load = ekf->estimate.rotor.load_torque;
+    ekf->settled_bias = ekf->bias;
+    ekf->following_periods = 0u;
+    ekf->usual_change = params->load_step;
+    ekf->step_limit = params->load_step + params->load_step;
+    ekf->swings = VIBRATION_SWINGS;
+    ekf->calm_blocks = CALM_BLOCKS;
 }
 
 static void count_swing(struct invariant_ekf *ekf)

@@ -144,13 +144,13 @@ static inline void invariant_ekf_preset_current(struct invariant_ekf *ekf, struc
     ekf->estimate.current = current;
 }
 
-/* A hold begins, and with it the load it returns to and the offset: those estimated in motion. */
-static inline void invariant_ekf_settle(struct invariant_ekf *ekf)
-{
-    ekf->settled_load = ekf->estimate.rotor.load_torque;
-    ekf->settled_bias = ekf->bias;
-    ekf->following_periods = 0u;
-}
+/*
+ * A hold begins, and with it the load it returns to and the offset: those estimated in motion. Its
+ * current comes, and what inductance and offsets make of that looks like a load: as of one that
+ * vibrates, until a tenth of a second has been calm, more than usual is a step.
+ */
+__attribute__((noinline)) void invariant_ekf_settle(struct invariant_ekf *ekf,
+                                                    const struct invariant_ekf_params *params);
 
 /* The first hold is over: what is left of its unloaded periods is. */
 static inline void invariant_ekf_expect_load(struct invariant_ekf *ekf)

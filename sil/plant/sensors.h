@@ -31,8 +31,8 @@ struct True {
     Phases current_A, phase_voltage_V;
     double bus_V, theta_rad;
     bool bridge_on;
-    bool asked;    /* for a voltage, since it came on */
-    Phases legs_V; /* sum of the voltages of a phase's legs */
+    bool asked = false;         /* for a voltage, since it came on */
+    Phases legs_V = {0.0, 0.0}; /* sum of the voltages of a phase's legs */
 };
 
 class Sensors

@@ -792,6 +792,12 @@ MUTANTS = [
     Mutant(ESTIMATOR + "synchronism_monitor.c", "synchronism_monitor",
            "a_hold_that_adapts_the_resistance_makes_it_known",
            "monitor->voltage_per_current = params->voltage_per_current;", ""),
+    Mutant(ESTIMATOR + "invariant_ekf.c", "invariant_ekf",
+           "until_a_hold_has_been_calm_more_is_a_step",
+           "    ekf->swings = VIBRATION_SWINGS;\n", ""),
+    Mutant(ESTIMATOR + "invariant_ekf.c", "invariant_ekf",
+           "until_a_hold_has_been_calm_more_is_a_step",
+           "    ekf->step_limit = params->load_step + params->load_step;\n", ""),
     # ---- where the rotor stands ----
     Mutant(ESTIMATOR + "impulse_order.h", "initial_position",
            "impulses_find_the_rotor_all_around_and_leave_it_where_it_was",

@@ -44,6 +44,12 @@ SCENARIOS = [
     ("negative inductance", replaced('model = "bench"', "inductance_scale = -1"), 9,
      ["plant.inductance_scale", "0.01...100", "got -1"]),
     ("NaN", replaced('model = "bench"', "bus_V = nan"), 9, ["plant.bus_V", "got nan"]),
+    ("more hysteresis than iron has", replaced('model = "bench"', "hysteresis = 0.5"), 9,
+     ["plant.hysteresis", "0...0.2", "got 0.5"]),
+    ("all of the inertia behind a belt", replaced('model = "bench"', "belt_inertia_share = 1.0"), 9,
+     ["plant.belt_inertia_share", "0...0.99", "got 1"]),
+    ("a magnet hotter than magnets get", SMALL + EVENT + "plant.magnet_rise_K = 300\n", 23,
+     ["event[2].plant.magnet_rise_K", "-100...200", "got 300"]),
     ("infinity", replaced("position_rad = 0.05", "position_rad = inf"), 14,
      ["event[1].position_rad", "got inf"]),
     ("unknown number format", 'numerics = ["fixd"]\n' + SMALL, 1,
@@ -206,6 +212,7 @@ ARGUMENTS = [
     ("no value", ["--set", "plant.bus_V"], ["--set plant.bus_V", "table.key=value"]),
     ("out of range", ["--set", "plant.resistance_scale=-1"],
      ["--set plant.resistance_scale=-1", "0.01...100", "got -1"]),
+    ("a plant of an unknown name", ["--set", "plant=built"], ["plant.model", "as-built", '"built"']),
     ("wrong type", ["--set", "plant.resistance_scale=much"], ["resistance_scale", '"much"']),
     ("NaN", ["--set", "plant.bus_V=nan"], ["--set plant.bus_V=nan", "got nan"]),
     ("unknown key", ["--set", "drive.lay=pid"], ["drive.lay", "did you mean law?"]),
@@ -361,6 +368,11 @@ def nowhere_to_write(folder):
                 f"--write-settings below a file: {result.returncode} {result.stderr}")
     result = run(*campaign, "--seed", "1", "--write-scenario", "", cwd=folder)
     CHECKS.that(result.returncode == 2, f"--write-scenario '': {result.returncode}")
+    for option, kind, words in (("--stretch", "slip", ["--stretch", "slip", "as-built"]),
+                                ("--duration=2", "as-built", ["--duration", "as-built", "its own"])):
+        result = run("campaign", kind, option, cwd=folder)
+        CHECKS.that(result.returncode == 2 and all(word in result.stderr for word in words),
+                    f"campaign {kind} {option}: {result.stderr}")
     result = run("campaign", "long-run", "--duration", "nan", cwd=folder)
     CHECKS.that(result.returncode == 2 and "--duration" in result.stderr,
                 f"--duration nan: {result.returncode} {result.stderr}")

@@ -56,9 +56,9 @@ def a_motor_of_ones_own_is_taken_and_can_be_written_out(folder):
     (folder / "motors").mkdir()
     (folder / "motors/mine.toml").write_text(own, encoding="utf-8")
     (folder / "runs").mkdir()
-    for kind in ("long-run", "slip", "load"):
-        arguments = ("campaign", kind, "--seed", "5", "--duration", "0.8",
-                     "--set", "motor=motors/mine.toml")
+    for kind in ("long-run", "slip", "load", "as-built"):
+        length = () if kind == "as-built" else ("--duration", "0.8")
+        arguments = ("campaign", kind, "--seed", "5", *length, "--set", "motor=motors/mine.toml")
         (drawn,) = json.loads(run(*arguments, "--json", cwd=folder).stdout)["runs"]
         CHECKS.that("--set motor=motors/mine.toml" in drawn["reproduce"], drawn["reproduce"])
         written = run(*arguments, "--write-scenario", f"runs/{kind}.toml", cwd=folder)

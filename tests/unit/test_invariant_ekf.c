@@ -527,8 +527,22 @@ static void test_a_hold_begins_with_the_load_of_the_motion(void)
 {
     motor.load_torque_Nm = 0.1;
     turn(10.0, 2000);
-    invariant_ekf_settle(&ekf);
+    invariant_ekf_settle(&ekf, &params);
     TEST_ASSERT_NUM_WITHIN(0.0, num_to_double(ekf.estimate.rotor.load_torque), ekf.settled_load);
+}
+
+/* Its current comes, and a wrong inductance looks like a load. */
+static void test_until_a_hold_has_been_calm_more_is_a_step(void)
+{
+    turn(10.0, 200);
+    invariant_ekf_settle(&ekf, &params);
+    TEST_ASSERT_TRUE(ekf.step_limit > params.load_step + num_half(params.load_step));
+    invariant_ekf_watch_hold(&ekf, &params, false);
+    TEST_ASSERT_TRUE(ekf.step_limit > params.load_step + num_half(params.load_step));
+    for (int block = 0; block < 80; block++) {
+        invariant_ekf_watch_hold(&ekf, &params, false);
+    }
+    TEST_ASSERT_NUM_WITHIN(0.0, num_to_double(params.load_step), ekf.step_limit);
 }
 
 static void test_a_reset_forgets_all_but_what_it_is_set_to(void)
@@ -572,6 +586,7 @@ int main(void)
     RUN_TEST(test_in_an_unloaded_hold_an_offset_is_no_load);
     RUN_TEST(test_a_rotor_that_crept_under_a_slow_load_is_no_offset_once_it_stops);
     RUN_TEST(test_a_hold_begins_with_the_load_of_the_motion);
+    RUN_TEST(test_until_a_hold_has_been_calm_more_is_a_step);
     RUN_TEST(test_a_reset_forgets_all_but_what_it_is_set_to);
     return UNITY_END();
 }

@@ -197,7 +197,9 @@ bool can_be_read(const Catalogue &catalogue, const CampaignOrder &order, std::ui
     try {
         const Scenario drawn = drawn_scenario(catalogue, order, seed);
         TEST_ASSERT_EQUAL(seed, drawn.seed);
-        TEST_ASSERT_EQUAL_DOUBLE(order.duration_s, drawn.duration_s);
+        if (order.duration_s != CampaignKind::own_duration) {
+            TEST_ASSERT_EQUAL_DOUBLE(order.duration_s, drawn.duration_s);
+        }
         return true;
     } catch (const InputError &) {
         return false;
