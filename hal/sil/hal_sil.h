@@ -38,7 +38,7 @@ struct hal_sil {
                                 UINT32_MAX: none has */
     bool bridge_allowed;     /* between bridge_enable and bridge_disable */
     bool trip_latched;       /* by hal_sil_trip, until bridge_disable */
-    uint16_t bridge_temperature; /* what the drive is told of it: a code */
+    uint16_t bridge_temperature; /* code of its sensor */
     bool restarted;              /* by hal_sil_restart */
     bool watchdog_running;
     uint64_t watchdog_fed_us;

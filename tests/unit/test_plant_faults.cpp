@@ -282,7 +282,7 @@ void test_noise_has_the_rms_that_was_asked_for_and_no_mean()
     TEST_ASSERT_EQUAL_INT(quiet.samples().bus_voltage, loud.samples().bus_voltage);
 }
 
-void test_the_bridge_is_as_hot_as_it_is_told_to_be()
+void test_the_bridge_is_as_hot_as_it_is_set()
 {
     plant::Plant plant(noisy());
     plant.step(bench::off());
@@ -533,7 +533,7 @@ int main()
     RUN_TEST(test_the_filter_takes_every_edge_of_a_switched_bridge);
     RUN_TEST(test_the_filter_shifts_and_reduces_a_sine);
     RUN_TEST(test_the_filter_loses_no_voltage_over_time);
-    RUN_TEST(test_the_bridge_is_as_hot_as_it_is_told_to_be);
+    RUN_TEST(test_the_bridge_is_as_hot_as_it_is_set);
     RUN_TEST(test_the_count_of_a_faulty_encoder_goes_on_from_where_it_was);
     RUN_TEST(test_a_noisy_encoder_miscounts_at_the_rate_that_was_asked_for);
     RUN_TEST(test_a_lossy_encoder_loses_its_share_of_the_edges);
