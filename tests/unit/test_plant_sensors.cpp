@@ -150,7 +150,7 @@ void test_noise_in_the_codes_has_the_stated_rms()
 {
     plant::SensorConfig config;
     config.current_noise_rms_A = 0.1; /* 34 codes: rounding adds little */
-    const plant::Sensors sensors(config, 5);
+    plant::Sensors sensors(config, 5);
     double sum = 0.0, square = 0.0;
     for (std::uint64_t k = 0; k < draws; k++) {
         const double code =
@@ -169,7 +169,7 @@ void test_converters_disturb_each_others_currents_by_the_stated_codes()
     const plant::True still = {plant::Phases(), plant::Phases(), 24.0, 0.0, false};
     TEST_ASSERT_EQUAL_UINT16(2048, plant::Sensors(config, 5).sample(7, still).current_a);
     config.converter_crosstalk_codes = 10.0;
-    const plant::Sensors sensors(config, 5);
+    plant::Sensors sensors(config, 5);
     double square = 0.0, product = 0.0;
     for (std::uint64_t k = 0; k < draws; k++) {
         const plant::Samples samples = sensors.sample(k, still);
