@@ -8,11 +8,15 @@
  *
  * with u_e = 0.05 supply, and with an encoder the back-EMF that two counts more in a period make
  * its observer see; over the periods in which a current law misses its reference by 15 % of the
- * rated current, or feedback linearisation acts: the voltage of other voltage laws changes from
- * period to period, and they are not watched. A rotor that has pulled out shows a back-EMF that is
- * not its estimate's, too, but with currents that follow.
+ * rated current, or a voltage law acts. But for feedback linearisation voltage laws may change
+ * their voltage's sign from period to period: of these the sum is of |...| with the sign of
+ * u - R i - e, looked at four and five periods apart in turn. A rotor that has pulled out shows a
+ * back-EMF that is not its estimate's, too, but with currents that follow.
  *
- * In the background, every fourth period, and by four looks at least; behind fourteen periods that
+ * In a hold a stuck sensor lets the true current drift away, and the resistance that is found with
+ * it: at the end of its range it is the sensor of the larger current.
+ *
+ * In the background, by four looks at least; behind fourteen periods that
  * it does not come to it begins anew.
  */
 #ifndef STEADYSTEP_PHASE_WATCH_H
@@ -56,7 +60,7 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
                                   const struct phase_watch_params *params,
                                   const struct phase_look *look);
 
-/* Background: looks at a drive in operation, every fourth period. */
+/* Background: looks at a drive in operation, every fourth period or so. */
 void phase_watch_background(struct drive *drive);
 
 #endif

@@ -84,17 +84,17 @@ static enum drive_fault look(struct drive *drive, uint32_t period)
                                             drive->estimator.estimate.rotor.position);
 
     const num_t limit = encoder ? following->limit : SWING_TURNS;
-    struct rotor_watch *watch = &drive->rotor_watch;
 
-    if (rotor_watch_jumps(watch, drive->reference.now.position, limit)) {
-        rotor_watch_reset_swing(&watch->swing);
+    if (rotor_watch_jumps(&drive->rotor_watch, drive->reference.now.position, limit)) {
+        rotor_watch_reset_swing(&drive->rotor_watch.swing);
     }
-    if (watched &&
-        rotor_watch_swings(&watch->swing, error, limit, period, SWING_LOOKS * following->periods)) {
+    if (watched && rotor_watch_swings(&drive->rotor_watch.swing, error, limit, period,
+                                      SWING_LOOKS * following->periods)) {
         return encoder ? DRIVE_FAULT_FOLLOWING_ERROR : DRIVE_FAULT_STALLED;
     }
-    return encoder && rotor_watch_count_stands(watch, drive->encoder_count, is_pushed(drive, error),
-                                               period, STAND_LOOKS * following->periods)
+    return encoder && rotor_watch_count_stands(&drive->rotor_watch, drive->encoder_count,
+                                               is_pushed(drive, error), period,
+                                               STAND_LOOKS * following->periods)
                ? DRIVE_FAULT_ENCODER
                : DRIVE_FAULT_NONE;
 }

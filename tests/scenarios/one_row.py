@@ -60,7 +60,8 @@ EXPECTED = [
     "ok get proof_V=2.5 V; 0...9; default 2.5", "error: proof_V", "ok prove speed_rad_s=: act of the proof",
     "error: prove: missing speed_rad_s=", "ok prove\n", "ok signals proof_count=7 ", "proven\n",
     "| 0x2ff0 | `proof_V` | V | 0…9 | 2.5 |", "| 200 | `prove` | `speed_rad_s` | in any state |",
-    "| 0x2ff1 | `proof_count` |", "| 0xfff0 | `proven` | cause of the proof | remedy of the proof |",
+    "| 0x2ff1 | `proof_count` |",
+    "| 0xfff0 | <a id=\"proven\"></a>`proven` | cause of the proof | remedy of the proof |",
     "[2FF0]\nParameterName=proof_V\n", "[2FF1]\nParameterName=proof_count\n", "\nproof_count\n",
 ]
 
