@@ -67,7 +67,7 @@
           "let it cool; move or hold with less current, or, if it bears more, correct "            \
           "rated_current_A and motor_time_constant_s")                                             \
     FAULT(BRIDGE_OVERHEATED, 0x4210, "bridge-overheated", "it has reached", LIMIT(bridge_fault_C), \
-          "let it cool; give it more air, or the motor less current")   \
+          "let it cool; give it more air, or the motor less current")                              \
     FAULT(ENCODER, 0x7305, "encoder", "no count comes at full torque", NO_LIMIT,                   \
           "check the encoder, its cable and its supply; free the axis if it is held")
 

@@ -69,7 +69,7 @@
     NAMED(0x2308, position_reference, axis.reference, "position", UNTRACED,                        \
           drive_position_reference, "whether the axis has been homed, and is where it says")       \
     ANGLE(0x2315, motor_zero_rad, axis.origin, "", UNTRACED,                                       \
-          "where the zero is that initial_angle_rad counts from; set-position moves it") \
+          "where the zero is that initial_angle_rad counts from; set-position moves it")           \
     REAL(0x2330, motor_heat, thermal.heat, "", UNTRACED, ratio, "",                                \
          "of the hotter phase's winding, 1 as the rated current makes it for ever; derating "      \
          "begins at 1.02")                                                                         \

@@ -32,12 +32,10 @@
  *   LEGS_A_CONVERTER, _B  ADC3, ADC4 or ADC5, and there LEG_A_PLUS_CHANNEL... 1...18
  *   PHASE_VOLTAGE_V_PER_CODE  of the difference of two legs: a code is two codes of a leg
  *   BUS_CHANNEL, BUS_V_PER_CODE, TEMPERATURE_CHANNEL   of ADC1, ADC1 and ADC2
- *   BRIDGE_NTC_BETA_K     of the NTC resistor at the latter, firmware/drive/thermal_model.h; 0: none
- *   HAS_BRAKE             1: an output BRAKE_PORT, BRAKE_PIN connects the brake resistor while it
- *                         is high; pulled down, here and outside. 0: none
- *   ENCODER_TIMER         4, 5 or 8: its channels 1 and 2; 0: none
- *   BAUD                  of LPUART1
- *   LED_PORT, LED_PIN
+ *   BRIDGE_NTC_BETA_K     of the NTC resistor at the latter, firmware/drive/thermal_model.h; 0:
+ * none HAS_BRAKE             1: an output BRAKE_PORT, BRAKE_PIN connects the brake resistor while
+ * it is high; pulled down, here and outside. 0: none ENCODER_TIMER         4, 5 or 8: its channels
+ * 1 and 2; 0: none BAUD                  of LPUART1 LED_PORT, LED_PIN
  */
 #ifndef STEADYSTEP_STM32G474_BOARD_H
 #define STEADYSTEP_STM32G474_BOARD_H

@@ -114,8 +114,7 @@ void write_header(const replay_case &which, const Recording &recording)
                 recording.drive_hash);
     std::printf("static const struct hal_facts replay_facts = {\n"
                 "    \"%s\", %a, %" PRIu32 "u, %a, %a, %a,\n    %" PRIu32
-                "u, %a, %uu, %a, %a, %a,\n    %s, %" PRIu32 "u, %s, %s, %a, 0.0, %" PRIu32
-                "u,\n"
+                "u, %a, %uu, %a, %a, %a,\n    %s, %" PRIu32 "u, %s, %s, %a, 0.0, %" PRIu32 "u,\n"
                 "    %" PRIu32 "u, %" PRIu32 "u};\n",
                 facts.board_name, facts.control_period_s, facts.pwm_half_period_counts,
                 facts.dead_time_s, facts.leg_delay_s, facts.low_state_s, facts.converter_codes,
