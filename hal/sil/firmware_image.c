@@ -22,6 +22,19 @@ static bool image_init(void *drive, const struct hal *board, const struct drive_
     return true;
 }
 
+static bool image_init_stored(void *drive, const struct hal *board,
+                              const struct motor_params *motor_default,
+                              char error[DRIVE_ERROR_TEXT])
+{
+    struct instance *self = drive;
+
+    if (!application_init(&self->application, board, motor_default, error)) {
+        return false;
+    }
+    self->hash = self->application.gains_hash;
+    return true;
+}
+
 static struct hal_outputs image_control_cycle(void *drive, const struct hal_samples *samples)
 {
     struct instance *self = drive;
@@ -80,6 +93,7 @@ EXPORTED const struct firmware_image IMAGE_OF(NUM_FORMAT) = {
     .numeric = STRING_OF(NUM_FORMAT),
     .drive_bytes = sizeof(struct instance),
     .init = image_init,
+    .init_stored = image_init_stored,
     .control_cycle = image_control_cycle,
     .law_gain = image_law_gain,
     .command = image_command,

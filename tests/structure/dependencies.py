@@ -49,13 +49,17 @@ MODULES = {
     "hal/stm32g474/pin_maps/": [],
     "hal/stm32g071/pin_maps/": [],
     "sil/plant/": ["sil/plant/"],
-    "sil/board/": ["sil/board/", "sil/plant/", "hal/", "firmware/interface/"],
+    "sil/board/": ["sil/board/", "sil/plant/", "hal/", "firmware/interface/",
+                   "firmware/application/settings_record.h"],
     "sil/virtual_board/": ["sil/virtual_board/", "sil/board/drive_board.h", "sil/plant/",
                            "hal/hal.h", "firmware/interface/",
                            "firmware/drive/drive_hash.h",
                            "firmware/application/settings_record.h"],
     "sil/scenario/": ["sil/scenario/", "firmware/interface/",
                       "sil/board/typed_line.h", "board.h's", "sil/virtual_board/virtual_board.h", "sil/virtual_board/board_facts.h"],
+    "sil/scenario/main.cpp": ["sil/scenario/", "sil/serve/", "firmware/interface/"],
+    "sil/serve/": ["sil/serve/", "sil/scenario/", "sil/board/drive_board.h", "board.h's",
+                   "sil/virtual_board/virtual_board.h"],
 }
 EXPOSED_BY = "sil/board/board.h"
 
