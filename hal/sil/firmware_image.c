@@ -7,6 +7,7 @@
 /* An application and the hash over what its drive has shown so far. */
 struct instance {
     struct application application;
+    struct link link;
     uint64_t hash;
 };
 
@@ -18,6 +19,7 @@ static bool image_init(void *drive, const struct hal *board, const struct drive_
     if (!application_init_with(&self->application, board, settings, error)) {
         return false;
     }
+    application_put_link(&self->application, &self->link);
     self->hash = self->application.gains_hash;
     return true;
 }
@@ -31,6 +33,7 @@ static bool image_init_stored(void *drive, const struct hal *board,
     if (!application_init(&self->application, board, motor_default, error)) {
         return false;
     }
+    application_put_link(&self->application, &self->link);
     self->hash = self->application.gains_hash;
     return true;
 }
