@@ -407,6 +407,9 @@ void console_background(struct application *application)
         carry_frames(application);
         return;
     }
+    if (LINK_CARRIED && application->link != NULL) {
+        link_finish(application);
+    }
     if (send(application) && (announce(application) || read_line(application))) {
         (void)send(application);
     }

@@ -4,6 +4,7 @@
 #include "firmware/design/elementary.h"
 #include "firmware/drive/board_limits.h"
 #include "firmware/drive/interrupt_view.h"
+#include "firmware/link/axis_stream.h"
 #include "firmware/link/link.h"
 
 /* Bits of the controlword, in the modes that have them. */
@@ -31,14 +32,14 @@ bool axis_motion_rests(const struct application *application)
 /* ---- limits ---- */
 
 /* Where the drive refuses, rad/s and rad/s^2, and a little less. */
-static double speed_limit(const struct application *application)
+double axis_motion_speed_limit(const struct application *application)
 {
     const struct drive *drive = &application->drive;
 
     return 0.999 * board_limits_speed(&drive->settings, drive->board->facts).rad_s;
 }
 
-static double acceleration_limit(const struct application *application)
+double axis_motion_acceleration_limit(const struct application *application)
 {
     const struct drive_settings *settings = &application->drive.settings;
 
@@ -46,7 +47,7 @@ static double acceleration_limit(const struct application *application)
            settings->motor.inertia_kgm2;
 }
 
-static double limited(struct application *application, double value, double least, double most)
+double axis_motion_limited(struct application *application, double value, double least, double most)
 {
     if (value >= least && value <= most) {
         return value;
@@ -60,8 +61,8 @@ void axis_motion_put_defaults(struct application *application)
 {
     struct link_objects *objects = &application->link->objects;
     const double unit_rad = cia402_unit_rad(objects);
-    const double speed = 0.25 * speed_limit(application) / unit_rad;
-    const double acceleration = acceleration_limit(application) / unit_rad;
+    const double speed = 0.25 * axis_motion_speed_limit(application) / unit_rad;
+    const double acceleration = axis_motion_acceleration_limit(application) / unit_rad;
 
     if (objects->profile_velocity == 0u) {
         objects->profile_velocity = (uint32_t)smaller(speed, 4e9);
@@ -75,12 +76,13 @@ void axis_motion_put_defaults(struct application *application)
 }
 
 /* Acceleration and jerk of a command that goes to `speed_rad_s`; false: the drive refuses it. */
-static bool post(struct application *application, struct drive_command *command,
-                 uint32_t acceleration_units)
+bool axis_motion_post(struct application *application, struct drive_command *command,
+                      uint32_t acceleration_units)
 {
     const double unit_rad = cia402_unit_rad(&application->link->objects);
     const double acceleration =
-        limited(application, unit_rad * acceleration_units, 1e-3, acceleration_limit(application));
+        axis_motion_limited(application, unit_rad * acceleration_units, 1e-3,
+                            axis_motion_acceleration_limit(application));
     const double ramp_s = magnitude(command->speed_rad_s) / acceleration;
 
     command->acceleration_rad_s2 = acceleration;
@@ -95,7 +97,8 @@ void axis_motion_brake(struct application *application)
     motion_of(application)->waits = false;
     motion_of(application)->speed_rad_s = 0.0;
     if (!axis_motion_rests(application) &&
-        !post(application, &brake, application->link->objects.quick_stop_deceleration)) {
+        !axis_motion_post(application, &brake,
+                          application->link->objects.quick_stop_deceleration)) {
         brake.kind = DRIVE_COMMAND_STOP;
         (void)cia402_command(application, &brake);
     }
@@ -110,29 +113,39 @@ void axis_motion_start(struct application *application)
         .target_rad = cia402_signals(application)->theta_ref_rad,
         .reached = true,
     };
+    link->axis.stream.last_rad = motion_of(application)->target_rad;
+    link->axis.stream.before_rad = motion_of(application)->target_rad;
 }
 
 /* ---- profile position ---- */
 
-static void take_set_point(struct application *application, uint16_t word)
+double axis_motion_target(struct application *application)
 {
     const struct link *link = application->link;
-    struct axis_motion *motion = motion_of(application);
+    const struct axis_motion *motion = motion_of(application);
     const double unit_rad = cia402_unit_rad(&link->objects);
+    const bool relative =
+        link->axis.mode == CIA402_PROFILE_POSITION && (link->axis.controlword & RELATIVE) != 0u;
     const double zero_rad = link->axis.zero_rad;
-    const double given_rad = unit_rad * link->objects.target_position;
+
+    return axis_motion_limited(application,
+                               (relative ? motion->target_rad : zero_rad) +
+                                   unit_rad * link->objects.target_position,
+                               zero_rad + unit_rad * link->objects.position_least,
+                               zero_rad + unit_rad * link->objects.position_most);
+}
+
+static void take_set_point(struct application *application)
+{
+    struct axis_motion *motion = motion_of(application);
 
     if (motion->waits) {
         return; /* one is acknowledged already */
     }
     motion->limited = false;
-    motion->target_rad =
-        limited(application,
-                (word & RELATIVE) != 0u ? motion->target_rad + given_rad : zero_rad + given_rad,
-                zero_rad + unit_rad * link->objects.position_least,
-                zero_rad + unit_rad * link->objects.position_most);
+    motion->target_rad = axis_motion_target(application);
     motion->waits = true;
-    motion->at_once = (word & AT_ONCE) != 0u;
+    motion->at_once = (application->link->axis.controlword & AT_ONCE) != 0u;
     motion->acknowledged = true;
     motion->reached = false;
     motion->in_window_ms = 0;
@@ -149,10 +162,10 @@ static void go_to_target(struct application *application)
         return;
     }
     retarget.speed_rad_s =
-        limited(application, cia402_unit_rad(objects) * objects->profile_velocity, 1e-6,
-                speed_limit(application));
+        axis_motion_limited(application, cia402_unit_rad(objects) * objects->profile_velocity, 1e-6,
+                            axis_motion_speed_limit(application));
     motion->limited =
-        !post(application, &retarget, objects->profile_acceleration) || motion->limited;
+        !axis_motion_post(application, &retarget, objects->profile_acceleration) || motion->limited;
     motion->waits = false;
 }
 
@@ -162,17 +175,18 @@ static void go_at_speed(struct application *application)
 {
     const struct link_objects *objects = &application->link->objects;
     struct axis_motion *motion = motion_of(application);
-    const double most = speed_limit(application);
+    const double most = axis_motion_speed_limit(application);
     struct drive_command velocity = {.kind = DRIVE_COMMAND_VELOCITY};
 
     motion->limited = false;
     velocity.speed_rad_s =
-        motion->halted ? 0.0
-                       : limited(application, cia402_unit_rad(objects) * objects->target_velocity,
-                                 -most, most);
+        motion->halted
+            ? 0.0
+            : axis_motion_limited(application, cia402_unit_rad(objects) * objects->target_velocity,
+                                  -most, most);
     if (velocity.speed_rad_s != motion->speed_rad_s &&
         !command_queue_holds_any(&application->drive.commands) &&
-        post(application, &velocity, objects->profile_acceleration)) {
+        axis_motion_post(application, &velocity, objects->profile_acceleration)) {
         motion->speed_rad_s = velocity.speed_rad_s;
     }
 }
@@ -192,7 +206,7 @@ void axis_motion_control(struct application *application, uint16_t risen)
     }
     motion->halted = halted;
     if ((risen & NEW_SET_POINT) != 0u && axis->mode == CIA402_PROFILE_POSITION) {
-        take_set_point(application, axis->controlword);
+        take_set_point(application);
     } else if ((risen & START_HOMING) != 0u && axis->mode == CIA402_HOMING) {
         axis->zero_rad =
             cia402_signals(application)->theta_ref_rad -
@@ -232,6 +246,17 @@ void axis_motion_background(struct application *application)
             (axis->motion.acknowledged && (axis->controlword & NEW_SET_POINT) != 0u);
     } else if (axis->mode == CIA402_PROFILE_VELOCITY) {
         go_at_speed(application);
+    } else if (axis->mode == CIA402_CYCLIC_POSITION) {
+        axis_stream_background(application);
+    }
+}
+
+void axis_motion_cycle(struct application *application)
+{
+    const struct cia402 *axis = &application->link->axis;
+
+    if (axis->state == CIA402_OPERATION_ENABLED && axis->mode == CIA402_CYCLIC_POSITION) {
+        axis_stream_take(application);
     }
 }
 
@@ -285,6 +310,8 @@ uint16_t axis_motion_status(struct application *application)
         reached = true;
         of_mode = motion->homed;
         off = false;
+    } else if (axis->mode == CIA402_CYCLIC_POSITION) {
+        of_mode = !motion->halted && axis->stream.owed == 0u; /* follows what is asked for */
     }
     return (uint16_t)((reached ? REACHED : 0u) | (motion->limited ? LIMITED : 0u) |
                       (of_mode ? OF_MODE : 0u) | (off ? OFF : 0u));

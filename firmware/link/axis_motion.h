@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 struct application;
+struct drive_command;
 
 /* Profile speed, acceleration and quick stop of the motor's settings, where none is given. */
 void axis_motion_put_defaults(struct application *application);
@@ -22,6 +23,25 @@ void axis_motion_look(struct application *application);
 
 /* To rest, with the quick stop's deceleration. */
 void axis_motion_brake(struct application *application);
+
+/* A target position has come: of cyclic synchronous position. */
+void axis_motion_cycle(struct application *application);
+
+/* The target position in rad, within the software limits. */
+double axis_motion_target(struct application *application);
+
+/* What the drive can: rad/s, rad/s^2. */
+double axis_motion_speed_limit(const struct application *application);
+double axis_motion_acceleration_limit(const struct application *application);
+
+/* Cut to limits, which shows in the statusword. */
+double axis_motion_limited(struct application *application, double value, double least,
+                           double most);
+
+/* A command with its acceleration, of at most so many units, and the jerk that goes with it. false:
+   the drive refuses it. */
+bool axis_motion_post(struct application *application, struct drive_command *command,
+                      uint32_t acceleration_units);
 
 /* Whether the reference rests and nothing waits. */
 bool axis_motion_rests(const struct application *application);

@@ -201,6 +201,8 @@ void cia402_background(struct application *application)
     }
     if (axis->state == CIA402_OPERATION_ENABLED) {
         axis_motion_background(application);
+    } else {
+        axis->mode = application->link->objects.mode;
     }
 }
 

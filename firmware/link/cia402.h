@@ -11,6 +11,7 @@
 #define STEADYSTEP_CIA402_H
 
 #include "firmware/interface/drive_interface.h"
+#include "firmware/link/axis_stream.h"
 #include "firmware/link/objects.h"
 
 /* By their bits of the statusword. */
@@ -57,6 +58,7 @@ struct cia402 {
     bool lost;           /* the connection: off as soon as the reference rests */
     uint32_t signals_in; /* period of `signals` */
     struct axis_motion motion;
+    struct axis_stream stream;
     struct drive_signals signals;
 };
 

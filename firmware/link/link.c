@@ -76,7 +76,8 @@ static uint8_t error_register(const struct application *application)
                                       [6] = 0x20, [7] = 0x20, [8] = 0x10, [15] = 0x80};
     const enum drive_fault fault = application->link->reported;
 
-    return fault == DRIVE_FAULT_NONE ? 0 : 0x01u | kinds[fault_at(fault)->code >> 12];
+    return (uint8_t)((fault == DRIVE_FAULT_NONE ? 0u : 0x01u | kinds[fault_at(fault)->code >> 12]) |
+                     (application->link->unheard ? 0x11u : 0u));
 }
 
 static void keep_error(struct link *link, uint32_t error)
@@ -198,7 +199,7 @@ enum object_abort link_obey(struct application *application, const struct object
 static bool is_mode(int8_t mode)
 {
     return mode == CIA402_PROFILE_POSITION || mode == CIA402_PROFILE_VELOCITY ||
-           mode == CIA402_HOMING || mode == 0;
+           mode == CIA402_HOMING || mode == CIA402_CYCLIC_POSITION || mode == 0;
 }
 
 bool link_accepts(const struct application *application, const struct object *object,
@@ -212,6 +213,8 @@ bool link_accepts(const struct application *application, const struct object *ob
         return is_mode((int8_t)value[0]);
     case 0x6098:
         return value[0] == 35u || value[0] == 37u; /* on the present position */
+    case 0x60c2:
+        return object->sub == 1u ? number != 0u : (int8_t)value[0] >= -6 && (int8_t)value[0] <= 0;
     case 0x605a:
         return number == 2u || number == 6u;
     case 0x6081:
@@ -222,6 +225,48 @@ bool link_accepts(const struct application *application, const struct object *ob
         return number != 0u;
     default:
         return true;
+    }
+}
+
+/* ---- who commands ---- */
+
+enum { HEARTBEAT_LOST = 0x8130, COMMUNICATION_LOST = 0x8100 };
+
+static void lose(struct application *application, uint16_t code)
+{
+    struct link *link = application->link;
+
+    link->heard = false;
+    link->synced = false;
+    link->unheard = true;
+    send_emergency(application, code, 0);
+    cia402_lose(application);
+}
+
+static void hear(struct link *link, const struct can_frame *frame)
+{
+    const uint32_t consumer = link->objects.consumer_heartbeat;
+
+    if ((consumer & 0xffffu) != 0u && frame->id == ID_HEARTBEAT + (consumer >> 16 & 0x7fu)) {
+        link->heard = true;
+        link->heard_us = link->now_us;
+        link->unheard = false;
+    }
+}
+
+/* A SYNC may be late by half of its period. */
+static void watch(struct application *application)
+{
+    const struct link *link = application->link;
+    const uint32_t heartbeat_ms = link->objects.consumer_heartbeat & 0xffffu;
+    const uint32_t period_us = link->objects.sync_period_us;
+
+    if (link->heard && heartbeat_ms > 0u &&
+        link_since(link, link->heard_us) > 1000u * heartbeat_ms) {
+        lose(application, HEARTBEAT_LOST);
+    } else if (link->synced && period_us > 0u && link->nmt == LINK_OPERATIONAL &&
+               link_since(link, link->synced_us) > period_us + period_us / 2u) {
+        lose(application, COMMUNICATION_LOST);
     }
 }
 
@@ -237,6 +282,9 @@ static void reset_communication(struct application *application)
     link->nmt = LINK_PRE_OPERATIONAL;
     link->reported = DRIVE_FAULT_NONE;
     link->errors = 0;
+    link->heard = false;
+    link->synced = false;
+    link->unheard = false;
     cia402_start(application);
     send_state(application, 0); /* boot-up */
 }
@@ -275,6 +323,8 @@ static void receive(struct application *application, const struct can_frame *fra
     struct link *link = application->link;
     struct can_frame response;
 
+    application_hear(application, interrupt_view_period(&application->drive));
+    hear(link, frame);
     if (frame->id == ID_NMT) {
         if (frame->length == 2u &&
             (frame->data[1] == 0u || frame->data[1] == link_node(application))) {
@@ -287,6 +337,8 @@ static void receive(struct application *application, const struct can_frame *fra
         }
     } else if (link->nmt == LINK_OPERATIONAL) {
         if (frame->id == (link->objects.sync_cob_id & 0x7ffu)) {
+            link->synced = true;
+            link->synced_us = link->now_us;
             pdo_sync(application);
         } else {
             pdo_receive(application, frame);
@@ -310,7 +362,12 @@ static void open_channel(struct application *application, bool listens_only)
 /* The console goes on with what happens from now on. */
 static void close_channel(struct application *application)
 {
-    application->link->open = false;
+    struct link *link = application->link;
+
+    if (link->heard || (link->synced && link->objects.sync_period_us > 0u)) {
+        cia402_lose(application);
+    }
+    link->open = false;
     console_skip_announcements(application);
 }
 
@@ -359,6 +416,13 @@ void link_take(struct application *application, char byte)
     }
 }
 
+void link_finish(struct application *application)
+{
+    if (application->link->axis.lost) {
+        cia402_background(application);
+    }
+}
+
 void link_background(struct application *application)
 {
     struct link *link = application->link;
@@ -370,6 +434,7 @@ void link_background(struct application *application)
     }
     link->looked_us = link->now_us;
     cia402_look(application);
+    watch(application);
     report_faults(application);
     if (link->nmt == LINK_OPERATIONAL) {
         pdo_look(application);

@@ -29,6 +29,9 @@ struct application;
 
 struct link {
     bool open;
+    bool heard;                /* the heartbeat that 1016h names, at least once */
+    bool synced;               /* SYNC has come, at least once */
+    bool unheard;              /* either no more: an emergency said so */
     bool listens_only;         /* the client does: it sends nothing */
     uint8_t nmt;               /* enum link_nmt */
     uint8_t errors;            /* in the field 1003h */
@@ -36,6 +39,7 @@ struct link {
     uint32_t now_us;           /* of this pass; wraps */
     uint32_t beaten_us;        /* last heartbeat */
     uint32_t looked_us;        /* last millisecond's look */
+    uint32_t heard_us, synced_us;
     struct link_objects objects;
     struct sdo_server sdo;
     struct pdos pdos;
@@ -54,6 +58,9 @@ void link_take(struct application *application, char byte);
 
 /* Background, while the channel is open: what nobody asked for, and what time brings. */
 void link_background(struct application *application);
+
+/* Background, closed: what the drive was in the midst of, a quick stop, ends. */
+void link_finish(struct application *application);
 
 /* Whether so many more frames fit into what is being sent. */
 bool link_has_room(const struct application *application, size_t count);

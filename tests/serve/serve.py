@@ -18,8 +18,8 @@ def value_of(line, name):
 
 def a_drive_moves_as_on_a_table(served):
     drive, knobs = Line(str(served.link)), Line(str(served.knobs_link))
-    CHECKS.that(drive.read().startswith("steadystep "), "it announces itself")
-    CHECKS.that(drive.ask("state").startswith("ok switch-on-disabled"), "the console answers")
+    drive.send("state\n")
+    CHECKS.that(drive.until("ok switch-on-disabled"), "the console answers")
     drive.send("enable\n")
     CHECKS.that(drive.until("ready:"), "it becomes ready")
     CHECKS.that(drive.ask("move 1.5").startswith("ok move"), "it takes a move")

@@ -156,6 +156,60 @@ static void test_pdos_wait_for_sync(void)
     assert_heard("t18122102\r", link_bench_say("t0800", 20));
 }
 
+static uint32_t draw(uint32_t below)
+{
+    static uint32_t state = 1;
+
+    state = state * 1664525u + 1013904223u;
+    return (state >> 8) % below;
+}
+
+/* Frames for the node, valid as text, of any content. */
+static void type_any_frame(void)
+{
+    static const unsigned ids[] = {0x000, 0x080, 0x201, 0x301, 0x401, 0x501, 0x601, 0x701};
+    static const unsigned indexes[] = {0x10, 0x14, 0x16, 0x18, 0x1a, 0x20, 0x21, 0x22, 0x23, 0x60};
+    const unsigned id = draw(8) == 0u ? draw(2048) : ids[draw(8)];
+    const unsigned length = draw(4) == 0u ? draw(9) : id == 0u ? 2 : 8;
+    char line[40];
+    size_t end = (size_t)snprintf(line, sizeof line, "t%03X%u", id, length);
+
+    for (unsigned i = 0; i < length; i++) {
+        const unsigned byte = id == 0x601u && i == 2u   ? indexes[draw(10)]
+                              : id == 0x601u && i == 3u ? draw(4)
+                              : id == 0u && i == 1u     ? draw(2)
+                                                        : draw(256);
+
+        end += (size_t)snprintf(&line[end], sizeof line - end, "%02X", byte);
+    }
+    bench_type(line);
+    bench_type("\r");
+}
+
+static void test_whatever_comes_the_node_goes_on(void)
+{
+    for (int i = 0; i < 4000; i++) {
+        if (draw(8) == 0u) {
+            char bytes[8];
+
+            for (size_t n = 0; n < sizeof bytes; n++) {
+                bytes[n] = (char)draw(256);
+            }
+            bench_type_bytes(bytes, sizeof bytes);
+        }
+        if (!bench_link.open) {
+            bench_type("\rO\r");
+        }
+        type_any_frame();
+        bench_periods(4);
+        (void)bench_heard();
+    }
+    (void)link_bench_say("", 20); /* the end of a line that is being received */
+    (void)link_bench_say("C", 20);
+    (void)link_bench_say("O", 2);
+    TEST_ASSERT_EQUAL_STRING("4300100092010400", link_bench_sdo("4000100000000000"));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -170,5 +224,6 @@ int main(void)
     RUN_TEST(test_a_pdo_is_mapped_at_run_time_and_sent_when_it_changes);
     RUN_TEST(test_a_mapping_that_cannot_be_is_refused);
     RUN_TEST(test_pdos_wait_for_sync);
+    RUN_TEST(test_whatever_comes_the_node_goes_on);
     return UNITY_END();
 }
