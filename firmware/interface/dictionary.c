@@ -16,9 +16,7 @@ const char *drive_command_name(enum drive_command_kind kind)
 /* ---- signals ---- */
 
 #define SIGNAL_ROW(index, member, brief, type)                                                     \
-    {#member, brief,                                                                               \
-     index,   offsetof(struct drive_signals, member),                                              \
-     type,    sizeof(((struct drive_signals *)0)->member)},
+    {#member, brief, index, offsetof(struct drive_signals, member), type},
 #define FLAG_SIGNAL(index, member, path, brief, ...)  SIGNAL_ROW(index, member, brief, SIGNAL_FLAG)
 #define COUNT_SIGNAL(index, member, path, brief, ...) SIGNAL_ROW(index, member, brief, SIGNAL_COUNT)
 #define REAL_SIGNAL(index, member, path, brief, ...)  SIGNAL_ROW(index, member, brief, SIGNAL_REAL)
@@ -43,7 +41,8 @@ double signal_get(const struct drive_signals *signals, const struct signal_row *
         memcpy(&real, at, sizeof real);
         return real;
     }
-    if (signal->size == 1u) {
+    if (signal->type == SIGNAL_FLAG ||
+        (signal->type != SIGNAL_COUNT && sizeof(enum drive_state) == 1u)) {
         return *at;
     }
     memcpy(&whole, at, sizeof whole);

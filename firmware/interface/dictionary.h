@@ -22,12 +22,11 @@ enum signal_type {
 };
 
 struct signal_row {
-    const char *name;  /* as the console and a trace spell it */
-    const char *brief; /* as `state` does, "": not at all */
-    uint16_t index;    /* of the object dictionary */
-    uint16_t offset;   /* in struct drive_signals */
-    uint8_t type;      /* enum signal_type */
-    uint8_t size;      /* bytes */
+    const char *name;     /* as the console and a trace spell it */
+    const char *brief;    /* as `state` does, "": not at all */
+    uint16_t index;       /* of the object dictionary */
+    uint16_t offset : 12; /* in struct drive_signals */
+    uint16_t type : 4;    /* enum signal_type */
 };
 
 /* Places in the order of the table. */

@@ -306,22 +306,32 @@ static double quantity(struct application *application, uint16_t index)
 {
     const struct link *link = application->link;
     const struct drive_signals *now = cia402_signals(application);
-    const double unit_rad = cia402_unit_rad(&link->objects);
+    double less = link->axis.zero_rad;
+    double value;
 
     switch (index) {
     case 0x6062:
-        return (now->theta_ref_rad - link->axis.zero_rad) / unit_rad;
+        value = now->theta_ref_rad;
+        break;
     case 0x6064:
-        return (now->theta_est_rad - link->axis.zero_rad) / unit_rad;
+        value = now->theta_est_rad;
+        break;
     case 0x606b:
-        return now->omega_ref_rad_s / unit_rad;
+        value = now->omega_ref_rad_s;
+        less = 0.0;
+        break;
     case 0x606c:
-        return now->omega_est_rad_s / unit_rad;
+        value = now->omega_est_rad_s;
+        less = 0.0;
+        break;
     case 0x60f4:
-        return (now->theta_ref_rad - now->theta_est_rad) / unit_rad;
+        value = now->theta_ref_rad;
+        less = now->theta_est_rad;
+        break;
     default:
         return 1e3 * now->bus_V;
     }
+    return (value - less) / cia402_unit_rad(&link->objects);
 }
 
 void cia402_ask(struct application *application, const struct object *object, uint8_t *value)

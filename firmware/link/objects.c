@@ -45,20 +45,21 @@ void objects_put_presets(struct link_objects *objects, uint8_t node)
     objects->sdo_response += node;
 }
 
-/* The four of a kind have the rows of the first. */
-static uint16_t row_index(uint16_t index)
+/* Of the PDOs, whose rows are those of the first: four of a kind, and eight entries of a mapping.
+ */
+static bool is_of_pdo(uint16_t index)
 {
-    const uint16_t kind = index & 0xfdfcu; /* communication and mapping alike */
-
-    return kind == 0x1400u || kind == 0x1800u ? index & 0xfffcu : index;
+    return index >= 0x1400u && index < 0x1c00u && (index & 0x1fcu) == 0u;
 }
 
 static bool find_row(uint16_t index, uint8_t sub, struct object *found, bool *sub_missing)
 {
-    const uint16_t of_rows = row_index(index);
+    const uint16_t of_rows = is_of_pdo(index) ? index & 0xfffcu : index;
+    const bool is_entry = is_of_pdo(index) && (index & 0x200u) != 0u && sub > 1u && sub <= 8u;
+    const uint8_t sub_of_rows = is_entry ? 1 : sub;
 
     for (const struct object_row *row = rows; row != rows + ROWS; row++) {
-        if (row->index == of_rows && row->sub == sub) {
+        if (row->index == of_rows && row->sub == sub_of_rows) {
             found->kind = row->at == OBJECT_ASKED_AT ? OBJECT_ASKED : OBJECT_STORED;
             found->type = row->type;
             found->access = row->access;

@@ -10,8 +10,8 @@
  *
  * - access: RO, RW, WO; _T: may be mapped into a PDO that is sent, _R: that is received; NODE: the
  *   node's number is added to the preset.
- * - Of 1400h, 1600h, 1800h and 1a00h there are four each, one behind the other; the rows show the
- *   first.
+ * - Of 1400h, 1600h, 1800h and 1a00h there are four each, one behind the other, and of a mapping
+ *   eight entries; the rows show the first.
  */
 #ifndef STEADYSTEP_OBJECTS_TABLE_H
 #define STEADYSTEP_OBJECTS_TABLE_H
@@ -65,28 +65,14 @@
     ASKED(0x1400, 1, U32, RW, 0x200, "COB-ID used by RPDO")                                        \
     ASKED(0x1400, 2, U8, RW, 255, "Transmission type")                                             \
     ASKED(0x1600, 0, U8, RW, 1, "Number of mapped objects")                                        \
-    ASKED(0x1600, 1, U32, RW, 0, "Mapped object 1")                                                \
-    ASKED(0x1600, 2, U32, RW, 0, "Mapped object 2")                                                \
-    ASKED(0x1600, 3, U32, RW, 0, "Mapped object 3")                                                \
-    ASKED(0x1600, 4, U32, RW, 0, "Mapped object 4")                                                \
-    ASKED(0x1600, 5, U32, RW, 0, "Mapped object 5")                                                \
-    ASKED(0x1600, 6, U32, RW, 0, "Mapped object 6")                                                \
-    ASKED(0x1600, 7, U32, RW, 0, "Mapped object 7")                                                \
-    ASKED(0x1600, 8, U32, RW, 0, "Mapped object 8")                                                \
+    ASKED(0x1600, 1, U32, RW, 0, "Mapped object")                                                  \
     ASKED(0x1800, 0, U8, RO, 5, "Highest sub-index supported")                                     \
     ASKED(0x1800, 1, U32, RW, 0x180, "COB-ID used by TPDO")                                        \
     ASKED(0x1800, 2, U8, RW, 255, "Transmission type")                                             \
     ASKED(0x1800, 3, U16, RW, 0, "Inhibit time")                                                   \
     ASKED(0x1800, 5, U16, RW, 0, "Event timer")                                                    \
     ASKED(0x1a00, 0, U8, RW, 1, "Number of mapped objects")                                        \
-    ASKED(0x1a00, 1, U32, RW, 0, "Mapped object 1")                                                \
-    ASKED(0x1a00, 2, U32, RW, 0, "Mapped object 2")                                                \
-    ASKED(0x1a00, 3, U32, RW, 0, "Mapped object 3")                                                \
-    ASKED(0x1a00, 4, U32, RW, 0, "Mapped object 4")                                                \
-    ASKED(0x1a00, 5, U32, RW, 0, "Mapped object 5")                                                \
-    ASKED(0x1a00, 6, U32, RW, 0, "Mapped object 6")                                                \
-    ASKED(0x1a00, 7, U32, RW, 0, "Mapped object 7")                                                \
-    ASKED(0x1a00, 8, U32, RW, 0, "Mapped object 8")                                                \
+    ASKED(0x1a00, 1, U32, RW, 0, "Mapped object")                                                  \
     ASKED(0x6040, 0, U16, RW_R, 0, "Controlword")                                                  \
     ASKED(0x6041, 0, U16, RO_T, 0, "Statusword")                                                   \
     STORED(0x605a, 0, I16, RW, quick_stop_option, 2, "Quick stop option code")                     \

@@ -27,50 +27,40 @@ static bool read_number(const char *text, size_t digits, uint32_t *number)
     return true;
 }
 
-/* Behind the letter: identifier, count of bytes, bytes. `digits`: of the identifier. */
-static enum slcan_meaning read_frame(const char *text, size_t length, size_t digits, bool remote,
-                                     struct can_frame *frame)
+/* Behind the letter: identifier, count of bytes, bytes. */
+static enum slcan_meaning read_frame(const char *text, size_t length, struct can_frame *frame)
 {
     uint32_t id;
     uint32_t bytes;
 
-    if (length < digits + 1u || !read_number(text, digits, &id) ||
-        !read_number(&text[digits], 1, &bytes) || bytes > 8u ||
-        length != digits + 1u + (remote ? 0u : 2u * bytes) || (digits == 3u && id > 0x7ffu)) {
+    if (length < 4u || !read_number(text, 3, &id) || !read_number(&text[3], 1, &bytes) ||
+        bytes > 8u || length != 4u + 2u * bytes || id > 0x7ffu) {
         return SLCAN_REFUSED;
     }
     frame->id = (uint16_t)id;
     frame->length = (uint8_t)bytes;
-    for (size_t i = 0; !remote && i < bytes; i++) {
+    for (size_t i = 0; i < bytes; i++) {
         uint32_t byte;
 
-        if (!read_number(&text[digits + 1u + 2u * i], 2, &byte)) {
+        if (!read_number(&text[4u + 2u * i], 2, &byte)) {
             return SLCAN_REFUSED;
         }
         frame->data[i] = (uint8_t)byte;
     }
-    return digits == 3u && !remote ? SLCAN_SENDS : SLCAN_SENDS_LONG;
+    return SLCAN_SENDS;
 }
 
+/* A rate, any, as there is no bus to be out of step with; a filter, time stamps. */
 static bool is_setting(char letter, const char *text, size_t length)
 {
     uint32_t number;
 
-    switch (letter) {
-    case 'S': /* rate: any, as there is no bus to be out of step with */
-    case 'U':
-    case 'X':
-    case 'Y':
-    case 'Z':
-        return length == 1u && text[0] >= '0' && text[0] <= '9';
-    case 's':
-        return length >= 4u && length <= 6u && read_number(text, length, &number);
-    case 'M':
-    case 'm':
-        return length == 8u && read_number(text, length, &number);
-    default:
-        return false;
+    for (const char *known = "SsUXYZMm"; *known != '\0'; known++) {
+        if (*known == letter) {
+            return read_number(text, length, &number);
+        }
     }
+    return false;
 }
 
 static enum slcan_meaning read_letter(char letter)
@@ -99,17 +89,8 @@ enum slcan_meaning slcan_read(const char *line, size_t length, struct can_frame 
     if (length == 0u || length > SLCAN_LINE_BYTES) {
         return SLCAN_UNKNOWN;
     }
-    switch (line[0]) {
-    case 't':
-        return read_frame(&line[1], length - 1u, 3, false, frame);
-    case 'T':
-        return read_frame(&line[1], length - 1u, 8, false, frame);
-    case 'r':
-        return read_frame(&line[1], length - 1u, 3, true, frame);
-    case 'R':
-        return read_frame(&line[1], length - 1u, 8, true, frame);
-    default:
-        break;
+    if (line[0] == 't') {
+        return read_frame(&line[1], length - 1u, frame);
     }
     if (length == 1u) {
         return read_letter(line[0]);
@@ -127,8 +108,6 @@ const char *slcan_answer(enum slcan_meaning meaning, bool open)
         return "\r";
     case SLCAN_SENDS:
         return open ? "z\r" : "\a";
-    case SLCAN_SENDS_LONG:
-        return open ? "Z\r" : "\a";
     case SLCAN_ASKS_VERSION:
         return "V1010\r";
     case SLCAN_ASKS_SERIAL:

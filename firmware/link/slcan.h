@@ -23,8 +23,7 @@ enum slcan_meaning {
     SLCAN_OPENS,
     SLCAN_LISTENS, /* opens, and sends nothing */
     SLCAN_CLOSES,
-    SLCAN_SENDS,      /* a frame to the bus, in `frame` */
-    SLCAN_SENDS_LONG, /* one that no node of this bus hears: extended, or remote */
+    SLCAN_SENDS, /* a frame to the bus, in `frame`; extended and remote ones are refused */
     SLCAN_ASKS_VERSION,
     SLCAN_ASKS_SERIAL,
     SLCAN_ASKS_FLAGS

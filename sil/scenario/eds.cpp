@@ -169,13 +169,15 @@ void add_standard(Objects &objects)
             if (group != groups.end()) {
                 index.name = group->second + (of_pdo ? format(" %u", n + 1) : "");
             }
-            index.subs[row.sub] = {row.name,
-                                   row.type,
-                                   row.access.word,
-                                   of_pdo ? preset_of_pdo(row, n) : preset_of(row),
-                                   "",
-                                   "",
-                                   row.access.mapped};
+            const bool is_entry = of_pdo && (row.index & 0x200) != 0 && row.sub == 1;
+            for (unsigned entry = 0; entry < (is_entry ? 8 : 1); ++entry) {
+                Row one = row;
+                one.sub += entry;
+                const std::string number = is_entry ? format(" %u", one.sub) : "";
+                const std::string preset = of_pdo ? preset_of_pdo(one, n) : preset_of(row);
+                index.subs[one.sub] = {row.name + number, row.type, row.access.word, preset, "", "",
+                                       row.access.mapped};
+            }
         }
     }
 }

@@ -188,7 +188,7 @@ static void type_any_frame(void)
 
 static void test_whatever_comes_the_node_goes_on(void)
 {
-    for (int i = 0; i < 4000; i++) {
+    for (int i = 0; i < 20000; i++) {
         if (draw(8) == 0u) {
             char bytes[8];
 

@@ -49,15 +49,6 @@ static void test_what_is_no_frame_is_refused(void)
     }
 }
 
-static void test_extended_and_remote_frames_are_taken_and_heard_by_no_node(void)
-{
-    struct can_frame frame;
-
-    TEST_ASSERT_EQUAL(SLCAN_SENDS_LONG, read_line("T123456782AABB", &frame));
-    TEST_ASSERT_EQUAL(SLCAN_SENDS_LONG, read_line("r1232", &frame));
-    TEST_ASSERT_EQUAL_STRING("Z\r", slcan_answer(SLCAN_SENDS_LONG, true));
-}
-
 static void test_every_rate_and_filter_is_accepted(void)
 {
     static const char *const lines[] = {"S0", "S6", "S8",    "Y2",        "Z1",
@@ -72,8 +63,9 @@ static void test_every_rate_and_filter_is_accepted(void)
 
 static void test_what_the_console_understands_is_no_slcan(void)
 {
-    static const char *const lines[] = {"",  "state", "set node_id 3", "move 1.5",
-                                        "S", "OO",    "store",         "X"};
+    static const char *const lines[] = {
+        "",  "state",          "set node_id 3", "move 1.5", "S",   "OO",  "store",
+        "X", "T123456782AABB", "r1232",         "move",     "set", "sine"};
     struct can_frame frame;
 
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
@@ -87,7 +79,6 @@ int main(void)
     RUN_TEST(test_a_frame_is_read_and_written_as_the_same_text);
     RUN_TEST(test_digits_may_be_small);
     RUN_TEST(test_what_is_no_frame_is_refused);
-    RUN_TEST(test_extended_and_remote_frames_are_taken_and_heard_by_no_node);
     RUN_TEST(test_every_rate_and_filter_is_accepted);
     RUN_TEST(test_what_the_console_understands_is_no_slcan);
     return UNITY_END();
