@@ -14,8 +14,8 @@ enum { NEW_SET_POINT = 0x10, START_HOMING = 0x10, AT_ONCE = 0x20, RELATIVE = 0x4
 enum { REACHED = 0x0400, LIMITED = 0x0800, OF_MODE = 0x1000, OFF = 0x2000 };
 
 /* A ramp's jerk phases: a quarter of it each, as the console's moves, but no shorter. */
-static const double jerk_share = 0.25;
-static const double jerk_min_s = 2e-3;
+static const float jerk_share = 0.25f;
+static const float jerk_min_s = 2e-3f;
 
 static struct axis_motion *motion_of(struct application *application)
 {
@@ -31,23 +31,25 @@ bool axis_motion_rests(const struct application *application)
 
 /* ---- limits ---- */
 
+/* Speeds and accelerations are in single precision, which the core computes by itself. */
+
 /* Where the drive refuses, rad/s and rad/s^2, and a little less. */
-double axis_motion_speed_limit(const struct application *application)
+float axis_motion_speed_limit(const struct application *application)
 {
     const struct drive *drive = &application->drive;
 
-    return 0.999 * board_limits_speed(&drive->settings, drive->board->facts).rad_s;
+    return 0.999f * (float)board_limits_speed(&drive->settings, drive->board->facts).rad_s;
 }
 
-double axis_motion_acceleration_limit(const struct application *application)
+float axis_motion_acceleration_limit(const struct application *application)
 {
     const struct drive_settings *settings = &application->drive.settings;
 
-    return 0.999 * settings->current_limit_A * settings->motor.torque_constant_Nm_A /
-           settings->motor.inertia_kgm2;
+    return 0.999f * (float)settings->current_limit_A * (float)settings->motor.torque_constant_Nm_A /
+           (float)settings->motor.inertia_kgm2;
 }
 
-double axis_motion_limited(struct application *application, double value, double least, double most)
+float axis_motion_limited(struct application *application, float value, float least, float most)
 {
     if (value >= least && value <= most) {
         return value;
@@ -56,37 +58,44 @@ double axis_motion_limited(struct application *application, double value, double
     return value < least ? least : most;
 }
 
+static float units(const struct application *application)
+{
+    return (float)cia402_unit_rad(&application->link->objects);
+}
+
+static void put_default(uint32_t *units, float value)
+{
+    if (*units == 0u) {
+        *units = value < 4e9f ? (uint32_t)value : 4000000000u;
+    }
+}
+
 /* A share of what the motor can, as the console's moves (default_move.h); what is given stays. */
 void axis_motion_put_defaults(struct application *application)
 {
     struct link_objects *objects = &application->link->objects;
-    const double unit_rad = cia402_unit_rad(objects);
-    const double speed = 0.25 * axis_motion_speed_limit(application) / unit_rad;
-    const double acceleration = axis_motion_acceleration_limit(application) / unit_rad;
+    const float unit_rad = units(application);
+    const float acceleration = axis_motion_acceleration_limit(application) / unit_rad;
 
-    if (objects->profile_velocity == 0u) {
-        objects->profile_velocity = (uint32_t)smaller(speed, 4e9);
-    }
-    if (objects->profile_acceleration == 0u) {
-        objects->profile_acceleration = (uint32_t)smaller(0.25 * acceleration, 4e9);
-    }
-    if (objects->quick_stop_deceleration == 0u) {
-        objects->quick_stop_deceleration = (uint32_t)smaller(0.5 * acceleration, 4e9);
-    }
+    put_default(&objects->profile_velocity,
+                0.25f * axis_motion_speed_limit(application) / unit_rad);
+    put_default(&objects->profile_acceleration, 0.25f * acceleration);
+    put_default(&objects->quick_stop_deceleration, 0.5f * acceleration);
 }
 
 /* Acceleration and jerk of a command that goes to `speed_rad_s`; false: the drive refuses it. */
-bool axis_motion_post(struct application *application, struct drive_command *command,
-                      uint32_t acceleration_units)
+static bool post(struct application *application, struct drive_command *command, float speed_rad_s,
+                 uint32_t acceleration_units)
 {
-    const double unit_rad = cia402_unit_rad(&application->link->objects);
-    const double acceleration =
-        axis_motion_limited(application, unit_rad * acceleration_units, 1e-3,
+    const float acceleration =
+        axis_motion_limited(application, units(application) * (float)acceleration_units, 1e-3f,
                             axis_motion_acceleration_limit(application));
-    const double ramp_s = magnitude(command->speed_rad_s) / acceleration;
+    const float jerk_s =
+        jerk_share * (speed_rad_s < 0.0f ? -speed_rad_s : speed_rad_s) / acceleration;
 
-    command->acceleration_rad_s2 = acceleration;
-    command->jerk_rad_s3 = acceleration / larger(jerk_share * ramp_s, jerk_min_s);
+    command->speed_rad_s = (double)speed_rad_s;
+    command->acceleration_rad_s2 = (double)acceleration;
+    command->jerk_rad_s3 = (double)(acceleration / (jerk_s > jerk_min_s ? jerk_s : jerk_min_s));
     return cia402_command(application, command);
 }
 
@@ -95,10 +104,9 @@ void axis_motion_brake(struct application *application)
     struct drive_command brake = {.kind = DRIVE_COMMAND_VELOCITY};
 
     motion_of(application)->waits = false;
-    motion_of(application)->speed_rad_s = 0.0;
+    motion_of(application)->speed_rad_s = 0.0f;
     if (!axis_motion_rests(application) &&
-        !axis_motion_post(application, &brake,
-                          application->link->objects.quick_stop_deceleration)) {
+        !post(application, &brake, 0.0f, application->link->objects.quick_stop_deceleration)) {
         brake.kind = DRIVE_COMMAND_STOP;
         (void)cia402_command(application, &brake);
     }
@@ -122,17 +130,21 @@ void axis_motion_start(struct application *application)
 double axis_motion_target(struct application *application)
 {
     const struct link *link = application->link;
-    const struct axis_motion *motion = motion_of(application);
-    const double unit_rad = cia402_unit_rad(&link->objects);
+    struct axis_motion *motion = motion_of(application);
     const bool relative =
         link->axis.mode == CIA402_PROFILE_POSITION && (link->axis.controlword & RELATIVE) != 0u;
-    const double zero_rad = link->axis.zero_rad;
+    const double unit_rad = cia402_unit_rad(&link->objects);
+    const double from = relative ? (motion->target_rad - link->axis.zero_rad) / unit_rad : 0.0;
+    double target = from + (double)link->objects.target_position;
 
-    return axis_motion_limited(application,
-                               (relative ? motion->target_rad : zero_rad) +
-                                   unit_rad * link->objects.target_position,
-                               zero_rad + unit_rad * link->objects.position_least,
-                               zero_rad + unit_rad * link->objects.position_most);
+    if (target < (double)link->objects.position_least) {
+        motion->limited = true;
+        target = (double)link->objects.position_least;
+    } else if (target > (double)link->objects.position_most) {
+        motion->limited = true;
+        target = (double)link->objects.position_most;
+    }
+    return link->axis.zero_rad + unit_rad * target;
 }
 
 static void take_set_point(struct application *application)
@@ -161,11 +173,12 @@ static void go_to_target(struct application *application)
     if (!motion->waits || motion->halted || !(motion->at_once || axis_motion_rests(application))) {
         return;
     }
-    retarget.speed_rad_s =
-        axis_motion_limited(application, cia402_unit_rad(objects) * objects->profile_velocity, 1e-6,
-                            axis_motion_speed_limit(application));
+    const float speed =
+        axis_motion_limited(application, units(application) * (float)objects->profile_velocity,
+                            1e-6f, axis_motion_speed_limit(application));
+
     motion->limited =
-        !axis_motion_post(application, &retarget, objects->profile_acceleration) || motion->limited;
+        !post(application, &retarget, speed, objects->profile_acceleration) || motion->limited;
     motion->waits = false;
 }
 
@@ -175,19 +188,18 @@ static void go_at_speed(struct application *application)
 {
     const struct link_objects *objects = &application->link->objects;
     struct axis_motion *motion = motion_of(application);
-    const double most = axis_motion_speed_limit(application);
+    const float most = axis_motion_speed_limit(application);
     struct drive_command velocity = {.kind = DRIVE_COMMAND_VELOCITY};
+    float speed = 0.0f;
 
     motion->limited = false;
-    velocity.speed_rad_s =
-        motion->halted
-            ? 0.0
-            : axis_motion_limited(application, cia402_unit_rad(objects) * objects->target_velocity,
-                                  -most, most);
-    if (velocity.speed_rad_s != motion->speed_rad_s &&
-        !command_queue_holds_any(&application->drive.commands) &&
-        axis_motion_post(application, &velocity, objects->profile_acceleration)) {
-        motion->speed_rad_s = velocity.speed_rad_s;
+    if (!motion->halted) {
+        speed = axis_motion_limited(
+            application, units(application) * (float)objects->target_velocity, -most, most);
+    }
+    if (speed != motion->speed_rad_s && !command_queue_holds_any(&application->drive.commands) &&
+        post(application, &velocity, speed, objects->profile_acceleration)) {
+        motion->speed_rad_s = speed;
     }
 }
 
@@ -272,14 +284,14 @@ void axis_motion_look(struct application *application)
     const struct link *link = application->link;
     struct axis_motion *motion = motion_of(application);
     const struct drive_signals *now = cia402_signals(application);
-    const double unit_rad = cia402_unit_rad(&link->objects);
-    const double off_rad = magnitude(now->theta_ref_rad - now->theta_est_rad);
-    const double away_rad = magnitude(motion->target_rad - now->theta_est_rad);
+    const float unit_rad = units(application);
+    const float off_rad = (float)magnitude(now->theta_ref_rad - now->theta_est_rad);
+    const float away_rad = (float)magnitude(motion->target_rad - now->theta_est_rad);
     const bool there = !motion->waits && axis_motion_rests(application) &&
-                       away_rad <= unit_rad * link->objects.target_window;
+                       away_rad <= unit_rad * (float)link->objects.target_window;
 
     motion->reached = lasts(&motion->in_window_ms, there, link->objects.target_ms);
-    motion->off = lasts(&motion->off_ms, off_rad > unit_rad * link->objects.following_window,
+    motion->off = lasts(&motion->off_ms, off_rad > unit_rad * (float)link->objects.following_window,
                         link->objects.following_ms);
 }
 
@@ -287,10 +299,11 @@ void axis_motion_look(struct application *application)
 static bool at_speed(struct application *application)
 {
     const struct axis_motion *motion = motion_of(application);
-    const double off = cia402_signals(application)->omega_ref_rad_s - motion->speed_rad_s;
+    const float off = (float)cia402_signals(application)->omega_ref_rad_s - motion->speed_rad_s;
+    const float least =
+        1e-5f + 1e-3f * (motion->speed_rad_s < 0.0f ? -motion->speed_rad_s : motion->speed_rad_s);
 
-    return magnitude(off) <= 1e-3 * magnitude(motion->speed_rad_s) + 1e-6 &&
-           !command_queue_holds_any(&application->drive.commands);
+    return off <= least && -off <= least && !command_queue_holds_any(&application->drive.commands);
 }
 
 uint16_t axis_motion_status(struct application *application)

@@ -6,7 +6,6 @@
 #include <stdint.h>
 
 struct application;
-struct drive_command;
 
 /* Profile speed, acceleration and quick stop of the motor's settings, where none is given. */
 void axis_motion_put_defaults(struct application *application);
@@ -31,17 +30,11 @@ void axis_motion_cycle(struct application *application);
 double axis_motion_target(struct application *application);
 
 /* What the drive can: rad/s, rad/s^2. */
-double axis_motion_speed_limit(const struct application *application);
-double axis_motion_acceleration_limit(const struct application *application);
+float axis_motion_speed_limit(const struct application *application);
+float axis_motion_acceleration_limit(const struct application *application);
 
 /* Cut to limits, which shows in the statusword. */
-double axis_motion_limited(struct application *application, double value, double least,
-                           double most);
-
-/* A command with its acceleration, of at most so many units, and the jerk that goes with it. false:
-   the drive refuses it. */
-bool axis_motion_post(struct application *application, struct drive_command *command,
-                      uint32_t acceleration_units);
+float axis_motion_limited(struct application *application, float value, float least, float most);
 
 /* Whether the reference rests and nothing waits. */
 bool axis_motion_rests(const struct application *application);

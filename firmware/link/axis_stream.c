@@ -9,20 +9,21 @@ enum { OWED_MAX = 3, IN_HAND = 2, MOST_IN_HAND = 6 };
 
 /* In intervals: behind the last target one is overdue; behind the time of one whose place was taken
    what comes is not that one any more. */
-#define OVERDUE 1.5
-#define LATE    0.75
+#define OVERDUE 1.5f
+#define LATE    0.75f
 
 /* A set-point's acceleration is checked by differences that are rounded. */
-static const double acceleration_share = 0.99;
+static const float acceleration_share = 0.99f;
 
-static const double jerk_s = 2e-3; /* of what brings it to rest when no target comes */
+static const float jerk_s = 2e-3f; /* of what brings it to rest when no target comes */
 
-static double interval_s(const struct link_objects *objects)
+static float interval_s(const struct application *application)
 {
-    double interval = objects->interval;
+    const struct link_objects *objects = &application->link->objects;
+    float interval = (float)objects->interval;
 
     for (int exponent = objects->interval_exponent; exponent < 0; exponent++) {
-        interval *= 0.1;
+        interval *= 0.1f;
     }
     return interval;
 }
@@ -38,22 +39,22 @@ static uint32_t waiting(const struct application *application)
 }
 
 /* The last target has come, or should have. */
-static double since_s(const struct application *application)
+static float since_s(const struct application *application)
 {
     const struct link *link = application->link;
 
-    return 1e-6 * link_since(link, link->axis.stream.fed_us);
+    return 1e-6f * (float)link_since(link, link->axis.stream.fed_us);
 }
 
 static bool put(struct application *application, double position_rad)
 {
     struct axis_stream *stream = &application->link->axis.stream;
-    const double acceleration = axis_motion_acceleration_limit(application);
+    const float acceleration = axis_motion_acceleration_limit(application);
     struct drive_command point = {.kind = DRIVE_COMMAND_SET_POINT,
                                   .position_rad = position_rad,
-                                  .interval_s = interval_s(&application->link->objects),
-                                  .acceleration_rad_s2 = acceleration,
-                                  .jerk_rad_s3 = acceleration / jerk_s};
+                                  .interval_s = (double)interval_s(application),
+                                  .acceleration_rad_s2 = (double)acceleration,
+                                  .jerk_rad_s3 = (double)(acceleration / jerk_s)};
 
     if (!cia402_command(application, &point)) {
         return false;
@@ -78,15 +79,15 @@ static void begin(struct application *application)
 static double within_limits(struct application *application, double target_rad)
 {
     const struct axis_stream *stream = &application->link->axis.stream;
-    const double T = interval_s(&application->link->objects);
-    const double most = axis_motion_speed_limit(application);
-    const double change = acceleration_share * axis_motion_acceleration_limit(application) * T;
-    const double before = (stream->last_rad - stream->before_rad) / T;
-    double speed = (target_rad - stream->last_rad) / T;
+    const float T = interval_s(application);
+    const float most = axis_motion_speed_limit(application);
+    const float change = acceleration_share * axis_motion_acceleration_limit(application) * T;
+    const float before = (float)(stream->last_rad - stream->before_rad) / T;
+    const float asked = (float)(target_rad - stream->last_rad) / T;
+    float speed = axis_motion_limited(application, asked, -most, most);
 
-    speed = axis_motion_limited(application, speed, -most, most);
     speed = axis_motion_limited(application, speed, before - change, before + change);
-    return stream->last_rad + T * speed;
+    return speed == asked ? target_rad : stream->last_rad + (double)(T * speed);
 }
 
 void axis_stream_take(struct application *application)
@@ -107,8 +108,7 @@ void axis_stream_take(struct application *application)
     if (!is_open(application)) {
         return;
     }
-    if (stream->owed > 0u &&
-        since_s(application) < LATE * interval_s(&application->link->objects)) {
+    if (stream->owed > 0u && since_s(application) < LATE * interval_s(application)) {
         stream->owed--; /* the one whose place was taken */
         return;
     }
@@ -124,12 +124,12 @@ void axis_stream_background(struct application *application)
 {
     struct axis_stream *stream = &application->link->axis.stream;
     const double step_rad = stream->last_rad - stream->before_rad;
-    const double interval = interval_s(&application->link->objects);
+    const float interval = interval_s(application);
 
     if (is_open(application) && step_rad != 0.0 && stream->owed < OWED_MAX &&
         since_s(application) > OVERDUE * interval &&
         put(application, stream->last_rad + step_rad)) {
         stream->owed++;
-        stream->fed_us += (uint32_t)(1e6 * interval);
+        stream->fed_us += (uint32_t)(1e6f * interval);
     }
 }

@@ -35,8 +35,8 @@ struct application;
 
 /* What the motion of a mode goes by: axis_motion.c. */
 struct axis_motion {
-    double target_rad;  /* of the last set-point */
-    double speed_rad_s; /* as commanded last, of profile velocity */
+    double target_rad; /* of the last set-point */
+    float speed_rad_s; /* as commanded last, of profile velocity */
     uint16_t in_window_ms, off_ms;
     bool waits;        /* a set-point has not begun */
     bool at_once;      /* it preempts what is in motion */
