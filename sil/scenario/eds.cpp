@@ -2,6 +2,7 @@
 #include "sil/scenario/eds.h"
 
 #include <algorithm>
+#include <charconv>
 #include <map>
 #include <vector>
 
@@ -52,9 +53,18 @@ class Objects : public std::map<unsigned, Index>
     }
 };
 
+/* Without an exponent, which not every reader of a sheet understands. */
+std::string plain(double value)
+{
+    char text[400];
+    const std::to_chars_result end =
+        std::to_chars(text, text + sizeof text, value, std::chars_format::fixed);
+    return std::string(text, end.ptr);
+}
+
 std::string fixed(double value, unsigned base)
 {
-    return base == SETTING_FIXED ? shortest(value) : "";
+    return base == SETTING_FIXED ? plain(value) : "";
 }
 
 void add_settings(Objects &objects)
@@ -77,8 +87,7 @@ void add_commands(Objects &objects)
     objects.put(0x2200, {"command", unsigned8, "wo", "", "1", std::to_string(DRIVE_COMMANDS)});
     for (int i = 0; i < DRIVE_PARAMETERS; ++i) {
         const struct parameter_row &row = *parameter_at(static_cast<drive_parameter>(i));
-        objects.put(row.index,
-                    {row.name, real64, "rw", "", shortest(row.least), shortest(row.most)});
+        objects.put(row.index, {row.name, real64, "rw", "", plain(row.least), plain(row.most)});
     }
 }
 

@@ -56,6 +56,7 @@ struct Options {
     std::string serve; /* SCENARIO; "": a drive with its defaults */
     serve::ServeOptions serving;
     int tcp = -1, knobs_tcp = -1; /* -1: not asked for */
+    int nodes = 1;
     bool json = false;
     unsigned jobs = default_workers();
     fs::path program;
@@ -367,15 +368,23 @@ int serve_command(Options options)
     if (options.knobs_tcp >= 0) {
         options.serving.knobs.tcp = static_cast<unsigned>(options.knobs_tcp);
     }
-    std::unique_ptr<sil::DriveBoard> board;
-    if (options.given.image.empty()) {
-        board = sil::Board::flashed(plant_of(scenario, seed), firmware, scenario.drive);
-    } else {
+    if (!options.given.image.empty()) {
         check_image(scenario, firmware.numeric);
-        board = std::make_unique<virtual_board::VirtualBoard>(
-            plant_of(scenario, seed), options.given.image, firmware.numeric, scenario.drive);
     }
-    serve::Server server(scenario, std::move(board), options.serving);
+    std::vector<std::unique_ptr<sil::DriveBoard>> boards;
+    for (int node = 1; node <= options.nodes; ++node) {
+        if (options.nodes > 1) {
+            scenario.drive.node_id = node;
+        }
+        const plant::Config plant = plant_of(scenario, seed + static_cast<unsigned>(node) - 1);
+        if (options.given.image.empty()) {
+            boards.push_back(sil::Board::flashed(plant, firmware, scenario.drive));
+        } else {
+            boards.push_back(std::make_unique<virtual_board::VirtualBoard>(
+                plant, options.given.image, firmware.numeric, scenario.drive));
+        }
+    }
+    serve::Server server(scenario, std::move(boards), options.serving);
     print(server.places());
     print(server.run());
     return held;
@@ -529,6 +538,8 @@ void add_serve_options(CLI::App &command, Options &options)
     command.add_option("--baud", serving.baud, "of the serial line")
         ->check(CLI::Range(1200.0, 1e7))
         ->check(finite());
+    command.add_option("--nodes", options.nodes, "drives on one bus, with numbers from 1 on")
+        ->check(CLI::Range(1, 16));
     command.add_option("--link", serving.serial.link, "symbolic link to the pseudo-terminal")
         ->check(not_empty());
     command.add_option("--tcp", options.tcp, "port on 127.0.0.1 for the same bytes; 0: a free one")

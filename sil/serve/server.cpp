@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <utility>
+#include <vector>
 
 #include <poll.h>
 
@@ -31,13 +32,21 @@ std::string joined(const char *name, const std::vector<std::string> &places)
 
 } // namespace
 
-Server::Server(const scenario::Scenario &scenario, std::unique_ptr<sil::DriveBoard> board,
-               const ServeOptions &options)
-    : board_(std::move(board)), period_s_(scenario.plant.bridge.period_s), serial_(options.serial),
-      knob_port_(options.knobs), knobs_(scenario, *board_),
-      pace_in_(options.baud / bits_per_byte * period_s_), pace_out_(pace_in_),
+Station::Station(const scenario::Scenario &scenario, std::unique_ptr<sil::DriveBoard> its,
+                 const SerialPace &pace)
+    : board(std::move(its)), knobs(scenario, *board), pace_in(pace), pace_out(pace)
+{
+}
+
+Server::Server(const scenario::Scenario &scenario,
+               std::vector<std::unique_ptr<sil::DriveBoard>> boards, const ServeOptions &options)
+    : period_s_(scenario.plant.bridge.period_s), serial_(options.serial), knob_port_(options.knobs),
       clock_(options.speed, period_s_)
 {
+    const SerialPace pace(options.baud / bits_per_byte * period_s_);
+    for (std::unique_ptr<sil::DriveBoard> &board : boards) {
+        stations_.push_back(std::make_unique<Station>(scenario, std::move(board), pace));
+    }
 }
 
 std::string Server::places() const
@@ -57,29 +66,88 @@ void Server::wait()
 void Server::exchange()
 {
     const std::string bytes = serial_.read();
-    if (to_drive_.size() + bytes.size() <= most_waiting) {
-        to_drive_ += bytes;
+    for (const std::unique_ptr<Station> &station : stations_) {
+        if (station->to_drive.size() + bytes.size() <= most_waiting) {
+            station->to_drive += bytes;
+        }
     }
-    knob_port_.write(knobs_.turn(knob_port_.read(), period_));
-    if (knobs_.take_restart()) {
-        from_drive_.clear();
+    knob_port_.write(turn_knobs(knob_port_.read()));
+}
+
+/* "2: load_torque_Nm = 0.1" is for node 2; without a number a line is for node 1. */
+std::string Server::turn_knobs(const std::string &bytes)
+{
+    std::string answers;
+    knob_line_ += bytes;
+    for (std::size_t end = 0; (end = knob_line_.find('\n')) != std::string::npos;) {
+        std::string line = knob_line_.substr(0, end + 1);
+        knob_line_.erase(0, end + 1);
+        const std::size_t colon = line.find(':');
+        std::size_t node = 1;
+        if (colon != std::string::npos && colon <= 3 &&
+            line.find_first_not_of("0123456789") == colon) {
+            node = std::stoul("0" + line.substr(0, colon));
+            line.erase(0, colon + 1);
+        }
+        if (node < 1 || node > stations_.size()) {
+            answers += scenario::format("error: expected a node 1...%zu\n", stations_.size());
+            continue;
+        }
+        Station &station = *stations_[node - 1];
+        answers += station.knobs.turn(line, period_);
+        if (station.knobs.take_restart()) {
+            station.from_drive.clear();
+            station.line.clear();
+        }
     }
+    return answers;
 }
 
 void Server::pass_period()
 {
-    knobs_.act(period_);
-    const std::string bytes = pace_in_.take(to_drive_);
-    if (!bytes.empty()) {
-        board_->send(bytes);
+    for (const std::unique_ptr<Station> &station : stations_) {
+        pass_period_of(*station);
     }
-    board_->control();
-    from_drive_ += board_->take_output();
-    board_->advance();
     ++period_;
-    const std::string sent = pace_out_.take(from_drive_);
-    if (!sent.empty()) {
+}
+
+void Server::pass_period_of(Station &station)
+{
+    station.knobs.act(period_);
+    const std::string bytes = station.pace_in.take(station.to_drive);
+    if (!bytes.empty()) {
+        station.board->send(bytes);
+    }
+    station.board->control();
+    station.from_drive += station.board->take_output();
+    station.board->advance();
+    const std::string sent = station.pace_out.take(station.from_drive);
+    if (stations_.size() == 1) {
         serial_.write(sent);
+    } else {
+        share_frames(station, sent);
+    }
+}
+
+/* As a bus would: whole frames, each to the client and to every other node. */
+void Server::share_frames(Station &station, const std::string &bytes)
+{
+    const bool first = &station == stations_.front().get();
+    for (const char byte : bytes) {
+        station.line += byte;
+        if (byte != '\r' && byte != '\n' && byte != '\a') {
+            continue;
+        }
+        const bool is_frame = byte == '\r' && station.line.size() > 4 && station.line[0] == 't';
+        if (first || is_frame) {
+            serial_.write(station.line);
+        }
+        for (const std::unique_ptr<Station> &other : stations_) {
+            if (is_frame && other.get() != &station) {
+                other->to_drive += station.line;
+            }
+        }
+        station.line.clear();
     }
 }
 

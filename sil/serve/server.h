@@ -7,6 +7,8 @@
 #define STEADYSTEP_SERVE_SERVER_H
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "sil/scenario/scenario_file.h"
 #include "sil/serve/byte_port.h"
@@ -23,11 +25,25 @@ struct ServeOptions {
     double baud = 921600;
 };
 
+/* A board on the bus: its own motor, one serial line and one link, all of which share a client. */
+struct Station {
+    Station(const scenario::Scenario &scenario, std::unique_ptr<sil::DriveBoard> its,
+            const SerialPace &pace);
+
+    std::unique_ptr<sil::DriveBoard> board;
+    Knobs knobs;
+    SerialPace pace_in, pace_out;
+    std::string to_drive, from_drive;
+    std::string line; /* of the drive's, that has not ended */
+};
+
 class Server
 {
   public:
-    /* Opens the ports; throws scenario::InputError. */
-    Server(const scenario::Scenario &scenario, std::unique_ptr<sil::DriveBoard> board,
+    /* Opens the ports; throws scenario::InputError. Of several boards, node 1 first, the client
+       hears every frame, and so does each of the others; console and acknowledgements are the
+       first one's. */
+    Server(const scenario::Scenario &scenario, std::vector<std::unique_ptr<sil::DriveBoard>> boards,
            const ServeOptions &options);
 
     /* "serial: /dev/pts/3", "knobs: ...", a line each. */
@@ -40,15 +56,16 @@ class Server
   private:
     void wait();
     void exchange();
+    std::string turn_knobs(const std::string &bytes);
     void pass_period();
+    void pass_period_of(Station &station);
+    void share_frames(Station &station, const std::string &bytes);
 
-    std::unique_ptr<sil::DriveBoard> board_;
     double period_s_;
     BytePort serial_, knob_port_;
-    Knobs knobs_;
-    SerialPace pace_in_, pace_out_;
     WallClock clock_;
-    std::string to_drive_, from_drive_;
+    std::vector<std::unique_ptr<Station>> stations_;
+    std::string knob_line_; /* that has not ended */
     std::uint32_t period_ = 0;
     bool warned_slow_ = false;
 };

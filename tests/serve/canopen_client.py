@@ -2,9 +2,10 @@
 
 usage: canopen_client.py SIL
 """
+import logging
 import time
 
-from canopen_bus import Bus, canopen, wait_for
+from canopen_bus import EDS, Bus, canopen, wait_for
 from served import Checks, Line, Served
 
 CHECKS = Checks()
@@ -26,6 +27,15 @@ def every_object_is_served_as_the_sheet_says(node):
             CHECKS.that(8 * len(data) == len(variable), f"{name}: {len(data)} bytes")
             if variable.default is not None:
                 CHECKS.that(variable.decode_raw(data) == variable.default, f"{name}: its default")
+
+
+def the_sheet_is_read_without_a_remark():
+    remarks = []
+    handler = logging.Handler(logging.WARNING)
+    handler.emit = remarks.append
+    logging.getLogger("canopen").addHandler(handler)
+    CHECKS.that(len(canopen.import_od(EDS, 1)) > 100 and not remarks, f"the sheet: {remarks}")
+    logging.getLogger("canopen").removeHandler(handler)
 
 
 def settings_are_read_and_written(node):
@@ -110,6 +120,7 @@ def what_is_stored_survives(node, knobs):
     CHECKS.that(knobs.ask('command = "power-cycle"').startswith("ok"), "the supply fails and returns")
 
 
+the_sheet_is_read_without_a_remark()
 with Served() as served:
     KNOBS = Line(str(served.knobs_link))
     with Bus(served.link) as bus:
