@@ -87,8 +87,6 @@
          "the bridge: 1 electrical turn, with microstepping 0, which is not watched; cut to 14")   \
     REAL(0x2124, command_timeout_s, "s", FIXED(0.0), FIXED(3600.0), FIXED(0.0), AT_ENABLE,         \
          "a motion stops when no line or command has come for so long; 0: it goes on")             \
-    COUNT(0x2125, node_id, "", FIXED(1.0), FIXED(127.0), FIXED(1.0), AT_ENABLE,                    \
-          "the drive's number on a fieldbus; acts when the channel is opened")                     \
     REAL(0x2130, observer_bandwidth_rad_s, "rad/s", FIXED(1.0), FIXED(1e6), FOLLOWS, AT_ENABLE,    \
          "triple pole of the model observer: 1000, of the default law with an encoder 1400, of a " \
          "light rotor what its swings ask for, or what period and counts bear")                    \
@@ -96,6 +94,8 @@
          "of the high-gain observer")                                                              \
     COUNT(0x2009, encoder_counts_per_turn, "", FIXED(0.0), FIXED(1073741824.0), FIXED(0.0),        \
           AT_ENABLE, "quadrature counts; 0: as the board has it")                                  \
+    COUNT(0x2125, node_id, "", FIXED(1.0), FIXED(127.0), FIXED(1.0), AT_ENABLE,                    \
+          "the drive's number on a fieldbus; acts when the channel is opened")                     \
     REAL(0x2132, encoder_zero_rad, "rad", FIXED(-1e4), FIXED(1e4), FIXED(0.0), AT_ENABLE,          \
          "rotor angle where count 0 begins")                                                       \
     REAL(0x2133, initial_load_torque_Nm, "N m", FIXED(-100.0), FIXED(100.0), FIXED(0.0),           \

@@ -7,9 +7,20 @@
 /* An application and the hash over what its drive has shown so far. */
 struct instance {
     struct application application;
-    struct link link;
     uint64_t hash;
+#ifndef STEADYSTEP_WITHOUT_LINK
+    struct link link;
+#endif
 };
+
+static void put_link(struct instance *self)
+{
+#ifndef STEADYSTEP_WITHOUT_LINK
+    application_put_link(&self->application, &self->link);
+#else
+    (void)self;
+#endif
+}
 
 static bool image_init(void *drive, const struct hal *board, const struct drive_settings *settings,
                        char error[DRIVE_ERROR_TEXT])
@@ -19,7 +30,7 @@ static bool image_init(void *drive, const struct hal *board, const struct drive_
     if (!application_init_with(&self->application, board, settings, error)) {
         return false;
     }
-    application_put_link(&self->application, &self->link);
+    put_link(self);
     self->hash = self->application.gains_hash;
     return true;
 }
@@ -33,7 +44,7 @@ static bool image_init_stored(void *drive, const struct hal *board,
     if (!application_init(&self->application, board, motor_default, error)) {
         return false;
     }
-    application_put_link(&self->application, &self->link);
+    put_link(self);
     self->hash = self->application.gains_hash;
     return true;
 }
