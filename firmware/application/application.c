@@ -53,6 +53,13 @@ static void prepare(struct application *application, const struct hal *board)
     application->heard_in = 0;
     application->unheard = false;
     console_init(&application->console);
+    application->link = NULL;
+}
+
+CALLED_FROM_OUTSIDE void application_put_link(struct application *application, struct link *link)
+{
+    link_init(link);
+    application->link = link;
 }
 
 static bool start_with_stored(struct application *application)

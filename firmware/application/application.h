@@ -16,6 +16,7 @@
 #include "firmware/application/console.h"
 #include "firmware/application/control_cycles.h"
 #include "firmware/drive/drive.h"
+#include "firmware/link/link.h"
 #include "hal/hal.h"
 
 /* Where the settings in force come from. */
@@ -47,6 +48,7 @@ struct application {
     bool stored_refused;                   /* by the drive: the defaults are in force */
     char stored_refusal[DRIVE_ERROR_TEXT]; /* why */
     struct console console;
+    struct link *link; /* NULL: none */
 };
 
 /*
@@ -61,6 +63,9 @@ bool application_init(struct application *application, const struct hal *board,
 /* Start-up with these settings, whatever is stored. false: refused, reason in error. */
 bool application_init_with(struct application *application, const struct hal *board,
                            const struct drive_settings *settings, char error[DRIVE_ERROR_TEXT]);
+
+/* Behind the start-up: a fieldbus link, which stays where it is. */
+void application_put_link(struct application *application, struct link *link);
 
 /*
  * Background: drive_command_asked_in, for whoever commands a drive that has a console. What was set

@@ -165,6 +165,19 @@ static bool announce(struct application *application)
     return true;
 }
 
+void console_skip_announcements(struct application *application)
+{
+    const struct drive *drive = &application->drive;
+    struct console_announced *announced = &application->console.announced;
+
+    announced->state = interrupt_view_state(drive);
+    announced->state_since = interrupt_view_state_since(drive);
+    announced->underruns = drive->planner.underruns;
+    announced->dropped = interrupt_view_commands_dropped(drive);
+    announced->synchronism = interrupt_view_synchronism(drive);
+    announced->unheard = application->unheard;
+}
+
 /* ---- commands ---- */
 
 /* The period a line that came in `line_period` acts in. */
@@ -295,6 +308,16 @@ static bool is_of_settings(const struct command_line *line)
     return line->form->action >= LINE_GET && line->form->action <= LINE_DEFAULTS;
 }
 
+/* A line of slcan, which a fieldbus's client types. */
+static bool obey_link(struct application *application)
+{
+    struct console *console = &application->console;
+
+    console->answer_length = 0;
+    console->answer_sent = 0;
+    return LINK_CARRIED && link_obey_line(application, console->line, console->line_length);
+}
+
 /* false: an empty line, which has no answer. */
 static bool obey_line(struct application *application, uint32_t line_period)
 {
@@ -304,6 +327,10 @@ static bool obey_line(struct application *application, uint32_t line_period)
     struct command_line line;
 
     console->line[too_long ? CONSOLE_LINE_BYTES : console->line_length] = '\0';
+    if (!console->bytes_lost && !console->nul && obey_link(application)) {
+        console->line_length = 0;
+        return true;
+    }
     console->line_length = 0;
     application_hear(application, line_period);
     text_put(&answer, "error: ");
@@ -387,8 +414,36 @@ void console_init(struct console *console)
     *console = (struct console){.announced = {.state = DRIVE_SWITCH_ON_DISABLED}};
 }
 
+/* The line carries frames; at most one of them is taken in a pass. */
+static void carry_frames(struct application *application)
+{
+    struct console *console = &application->console;
+    bool ended = false;
+
+    if (send(application)) {
+        console->answer_length = 0;
+        console->answer_sent = 0;
+    }
+    refill(application);
+    while (!ended && link_has_room(application, 2) && console->taken < console->received_count) {
+        const char character = (char)console->received[console->taken++];
+
+        link_take(application, character);
+        ended = character == '\r';
+    }
+    link_background(application);
+    (void)send(application);
+}
+
 void console_background(struct application *application)
 {
+    if (LINK_CARRIED && application->link != NULL && application->link->open) {
+        carry_frames(application);
+        return;
+    }
+    if (LINK_CARRIED && application->link != NULL) {
+        link_finish(application);
+    }
     if (send(application) && (announce(application) || read_line(application))) {
         (void)send(application);
     }

@@ -64,6 +64,9 @@ struct application;
 /* At start-up: announces the firmware as soon as the line takes it. */
 void console_init(struct console *console);
 
+/* What has happened so far is announced no more. */
+void console_skip_announcements(struct application *application);
+
 /* Background: sends, announces, or reads and obeys one line; as much as fits. */
 void console_background(struct application *application);
 

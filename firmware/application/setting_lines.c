@@ -4,10 +4,7 @@
 
 #include "firmware/application/application.h"
 #include "firmware/application/number_text.h"
-#include "firmware/application/settings_record.h"
-#include "firmware/design/refusal.h"
-#include "firmware/drive/interrupt_view.h"
-#include "firmware/drive/settings_in_motion.h"
+#include "firmware/application/setting_change.h"
 #include "firmware/interface/settings.h"
 
 /* One number, or one of several. */
@@ -266,58 +263,21 @@ static bool read_value(const struct application *application, struct element ele
     return true;
 }
 
-/* A disable that was typed before counts: it acts before any enable that is typed behind. */
-static bool waits(const struct application *application)
-{
-    const uint32_t period = interrupt_view_period(&application->drive);
-
-    return application_settings_wait(application, period + application_typed_delay(application));
-}
-
-/* Puts `changed` in force, at the next enable or at once. */
-static bool accept(struct application *application, const struct drive_settings *changed,
-                   bool in_motion, struct text *answer)
-{
-    struct drive *drive = &application->drive;
-    char refusal[DRIVE_ERROR_TEXT] = "this is set while the drive is disabled";
-
-    if (in_motion && interrupt_view_state(drive) != DRIVE_OPERATION_ENABLED) {
-        (void)design_refuse(refusal, "the drive is being enabled, wait until it is ready");
-        in_motion = false;
-    }
-    if (!waits(application) && !(in_motion && settings_in_motion_change(drive, changed, refusal))) {
-        text_put(answer, refusal);
-        return false;
-    }
-    application->chosen = *changed;
-    application->awaits_enable = true;
-    return true;
-}
-
 static bool set(struct application *application, struct element element, struct line_word typed,
                 struct text *answer)
 {
-    struct drive_settings changed = application->chosen;
     char refusal[DRIVE_ERROR_TEXT];
     double value;
 
     if (!read_value(application, element, typed, &value, answer)) {
         return false;
     }
-    setting_choose(&changed, element.setting, element.number, value);
-    if (!setting_check(&changed, element.setting, refusal)) {
+    if (setting_change(application, element.setting, element.number, value, refusal) !=
+        SETTING_CHANGED) {
         text_put(answer, refusal);
         return false;
     }
-    return accept(application, &changed, element.setting->in_motion, answer);
-}
-
-static bool restore_defaults(struct application *application, struct text *answer)
-{
-    struct drive_settings defaults;
-
-    drive_settings_default(&defaults, &application->chosen.motor);
-    return accept(application, &defaults, false, answer);
+    return true;
 }
 
 static void put_set(const struct application *application, struct element element,
@@ -325,7 +285,8 @@ static void put_set(const struct application *application, struct element elemen
 {
     text_put(answer, "ok set ");
     put_setting(application, element, answer);
-    text_put(answer, waits(application) ? "; acts at the next enable" : "; acts at once");
+    text_put(answer,
+             setting_change_waits(application) ? "; acts at the next enable" : "; acts at once");
 }
 
 static bool obey_set(struct application *application, const struct command_line *line,
@@ -348,29 +309,18 @@ static bool obey_set(struct application *application, const struct command_line 
 
 static bool store(struct application *application, struct text *answer)
 {
-    const struct text empty = *answer;
-    const struct drive_command learned = {.kind = DRIVE_COMMAND_STORE};
-    struct drive *drive = &application->drive;
     char refusal[DRIVE_ERROR_TEXT];
 
-    text_put(answer, "error: ");
-    if (!drive_settings_check(&application->chosen, refusal) ||
-        !drive_command(drive, &learned, refusal)) {
-        text_put(answer, refusal);
-        return false;
-    }
-    drive_feed_watchdog(drive); /* one of the two may have erased a page, the other may, too */
-    switch (settings_record_write(&application->board, &application->chosen)) {
+    switch (settings_store(application, refusal)) {
     case RECORD_WRITTEN:
-        *answer = empty;
         text_put(answer, "ok store");
         return true;
     case RECORD_WRITTEN_ELSEWHERE:
-        *answer = empty;
         text_put(answer, "ok store; where it was to go the store is worn out");
         return true;
     default:
-        text_put(answer, "the board has no parameter store, or refused to write");
+        text_put(answer, "error: ");
+        text_put(answer, refusal);
         return false;
     }
 }
@@ -378,7 +328,7 @@ static bool store(struct application *application, struct text *answer)
 bool setting_line_obey(struct application *application, const struct command_line *line,
                        struct text *answer)
 {
-    const struct text empty = *answer;
+    char refusal[DRIVE_ERROR_TEXT];
 
     if (line->form->action == LINE_GET) {
         return get(application, line->name, answer);
@@ -389,11 +339,11 @@ bool setting_line_obey(struct application *application, const struct command_lin
     if (line->form->action == LINE_STORE) {
         return store(application, answer);
     }
-    text_put(answer, "error: ");
-    if (!restore_defaults(application, answer)) {
+    if (!settings_restore(application, refusal)) {
+        text_put(answer, "error: ");
+        text_put(answer, refusal);
         return false;
     }
-    *answer = empty;
     text_put(answer, "ok ");
     text_put(answer, line->form->name);
     return true;

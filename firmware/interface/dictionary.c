@@ -15,14 +15,13 @@ const char *drive_command_name(enum drive_command_kind kind)
 
 /* ---- signals ---- */
 
-#define SIGNAL_ROW(member, brief, type)                                                            \
-    {#member, brief, offsetof(struct drive_signals, member), type,                                 \
-     sizeof(((struct drive_signals *)0)->member)},
-#define FLAG_SIGNAL(index, member, path, brief, ...)  SIGNAL_ROW(member, brief, SIGNAL_FLAG)
-#define COUNT_SIGNAL(index, member, path, brief, ...) SIGNAL_ROW(member, brief, SIGNAL_COUNT)
-#define REAL_SIGNAL(index, member, path, brief, ...)  SIGNAL_ROW(member, brief, SIGNAL_REAL)
+#define SIGNAL_ROW(index, member, brief, type)                                                     \
+    {#member, brief, index, offsetof(struct drive_signals, member), type},
+#define FLAG_SIGNAL(index, member, path, brief, ...)  SIGNAL_ROW(index, member, brief, SIGNAL_FLAG)
+#define COUNT_SIGNAL(index, member, path, brief, ...) SIGNAL_ROW(index, member, brief, SIGNAL_COUNT)
+#define REAL_SIGNAL(index, member, path, brief, ...)  SIGNAL_ROW(index, member, brief, SIGNAL_REAL)
 #define NAMED_SIGNAL(index, member, path, brief, traced, type, sentence)                           \
-    SIGNAL_ROW(member, brief, SIGNAL_IS_##type)
+    SIGNAL_ROW(index, member, brief, SIGNAL_IS_##type)
 
 const struct signal_row *signal_at(enum drive_signal signal)
 {
@@ -42,7 +41,8 @@ double signal_get(const struct drive_signals *signals, const struct signal_row *
         memcpy(&real, at, sizeof real);
         return real;
     }
-    if (signal->size == 1u) {
+    if (signal->type == SIGNAL_FLAG ||
+        (signal->type != SIGNAL_COUNT && sizeof(enum drive_state) == 1u)) {
         return *at;
     }
     memcpy(&whole, at, sizeof whole);
@@ -77,9 +77,9 @@ const char *signal_word(const struct signal_row *signal, double value)
 #define LIMIT(member) offsetof(struct drive_settings, member)
 #define NO_LIMIT      FAULT_WITHOUT_LIMIT
 
-#define FAULT_ROW(constant, code, name, cause, limit, remedy) {name, cause, limit},
+#define FAULT_ROW(constant, code, name, cause, limit, remedy) {name, cause, code, limit},
 
-static const struct fault_row faults[DRIVE_FAULTS] = {{"none", "", NO_LIMIT},
+static const struct fault_row faults[DRIVE_FAULTS] = {{"none", "", 0x0000, NO_LIMIT},
                                                       DRIVE_FAULTS_TABLE(FAULT_ROW)};
 
 const struct fault_row *fault_at(enum drive_fault fault)

@@ -23,11 +23,11 @@ enum signal_type {
 };
 
 struct signal_row {
-    const char *name;  /* as the console and a trace spell it */
-    const char *brief; /* as `state` does, "": not at all */
-    uint16_t offset;   /* in struct drive_signals */
-    uint8_t type;      /* enum signal_type */
-    uint8_t size;      /* bytes */
+    const char *name;     /* as the console and a trace spell it */
+    const char *brief;    /* as `state` does, "": not at all */
+    uint16_t index;       /* of the object dictionary */
+    uint16_t offset : 12; /* in struct drive_signals */
+    uint16_t type : 4;    /* enum signal_type */
 };
 
 /* Places in the order of the table. */
@@ -51,7 +51,6 @@ const char *signal_word(const struct signal_row *signal, double value);
 struct signal_text {
     const char *unit;
     const char *sentence;
-    uint16_t index;
     bool traced;
 };
 
@@ -60,6 +59,7 @@ const struct signal_text *signal_text(enum drive_signal signal);
 struct fault_row {
     const char *name;  /* as scenarios and the console spell it */
     const char *cause; /* in words */
+    uint16_t code;     /* of an emergency message */
     uint16_t limit;    /* offset in struct drive_settings of what stands behind it */
 };
 
@@ -70,7 +70,6 @@ const struct fault_row *fault_at(enum drive_fault fault);
 /* The setting that limits, NULL: none. */
 const struct setting *fault_limit(enum drive_fault fault);
 
-uint16_t fault_code(enum drive_fault fault); /* of an emergency message */
 const char *fault_remedy(enum drive_fault fault);
 
 struct command_row {

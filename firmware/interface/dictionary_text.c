@@ -67,13 +67,13 @@ void parameter_put(struct drive_command *command, const struct parameter_row *pa
 /* ---- signals ---- */
 
 #define SIGNAL_TEXT(index, member, path, brief, traced, sentence)                                  \
-    {"", sentence, index, SIGNAL_IS_##traced},
+    {"", sentence, SIGNAL_IS_##traced},
 #define ANGLE_TEXT(index, member, path, brief, traced, sentence)                                   \
-    {"rad", sentence, index, SIGNAL_IS_##traced},
+    {"rad", sentence, SIGNAL_IS_##traced},
 #define NAMED_TEXT(index, member, path, brief, traced, type, sentence)                             \
-    {"", sentence, index, SIGNAL_IS_##traced},
+    {"", sentence, SIGNAL_IS_##traced},
 #define REAL_TEXT(index, member, path, brief, traced, base, unit, sentence)                        \
-    {unit, sentence, index, SIGNAL_IS_##traced},
+    {unit, sentence, SIGNAL_IS_##traced},
 
 const struct signal_text *signal_text(enum drive_signal signal)
 {
@@ -85,15 +85,7 @@ const struct signal_text *signal_text(enum drive_signal signal)
 
 /* ---- faults ---- */
 
-#define FAULT_CODE(constant, code, name, cause, limit, remedy)   code,
 #define FAULT_REMEDY(constant, code, name, cause, limit, remedy) remedy,
-
-uint16_t fault_code(enum drive_fault fault)
-{
-    static const uint16_t codes[DRIVE_FAULTS] = {0x0000, DRIVE_FAULTS_TABLE(FAULT_CODE)};
-
-    return codes[fault];
-}
 
 const char *fault_remedy(enum drive_fault fault)
 {

@@ -101,6 +101,14 @@ function(carry_laws target)
   target_compile_definitions(${target} PRIVATE "STEADYSTEP_LAWS=${carried}")
 endfunction()
 
+# carry_link(<target of the firmware> <default>): CANopen on the serial line, or not.
+function(carry_link target default)
+  option(STEADYSTEP_LINK "Carry the CANopen link (firmware/link)" ${default})
+  if(NOT STEADYSTEP_LINK)
+    target_compile_definitions(${target} PRIVATE STEADYSTEP_WITHOUT_LINK)
+  endif()
+endfunction()
+
 find_pin_map(${STEADYSTEP_PIN_MAP} pin_map)
 find_motor(${STEADYSTEP_MOTOR} motor)
 

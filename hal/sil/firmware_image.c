@@ -8,7 +8,19 @@
 struct instance {
     struct application application;
     uint64_t hash;
+#ifndef STEADYSTEP_WITHOUT_LINK
+    struct link link;
+#endif
 };
+
+static void put_link(struct instance *self)
+{
+#ifndef STEADYSTEP_WITHOUT_LINK
+    application_put_link(&self->application, &self->link);
+#else
+    (void)self;
+#endif
+}
 
 static bool image_init(void *drive, const struct hal *board, const struct drive_settings *settings,
                        char error[DRIVE_ERROR_TEXT])
@@ -18,6 +30,21 @@ static bool image_init(void *drive, const struct hal *board, const struct drive_
     if (!application_init_with(&self->application, board, settings, error)) {
         return false;
     }
+    put_link(self);
+    self->hash = self->application.gains_hash;
+    return true;
+}
+
+static bool image_init_stored(void *drive, const struct hal *board,
+                              const struct motor_params *motor_default,
+                              char error[DRIVE_ERROR_TEXT])
+{
+    struct instance *self = drive;
+
+    if (!application_init(&self->application, board, motor_default, error)) {
+        return false;
+    }
+    put_link(self);
     self->hash = self->application.gains_hash;
     return true;
 }
@@ -88,6 +115,7 @@ EXPORTED const struct firmware_image IMAGE_OF(NUM_FORMAT) = {
     .numeric = STRING_OF(NUM_FORMAT),
     .drive_bytes = sizeof(struct instance),
     .init = image_init,
+    .init_stored = image_init_stored,
     .control_cycle = image_control_cycle,
     .brake = image_brake,
     .law_gain = image_law_gain,

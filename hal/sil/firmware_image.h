@@ -20,6 +20,10 @@ struct firmware_image {
     /* Start-up: designs all gains. false: settings refused, reason in error. */
     bool (*init)(void *drive, const struct hal *board, const struct drive_settings *settings,
                  char error[DRIVE_ERROR_TEXT]);
+    /* Start-up with the newest settings of the board's parameter store, or, without any, with the
+       defaults for this motor. */
+    bool (*init_stored)(void *drive, const struct hal *board,
+                        const struct motor_params *motor_default, char error[DRIVE_ERROR_TEXT]);
     /* The control interrupt. */
     struct hal_outputs (*control_cycle)(void *drive, const struct hal_samples *samples);
     /* Behind it: whether the brake resistor is to be on until the next S(k). */

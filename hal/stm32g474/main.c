@@ -18,6 +18,7 @@
 #include "hal/stm32g474/watchdog.h"
 
 struct application application;
+static struct link fieldbus;
 
 /* The gates are held low, by pull-downs until the timer drives them, from reset on. */
 static void start_board(void)
@@ -67,6 +68,7 @@ int main(void)
     if (!application_init(&application, &board_hal, &motor_default, error)) {
         board_fault(BOARD_FAULT_SETTINGS_REFUSED);
     }
+    application_put_link(&application, &fieldbus);
     start_control();
     watchdog_start();
     pins_led(1);

@@ -1,11 +1,14 @@
 #include "sil/board/board.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "firmware/application/settings_record.h"
 #include "hal/sil/hal_sil.h"
 #include "sil/plant/sensors.h"
 
@@ -57,6 +60,7 @@ struct Board::Impl {
     const firmware_image &image;
     const drive_settings settings;
     const double hardware_trip_A;
+    bool stores = false;           /* starts with what its parameter store has */
     std::uint64_t hash_before = 0; /* of the drive before the last power cycle */
     std::vector<std::max_align_t> drive_memory;
     void *drive = drive_memory.data();
@@ -80,11 +84,34 @@ Board::Board(const plant::Config &plant, const firmware_image &image,
     }
     const hal_facts facts = facts_of(plant);
     hal_sil_init(&impl_->hal, &facts);
+    start();
+    sample();
+}
+
+std::unique_ptr<Board> Board::flashed(const plant::Config &plant, const firmware_image &image,
+                                      const drive_settings &settings)
+{
+    auto board = std::make_unique<Board>(plant, image, settings);
+    std::uint8_t record[SETTINGS_RECORD_BYTES];
+    settings_record_encode(&settings, 1, record);
+    std::copy(std::begin(record), std::end(record),
+              &board->impl_->hal.parameters[SETTINGS_RECORD_FIRST_PAGE * HAL_SIL_PAGE_BYTES]);
+    board->impl_->stores = true;
+    board->start();
+    return board;
+}
+
+void Board::start()
+{
+    Impl &board = *impl_;
     char error[DRIVE_ERROR_TEXT] = "";
-    if (!image.init(impl_->drive, &impl_->hal.board, &settings, error)) {
+    const bool started =
+        board.stores
+            ? board.image.init_stored(board.drive, &board.hal.board, &board.settings.motor, error)
+            : board.image.init(board.drive, &board.hal.board, &board.settings, error);
+    if (!started) {
         throw std::invalid_argument(error);
     }
-    sample();
 }
 
 Board::~Board() = default;
@@ -96,10 +123,7 @@ void Board::power_cycle()
     hal_sil_restart(&board.hal);
     board.typed.clear();
     board.shorted = board.stalled = board.deadline_missed = false;
-    char error[DRIVE_ERROR_TEXT] = "";
-    if (!board.image.init(board.drive, &board.hal.board, &board.settings, error)) {
-        throw std::invalid_argument(error);
-    }
+    start();
     board.outputs = {};
     board.brake_on = false;
     board.encoder_origin = board.plant.samples().encoder_count;
@@ -153,9 +177,9 @@ void Board::stall_control_interrupt(double until_s)
     impl_->stalled = until_s > control_deadline_share * impl_->hal.facts.control_period_s;
 }
 
-void Board::type(const std::string &line)
+void Board::send(const std::string &bytes)
 {
-    impl_->typed += line + '\n';
+    impl_->typed += bytes;
 }
 
 void Board::Impl::receive()

@@ -25,6 +25,10 @@ class Board : public DriveBoard
        open the bridge where a phase current is beyond it at an S(k); 0: not fitted. */
     Board(const plant::Config &plant, const firmware_image &image, const drive_settings &settings,
           double hardware_trip_A = 0.0);
+    /* As a board starts: the settings lie in its parameter store, and those that its drive has
+       stored since are in force after a power cycle. */
+    static std::unique_ptr<Board> flashed(const plant::Config &plant, const firmware_image &image,
+                                          const drive_settings &settings);
     ~Board() override;
     Board(const Board &) = delete;
     Board &operator=(const Board &) = delete;
@@ -33,7 +37,7 @@ class Board : public DriveBoard
        drive's text. */
     void command(const drive_command &command);
 
-    void type(const std::string &line) override;
+    void send(const std::string &bytes) override;
     void power_cycle() override;
     void short_circuit(int leg, double current_A) override;
     void stall_control_interrupt(double until_s) override;
@@ -49,6 +53,7 @@ class Board : public DriveBoard
     const hal_outputs &outputs() const;
 
   private:
+    void start();
     void sample();
 
     struct Impl;

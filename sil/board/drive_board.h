@@ -33,9 +33,14 @@ class DriveBoard
   public:
     virtual ~DriveBoard() = default;
 
-    /* Types a line, given without its end. Its last byte arrives in the period of the coming
+    /* Bytes for the drive's serial line. The last one arrives in the period of the coming
        control(): after that period's S(k), before the next one. */
-    virtual void type(const std::string &line) = 0;
+    virtual void send(const std::string &bytes) = 0;
+    /* A line, given without its end. */
+    void type(const std::string &line)
+    {
+        send(line + '\n');
+    }
 
     /* The supply fails and returns: the drive starts again, bridge off, with the parameter store as
        it was, while rotor and encoder go on. The coming control() is that of period 0. */

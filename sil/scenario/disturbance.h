@@ -33,8 +33,8 @@ struct PlantValues {
     plant::SensorConfig sensors;
     double bus_V = 0;            /* of the source */
     double coulomb_friction = 0; /* share of the holding torque */
-    double bridge_temperature_C = 25;
     double magnet_rise_K = 0;
+    double bridge_temperature_C = 25;
 };
 
 /* What a value belongs to; each is handed to the plant as a whole. */

@@ -1,10 +1,13 @@
 /* The object dictionary as an electronic data sheet, CiA 306. */
 #include "sil/scenario/eds.h"
 
+#include <algorithm>
+#include <charconv>
 #include <map>
 #include <vector>
 
 #include "firmware/interface/dictionary.h"
+#include "firmware/link/objects_table.h"
 #include "sil/scenario/text.h"
 
 namespace scenario
@@ -16,10 +19,13 @@ namespace
 /* Types of CiA 301. */
 enum Type {
     boolean = 0x01,
+    integer8 = 0x02,
+    integer16 = 0x03,
     integer32 = 0x04,
     unsigned8 = 0x05,
     unsigned16 = 0x06,
     unsigned32 = 0x07,
+    text_visible = 0x09,
     real64 = 0x11
 };
 
@@ -28,13 +34,37 @@ struct Object {
     Type type = real64;
     const char *access = "ro";
     std::string preset, least, most; /* empty: not fixed */
+    bool mapped = false;             /* may be, into a PDO */
 };
 
-using Objects = std::map<unsigned, Object>;
+/* Those of an index by their sub-indexes; one of sub-index 0 alone is a variable. */
+struct Index {
+    std::string name; /* of several */
+    std::map<unsigned, Object> subs;
+};
+
+class Objects : public std::map<unsigned, Index>
+{
+  public:
+    /* One without sub-indexes. */
+    void put(unsigned index, const Object &object)
+    {
+        (*this)[index].subs[0] = object;
+    }
+};
+
+/* Without an exponent, which not every reader of a sheet understands. */
+std::string plain(double value)
+{
+    char text[400];
+    const std::to_chars_result end =
+        std::to_chars(text, text + sizeof text, value, std::chars_format::fixed);
+    return std::string(text, end.ptr);
+}
 
 std::string fixed(double value, unsigned base)
 {
-    return base == SETTING_FIXED ? shortest(value) : "";
+    return base == SETTING_FIXED ? plain(value) : "";
 }
 
 void add_settings(Objects &objects)
@@ -44,23 +74,20 @@ void add_settings(Objects &objects)
     for (std::size_t i = 0; (row = setting_number(i)) != nullptr; ++i) {
         for (unsigned n = 0; n < row->count; ++n) {
             const std::string number = row->count > 1 ? format("[%u]", n + 1) : "";
-            objects[row->index + n] = {
-                row->name + number,
-                types[row->type],
-                "rw",
-                setting_is_of_motor(row) ? "" : fixed(row->preset, row->preset_base),
-                fixed(row->least, row->least_base),
-                fixed(row->most, row->most_base)};
+            objects.put(row->index + n,
+                        {row->name + number, types[row->type], "rw",
+                         setting_is_of_motor(row) ? "" : fixed(row->preset, row->preset_base),
+                         fixed(row->least, row->least_base), fixed(row->most, row->most_base)});
         }
     }
 }
 
 void add_commands(Objects &objects)
 {
-    objects[0x2200] = {"command", unsigned8, "wo", "", "1", std::to_string(DRIVE_COMMANDS)};
+    objects.put(0x2200, {"command", unsigned8, "wo", "", "1", std::to_string(DRIVE_COMMANDS)});
     for (int i = 0; i < DRIVE_PARAMETERS; ++i) {
         const struct parameter_row &row = *parameter_at(static_cast<drive_parameter>(i));
-        objects[row.index] = {row.name, real64, "rw", "", shortest(row.least), shortest(row.most)};
+        objects.put(row.index, {row.name, real64, "rw", "", plain(row.least), plain(row.most)});
     }
 }
 
@@ -73,8 +100,94 @@ void add_signals(Objects &objects)
                           : row.type == SIGNAL_COUNT ? unsigned32
                           : row.type == SIGNAL_REAL  ? real64
                                                      : unsigned8;
-        objects[signal_text(static_cast<drive_signal>(i))->index] = {row.name, type, "ro",
-                                                                     "",       "",   ""};
+        objects.put(row.index, {row.name, type, "ro", "", "", "", true});
+    }
+}
+
+/* ---- objects_table.h ---- */
+
+constexpr Type U8 = unsigned8, U16 = unsigned16, U32 = unsigned32, I8 = integer8, I16 = integer16,
+               I32 = integer32, TEXT = text_visible;
+
+struct Access {
+    const char *word;
+    bool mapped, of_node;
+};
+constexpr Access RO = {"ro", false, false}, RO_T = {"ro", true, false},
+                 RO_NODE = {"ro", false, true}, RW = {"rw", false, false},
+                 RW_R = {"rw", true, false};
+
+struct Row {
+    unsigned index, sub;
+    Type type;
+    Access access;
+    long long preset;
+    const char *name;
+};
+
+/* What objects that code answers for begin with, if that is fixed, stands in their rows. */
+std::string preset_of(const Row &row)
+{
+    const bool follows = row.index == 0x6081 || row.index == 0x6083 || row.index == 0x6085;
+    const bool shows = row.index >= 0x6000 && row.index != 0x6061 && row.access.word == RO_T.word &&
+                       row.access.mapped;
+    if (row.type == text_visible || follows || shows) {
+        return "";
+    }
+    return row.access.of_node ? format("$NODEID+0x%llx", row.preset) : std::to_string(row.preset);
+}
+
+/* Of four alike, number n. */
+std::string preset_of_pdo(const Row &row, unsigned n)
+{
+    static const unsigned received[] = {0, 0x60600008, 0x607a0020, 0x60ff0020};
+    static const unsigned sent[] = {0, 0x60610008, 0x60640020, 0x606c0020};
+    const bool is_sent = row.index >= 0x1800, maps = (row.index & 0x200) != 0;
+    if (maps && row.sub == 0) {
+        return n == 0 ? "1" : "2";
+    }
+    if (maps && row.sub == 1) {
+        return is_sent ? "0x60410010" : "0x60400010";
+    }
+    if (maps && row.sub == 2) {
+        return format("0x%08x", is_sent ? sent[n] : received[n]);
+    }
+    if (!maps && row.sub == 1) {
+        const long long validity = (is_sent ? 0x40000000LL : 0) + (n == 0 ? 0 : 0x80000000LL);
+        return format("$NODEID+0x%llx", row.preset + 0x100 * n + validity);
+    }
+    if (!maps && row.sub == 5 && n == 0) {
+        return "100";
+    }
+    return preset_of(row);
+}
+
+void add_standard(Objects &objects)
+{
+#define ROW(index, sub, type, access, preset, name) {index, sub, type, access, preset, name},
+#define STORED_ROW(index, sub, type, access, member, preset, name)                                 \
+    ROW(index, sub, type, access, preset, name)
+#define GROUP_NAME(index, name) {index, name},
+    static const Row rows[] = {LINK_OBJECTS(STORED_ROW, ROW)};
+    static const std::map<unsigned, const char *> groups = {LINK_OBJECT_GROUPS(GROUP_NAME)};
+    for (const Row &row : rows) {
+        const bool of_pdo = row.index >= 0x1400 && row.index < 0x1c00;
+        for (unsigned n = 0; n < (of_pdo ? 4 : 1); ++n) {
+            Index &index = objects[row.index + n];
+            const auto group = groups.find(row.index);
+            if (group != groups.end()) {
+                index.name = group->second + (of_pdo ? format(" %u", n + 1) : "");
+            }
+            const bool is_entry = of_pdo && (row.index & 0x200) != 0 && row.sub == 1;
+            for (unsigned entry = 0; entry < (is_entry ? 8 : 1); ++entry) {
+                Row one = row;
+                one.sub += entry;
+                const std::string number = is_entry ? format(" %u", one.sub) : "";
+                const std::string preset = of_pdo ? preset_of_pdo(one, n) : preset_of(row);
+                index.subs[one.sub] = {row.name + number, row.type, row.access.word, preset, "", "",
+                                       row.access.mapped};
+            }
+        }
     }
 }
 
@@ -82,7 +195,8 @@ std::string section(const std::string &name, const Object &object)
 {
     std::string text = "\n[" + name + "]\nParameterName=" + object.name +
                        "\nObjectType=0x7\nDataType=" + format("0x%04x", unsigned(object.type)) +
-                       "\nAccessType=" + object.access + "\nPDOMapping=0\n";
+                       "\nAccessType=" + object.access +
+                       "\nPDOMapping=" + (object.mapped ? "1" : "0") + "\n";
     const auto add = [&](const char *key, const std::string &value) {
         text += value.empty() ? "" : std::string(key) + "=" + value + "\n";
     };
@@ -119,24 +233,24 @@ ModifiedBy=steadystep-sil
 VendorName=steadystep
 VendorNumber=0x00000000
 ProductName=steadystep
-ProductNumber=0x00000000
-RevisionNumber=0x00000000
+ProductNumber=0x00000001
+RevisionNumber=0x00000002
 OrderCode=steadystep
-BaudRate_10=0
-BaudRate_20=0
-BaudRate_50=0
-BaudRate_125=0
-BaudRate_250=0
-BaudRate_500=0
-BaudRate_800=0
-BaudRate_1000=0
+BaudRate_10=1
+BaudRate_20=1
+BaudRate_50=1
+BaudRate_125=1
+BaudRate_250=1
+BaudRate_500=1
+BaudRate_800=1
+BaudRate_1000=1
 SimpleBootUpMaster=0
-SimpleBootUpSlave=0
-Granularity=0
+SimpleBootUpSlave=1
+Granularity=8
 DynamicChannelsSupported=0
 GroupMessaging=0
-NrOfRXPDO=0
-NrOfTXPDO=0
+NrOfRXPDO=4
+NrOfTXPDO=4
 LSS_Supported=0
 
 [DummyUsage]
@@ -150,36 +264,43 @@ Dummy0007=0
 
 [Comments]
 Lines=1
-Line1=No board has a fieldbus yet: these are the numbers that one would use.
+Line1=firmware/link/README.md says how to connect.
 )";
 
-constexpr const char *identity = R"(
-[1018]
-ParameterName=Identity object
-ObjectType=0x9
-SubNumber=2
-)";
+std::string sections(unsigned number, const Index &index)
+{
+    const std::string name = format("%04X", number);
+    if (index.name.empty()) {
+        return section(name, index.subs.at(0));
+    }
+    std::string text = "\n[" + name + "]\nParameterName=" + index.name +
+                       "\nObjectType=0x9\nSubNumber=" + std::to_string(index.subs.size()) + "\n";
+    for (const auto &[sub, object] : index.subs) {
+        text += section(name + format("sub%X", sub), object);
+    }
+    return text;
+}
 
 } // namespace
 
 std::string electronic_data_sheet()
 {
     Objects objects;
+    add_standard(objects);
     add_settings(objects);
     add_commands(objects);
     add_signals(objects);
 
+    const std::vector<unsigned> mandatory = {0x1000, 0x1001, 0x1018};
     std::vector<unsigned> standard, own;
     std::string text;
-    for (const auto &[index, object] : objects) {
-        (index >= 0x6000 ? standard : own).push_back(index);
-        text += section(format("%04X", index), object);
+    for (const auto &[number, index] : objects) {
+        if (std::find(mandatory.begin(), mandatory.end(), number) == mandatory.end()) {
+            (number < 0x2000 || number >= 0x6000 ? standard : own).push_back(number);
+        }
+        text += sections(number, index);
     }
-    return std::string(head) + list_of("MandatoryObjects", {0x1000, 0x1001, 0x1018}) +
-           section("1000", {"Device type", unsigned32, "ro", "0x00000000", "", ""}) +
-           section("1001", {"Error register", unsigned8, "ro", "0x00", "", ""}) + identity +
-           section("1018sub0", {"Highest sub-index supported", unsigned8, "ro", "1", "", ""}) +
-           section("1018sub1", {"Vendor-ID", unsigned32, "ro", "0x00000000", "", ""}) +
+    return std::string(head) + list_of("MandatoryObjects", mandatory) +
            list_of("OptionalObjects", standard) + list_of("ManufacturerObjects", own) + text;
 }
 

@@ -35,6 +35,7 @@
 #include "sil/scenario/sweep.h"
 #include "sil/scenario/text.h"
 #include "sil/scenario/trace.h"
+#include "sil/serve/server.h"
 
 namespace fs = std::filesystem;
 using namespace scenario;
@@ -53,6 +54,10 @@ struct Options {
     double campaign_duration_s = 0;      /* 0: the kind's own */
     bool campaign_stretch = false;
     std::string numeric, seed, seeds, out, trace = "csv", folder;
+    std::string serve; /* SCENARIO; "": a drive with its defaults */
+    serve::ServeOptions serving;
+    int tcp = -1, knobs_tcp = -1; /* -1: not asked for */
+    int nodes = 1;
     bool json = false;
     unsigned jobs = default_workers();
     fs::path program;
@@ -353,6 +358,54 @@ int campaign_command(const Options &options)
     return held;
 }
 
+/* What is served unless a scenario is named. */
+constexpr const char *served_alone = "description = \"a drive with its defaults\"\n"
+                                     "motor = \"bendjedia-2012\"\n"
+                                     "duration_s = 1\n"
+                                     "plant.model = \"bench\"\n";
+
+int serve_command(Options options)
+{
+    const Catalogue catalogue = options.catalogue();
+    Scenario scenario = options.serve.empty()
+                            ? read_scenario_text(catalogue, served_alone, "serve", options.given)
+                            : read_scenario(catalogue, options.serve, options.given, "serve");
+    scenario.events.clear(); /* it is for its clients to act */
+    if (options.numeric.empty() && !options.given.image.empty()) {
+        options.numeric = virtual_board::VirtualBoard::numeric_of(options.given.image);
+    }
+    const firmware_image &firmware = image(options, scenario);
+    const std::uint64_t seed = seeds_of(options, scenario.seed).first;
+    check(scenario, firmware);
+    show_doubts({scenario});
+    if (options.tcp >= 0) {
+        options.serving.serial.tcp = static_cast<unsigned>(options.tcp);
+    }
+    if (options.knobs_tcp >= 0) {
+        options.serving.knobs.tcp = static_cast<unsigned>(options.knobs_tcp);
+    }
+    if (!options.given.image.empty()) {
+        check_image(scenario, firmware.numeric);
+    }
+    std::vector<std::unique_ptr<sil::DriveBoard>> boards;
+    for (int node = 1; node <= options.nodes; ++node) {
+        if (options.nodes > 1) {
+            scenario.drive.node_id = node;
+        }
+        const plant::Config plant = plant_of(scenario, seed + static_cast<unsigned>(node) - 1);
+        if (options.given.image.empty()) {
+            boards.push_back(sil::Board::flashed(plant, firmware, scenario.drive));
+        } else {
+            boards.push_back(std::make_unique<virtual_board::VirtualBoard>(
+                plant, options.given.image, firmware.numeric, scenario.drive));
+        }
+    }
+    serve::Server server(scenario, std::move(boards), options.serving);
+    print(server.places());
+    print(server.run());
+    return held;
+}
+
 /* As it is asked for by name. */
 std::string name_of(const fs::path &file)
 {
@@ -483,6 +536,36 @@ void add_given_options(CLI::App &command, Options &options)
         ->check(not_empty());
 }
 
+void add_serve_options(CLI::App &command, Options &options)
+{
+    serve::ServeOptions &serving = options.serving;
+    command.add_option("SCENARIO", options.serve,
+                       "name or path: its motor, plant and drive, without its events; else the "
+                       "reference motor on `bench`");
+    add_given_options(command, options);
+    command.add_option("--numeric", options.numeric, "number format of the drive")
+        ->check(CLI::IsMember({"float", "fixed", "double"}));
+    command.add_option("--seed", options.seed, "seed of all noise")->check(not_empty());
+    command.add_option("--image", options.given.image, "image of the STM32G474 board, an .elf")
+        ->check(CLI::ExistingFile);
+    command.add_option("--speed", serving.speed, "simulated seconds in a second")
+        ->check(CLI::Range(0.001, 1000.0))
+        ->check(finite());
+    command.add_option("--baud", serving.baud, "of the serial line")
+        ->check(CLI::Range(1200.0, 1e7))
+        ->check(finite());
+    command.add_option("--nodes", options.nodes, "drives on one bus, with numbers from 1 on")
+        ->check(CLI::Range(1, 16));
+    command.add_option("--link", serving.serial.link, "symbolic link to the pseudo-terminal")
+        ->check(not_empty());
+    command.add_option("--tcp", options.tcp, "port on 127.0.0.1 for the same bytes; 0: a free one")
+        ->check(CLI::Range(0, 65535));
+    command.add_option("--knobs-link", serving.knobs.link, "the same for the knobs")
+        ->check(not_empty());
+    command.add_option("--knobs-tcp", options.knobs_tcp, "the same for the knobs")
+        ->check(CLI::Range(0, 65535));
+}
+
 int run_program(int argc, char **argv)
 {
     Options options;
@@ -543,6 +626,9 @@ int run_program(int argc, char **argv)
     campaign->add_flag("--json", options.json, "JSON on standard output, no report");
     add_given_options(*campaign, options);
     add_run_options(*campaign, options);
+    CLI::App *serve =
+        app.add_subcommand("serve", "let a simulated drive live in real time behind a serial line");
+    add_serve_options(*serve, options);
     CLI::App *check_motor = app.add_subcommand(
         "check-motor", "say what motor files mean and whether their values go together");
     check_motor->add_option("MOTOR", options.motors, "names or paths")->required();
@@ -569,6 +655,9 @@ int run_program(int argc, char **argv)
         }
         if (*campaign) {
             return campaign_command(options);
+        }
+        if (*serve) {
+            return serve_command(options);
         }
         return *run ? run_command(options) : sweep_command(options);
     } catch (const CLI::Success &asked) {

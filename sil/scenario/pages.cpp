@@ -101,7 +101,7 @@ std::string signals_page()
     for (int i = 0; i < SIGNALS; ++i) {
         const signal_row &row = *signal_at(static_cast<drive_signal>(i));
         const struct signal_text &more = *signal_text(static_cast<drive_signal>(i));
-        text += format("| 0x%04x | `", unsigned(more.index)) + row.name + "` | " + more.unit +
+        text += format("| 0x%04x | `", unsigned(row.index)) + row.name + "` | " + more.unit +
                 " | " + (row.brief[0] != '\0' ? std::string("`") + row.brief + "`" : "") + " | " +
                 (more.traced ? "yes" : "") + " | " + more.sentence + " |\n";
     }
@@ -169,7 +169,7 @@ std::string faults_page()
     for (int i = DRIVE_FAULT_NONE + 1; i < DRIVE_FAULTS; ++i) {
         const auto fault = static_cast<drive_fault>(i);
         const std::string name = drive_fault_name(fault);
-        text += format("| 0x%04x | ", unsigned(fault_code(fault))) + "<a id=\"" + name +
+        text += format("| 0x%04x | ", unsigned(fault_at(fault)->code)) + "<a id=\"" + name +
                 "\"></a>`" + name + "` | " + cause_of(fault) + " | " + fault_remedy(fault) + " |\n";
     }
     return text;

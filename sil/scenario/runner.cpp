@@ -7,6 +7,7 @@
 
 #include "sil/board/typed_line.h"
 #include "sil/scenario/interruption.h"
+#include "sil/scenario/plant_events.h"
 #include "sil/scenario/serial_line.h"
 #include "sil/scenario/tape.h"
 #include "sil/scenario/text.h"
@@ -22,38 +23,6 @@ constexpr double longest_enabling_s = 60;
 std::uint32_t periods(double time_s, double period_s)
 {
     return static_cast<std::uint32_t>(std::floor(time_s / period_s + 0.5));
-}
-
-PlantValues values_of(const Scenario &scenario)
-{
-    return {scenario.scales, scenario.plant.sensors, scenario.plant.bridge.bus_V,
-            scenario.plant.imperfections.coulomb_friction,
-            scenario.plant.imperfections.magnet_rise_K};
-}
-
-void set_part(const Scenario &scenario, const PlantValues &values, PlantPart part,
-              plant::Plant &plant)
-{
-    switch (part) {
-    case PlantPart::motor:
-        plant.set_motor(scaled(scenario.motor.params, values.scales));
-        break;
-    case PlantPart::sensors:
-        plant.set_sensors(values.sensors);
-        break;
-    case PlantPart::bus:
-        plant.set_bus(values.bus_V);
-        break;
-    case PlantPart::magnet:
-        plant.set_magnet_rise(values.magnet_rise_K);
-        break;
-    case PlantPart::friction:
-        plant.set_coulomb_friction(values.coulomb_friction);
-        break;
-    case PlantPart::bridge_temperature:
-        plant.set_bridge_temperature(values.bridge_temperature_C);
-        break;
-    }
 }
 
 /* Whether the reference moves more slowly than a drive sees for a tenth of a second, all ramps
@@ -89,8 +58,7 @@ class Runner
        are typed. */
     Runner(const Scenario &scenario, sil::DriveBoard &board, sil::Board *direct, Record &record)
         : scenario_(scenario), board_(board), direct_(direct), record_(record),
-          period_s_(scenario.plant.bridge.period_s), values_(values_of(scenario)),
-          motor_(scaled(scenario.motor.params, scenario.scales)),
+          period_s_(scenario.plant.bridge.period_s), plant_events_(scenario, board),
           creep_(drive_blind_speed_rad_s(&scenario.drive, &board.facts())), line_(board),
           tape_(scenario.events, period_s_)
     {
@@ -238,26 +206,15 @@ class Runner
                 line_.type(*event.type, event.location.text(), time_of(n, period_s_));
             } else if (event.expects) {
                 expect(event);
-            } else if (event.shorted_leg) {
-                board_.short_circuit(*event.shorted_leg, event.short_circuit_A);
-            } else if (event.stall_us) {
-                board_.stall_control_interrupt(*event.stall_us * 1e-6);
-            } else if (event.load) {
-                put_load(*event.load, board_.plant());
-            } else if (event.fault) {
-                event.fault(board_.plant());
             } else {
-                for (const Drift &drift : event.drifts) {
-                    courses_.push_back({drift, drift.field->of(values_), n,
-                                        std::max(1u, periods(event.drift_ramp_s, period_s_))});
-                }
+                plant_events_.act(event, n);
             }
         }
         if (direct_ == nullptr) {
             tape_.type(n, time_zero_, line_);
         }
         stream(n);
-        drift(n);
+        plant_events_.drift(n);
     }
 
     void post(const Event &event, std::uint32_t n)
@@ -344,31 +301,6 @@ class Runner
         }
     }
 
-    /* A drift on its way. */
-    struct Course {
-        Drift drift;
-        double from;
-        std::uint32_t start, periods;
-    };
-
-    void drift(std::uint32_t n)
-    {
-        for (const Course &course : courses_) {
-            const double part = (n - course.start + 1) / static_cast<double>(course.periods);
-            course.drift.field->of(values_) =
-                part < 1 ? course.from + (course.drift.to - course.from) * part : course.drift.to;
-            set_part(scenario_, values_, course.drift.field->part, board_.plant());
-        }
-        if (!courses_.empty()) {
-            motor_ = scaled(scenario_.motor.params, values_.scales);
-        }
-        courses_.erase(std::remove_if(courses_.begin(), courses_.end(),
-                                      [n](const Course &course) {
-                                          return n - course.start + 1 >= course.periods;
-                                      }),
-                       courses_.end());
-    }
-
     /* Behind a set-position as well; without one the same bits. */
     double in_coordinates_of_drive(double theta_rad) const
     {
@@ -391,8 +323,8 @@ class Runner
         row[I_B] = state.i_b_A;
         row[U_A] = state.u_a_V;
         row[U_B] = state.u_b_V;
-        row[RESISTANCE] =
-            motor_.resistance_ohm + scenario_.plant.imperfections.bridge_resistance_ohm;
+        row[RESISTANCE] = plant_events_.motor().resistance_ohm +
+                          scenario_.plant.imperfections.bridge_resistance_ohm;
         row[BUS] = state.bus_V;
         record_.append(row);
     }
@@ -402,8 +334,7 @@ class Runner
     sil::Board *direct_;
     Record &record_;
     double period_s_;
-    PlantValues values_;
-    plant::MotorConfig motor_;
+    PlantEvents plant_events_;
     Run result_;
     Creep creep_;
     SerialLine line_;
@@ -412,7 +343,6 @@ class Runner
     double stood_at_rad_ = 0; /* the rotor, when it was enabled */
     std::uint32_t time_zero_ = 0;
     std::size_t next_ = 0; /* first event that has not acted */
-    std::vector<Course> courses_;
     std::vector<Stream> streams_;
 };
 
@@ -472,7 +402,7 @@ void post_commands(sil::Board &board, const Scenario &scenario)
 /* The plant refuses at once what it would refuse in the run. */
 void disturb(plant::Plant &plant, const Scenario &scenario)
 {
-    PlantValues values = values_of(scenario);
+    PlantValues values = plant_values_of(scenario);
     for (const Event &event : scenario.events) {
         try {
             if (event.fault) {
@@ -484,7 +414,7 @@ void disturb(plant::Plant &plant, const Scenario &scenario)
                                                 ": expected sensing that is not exact");
                 }
                 drift.field->of(values) = drift.to;
-                set_part(scenario, values, drift.field->part, plant);
+                put_plant_part(scenario, values, drift.field->part, plant);
             }
         } catch (const std::invalid_argument &refusal) {
             throw InputError(event.location.text() + ": " + refusal.what());

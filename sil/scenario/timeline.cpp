@@ -377,6 +377,17 @@ std::vector<Event> read_events(TableReader &scenario, double duration_s)
     return events;
 }
 
+Event read_knob(const std::string &line, const std::string &name)
+{
+    const Value document = parse_toml("knob = { time_s = 0, " + line + " }", name);
+    const Event event = read_event(*document.find("knob"), "knob", 0);
+    if (document.keys.size() != 1 || event.command || event.type || event.expects) {
+        throw InputError(name + ": expected a load, plant.<key>, a fault, or command = "
+                                "\"power-cycle\"; what is for the drive goes to its serial line");
+    }
+    return event;
+}
+
 std::vector<Expectation> read_expectations(TableReader &scenario, double duration_s)
 {
     std::vector<Expectation> expectations;

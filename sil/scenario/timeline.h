@@ -58,6 +58,10 @@ struct Expectation {
 /* As an event spells it. */
 std::string command_name(drive_command_kind kind);
 
+/* One event of a running board, which has no time: the keys of an inline table, as
+   `load_torque_Nm = 0.1, ramp_s = 0.5`. Of commands, power-cycle alone; throws InputError. */
+Event read_knob(const std::string &line, const std::string &name);
+
 /* The arrays `event`, sorted by time, `expect` and `report` of a scenario; throw InputError. */
 std::vector<Event> read_events(TableReader &scenario, double duration_s);
 std::vector<Expectation> read_expectations(TableReader &scenario, double duration_s);

@@ -250,9 +250,9 @@ void VirtualBoard::advance()
     board.stops_at_sample = false;
 }
 
-void VirtualBoard::type(const std::string &line)
+void VirtualBoard::send(const std::string &bytes)
 {
-    impl_->typed += line + '\n';
+    impl_->typed += bytes;
 }
 
 /*

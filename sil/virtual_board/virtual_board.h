@@ -45,7 +45,7 @@ class VirtualBoard : public sil::DriveBoard
                  const std::string &numeric, const drive_settings &settings);
     ~VirtualBoard() override;
 
-    void type(const std::string &line) override;
+    void send(const std::string &bytes) override;
     void power_cycle() override;
     void short_circuit(int leg, double current_A) override;
     void stall_control_interrupt(double until_s) override;

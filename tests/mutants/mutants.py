@@ -17,6 +17,7 @@ CONTROL = "firmware/control/"
 MOTION = "firmware/motion/"
 DRIVE = "firmware/drive/"
 APPLICATION = "firmware/application/"
+LINK = "firmware/link/"
 
 MUTANTS = [
     # ---- motor ----
@@ -915,4 +916,23 @@ MUTANTS = [
     Mutant("firmware/design/hold_check.c", "hold_bearing",
            "the_hold_is_damped_as_its_sampled_loop_is",
            "loop.at[INTEGRAL][SPEED] = -integral * damping_As_rad;", ""),
+    # ---- link ----
+    Mutant(LINK + "slcan.c", "slcan", "what_is_no_frame_is_refused", "id > 0x7ffu", "false"),
+    Mutant(LINK + "sdo.c", "canopen", "a_setting_is_written_in_segments",
+           "    sdo->toggle ^= TOGGLE;\n    if ((request->data[0] & LAST)",
+           "    if ((request->data[0] & LAST)"),
+    Mutant(LINK + "objects.c", "canopen", "what_is_not_there_is_said_by_its_abort_code",
+           "*sub_missing = *sub_missing || row->index == of_rows;", ""),
+    Mutant(LINK + "pdo.c", "canopen", "a_mapping_that_cannot_be_is_refused",
+           "bits > 64u", "bits > 640u"),
+    Mutant(LINK + "pdo.c", "canopen", "pdos_wait_for_sync",
+           "pdo->waits = pdo->type < PDO_EVENT;", "pdo->waits = false;"),
+    Mutant(LINK + "link.c", "cia402", "a_lost_heartbeat_stops_and_switches_off",
+           "    cia402_lose(application);\n}\n\nstatic void hear", "}\n\nstatic void hear"),
+    Mutant(LINK + "cia402.c", "cia402", "a_fault_stays_until_it_is_reset",
+           "(risen & RESET_FAULT) != 0u && ", ""),
+    Mutant(LINK + "axis_motion.c", "cia402", "a_set_point_is_acknowledged_and_reached",
+           "    motion->acknowledged = true;\n", ""),
+    Mutant(LINK + "axis_stream.c", "cia402", "cyclic_positions_that_do_not_come_are_made_up_for",
+           "stream->owed < OWED_MAX", "false"),
 ]

@@ -20,7 +20,8 @@ add_custom_target(replays) # what tools/cycles counts
 foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
   add_library(firmware_image_${numeric} OBJECT ${PROJECT_SOURCE_DIR}/hal/sil/firmware_image.c)
   target_link_libraries(firmware_image_${numeric} PUBLIC firmware_${numeric})
-  target_compile_definitions(firmware_image_${numeric} PRIVATE FIRMWARE_IMAGE_NUMERIC=${numeric})
+  target_compile_definitions(firmware_image_${numeric} PRIVATE FIRMWARE_IMAGE_NUMERIC=${numeric}
+    STEADYSTEP_WITHOUT_LINK) # a replay has no bus, and no memory for one
   set(firmware ${CMAKE_CURRENT_BINARY_DIR}/firmware_${numeric}.o)
   firmware_object(${firmware} $<TARGET_OBJECTS:firmware_image_${numeric}>
                               $<TARGET_OBJECTS:firmware_${numeric}>)
@@ -37,11 +38,11 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
     list(FILTER unit_tests EXCLUDE REGEX "test_encoder_alignment\\.c$")
   endif()
   # An application, its test's board and the stack of the design take more than 16 KB.
-  set(large_tests application console setting_lines settings_in_motion)
+  set(large_tests application canopen cia402 console setting_lines settings_in_motion)
   # In fixed point each test runs on one core: the M4F has the long ones, the M0+ all others.
   # Arithmetic, which knows the core, runs on both. The replays run the code of some of the long ones:
   # those are left to tools/test --full.
-  set(long_tests "application|console|setting_lines|settings_in_motion|initial_position|invariant_ekf|motion|sliding_mode")
+  set(long_tests "application|canopen|cia402|console|setting_lines|settings_in_motion|initial_position|invariant_ekf|motion|sliding_mode")
   if(STEADYSTEP_CORE STREQUAL m0plus)
     list(FILTER unit_tests EXCLUDE REGEX "test_(${long_tests})\\.c$")
   elseif(numeric STREQUAL fixed)

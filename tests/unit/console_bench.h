@@ -78,6 +78,11 @@ static inline void bench_watchdog_feed(void *context)
     bench_interrupts_between(b);
 }
 
+static inline uint64_t bench_time_us(void *context)
+{
+    return 100u * (uint64_t)((struct console_bench *)context)->period;
+}
+
 static inline const char *bench_start_cause(void *context)
 {
     (void)context;
@@ -151,6 +156,7 @@ static inline struct hal bench_board(const struct hal_facts *facts)
         .version = "version",
         .bridge_enable = bench_bridge_enable,
         .bridge_disable = bench_bridge_disable,
+        .time_us = bench_time_us,
         .watchdog_feed = bench_watchdog_feed,
         .start_cause = bench_start_cause,
         .stream_read = bench_stream_read,

@@ -19,8 +19,8 @@ static void test_every_signal_has_an_index_of_its_own_and_shows_its_member(void)
     signals.holding = true;
     for (int i = 0; i < SIGNALS; i++) {
         for (int j = 0; j < i; j++) {
-            TEST_ASSERT_NOT_EQUAL(signal_text((enum drive_signal)i)->index,
-                                  signal_text((enum drive_signal)j)->index);
+            TEST_ASSERT_NOT_EQUAL(signal_at((enum drive_signal)i)->index,
+                                  signal_at((enum drive_signal)j)->index);
         }
     }
     TEST_ASSERT_TRUE(signal_get(&signals, signal_at(SIGNAL_theta_est_rad)) == 0.5);
@@ -28,20 +28,21 @@ static void test_every_signal_has_an_index_of_its_own_and_shows_its_member(void)
     TEST_ASSERT_EQUAL_STRING("fault", signal_word(signal_at(SIGNAL_state), DRIVE_FAULT));
     TEST_ASSERT_EQUAL_STRING("yes", signal_word(signal_at(SIGNAL_holding), 1.0));
     TEST_ASSERT_NULL(signal_word(signal_at(SIGNAL_i_d_A), 1.0));
-    TEST_ASSERT_EQUAL_HEX16(0x603f, signal_text(SIGNAL_fault)->index);
+    TEST_ASSERT_EQUAL_HEX16(0x603f, signal_at(SIGNAL_fault)->index);
 }
 
 static void test_every_fault_has_a_name_and_a_code_of_its_own(void)
 {
     for (int i = 0; i < DRIVE_FAULTS; i++) {
         for (int j = 0; j < i; j++) {
-            TEST_ASSERT_NOT_EQUAL(fault_code((enum drive_fault)i), fault_code((enum drive_fault)j));
+            TEST_ASSERT_NOT_EQUAL(fault_at((enum drive_fault)i)->code,
+                                  fault_at((enum drive_fault)j)->code);
             TEST_ASSERT_NOT_EQUAL(0, strcmp(drive_fault_name((enum drive_fault)i),
                                             drive_fault_name((enum drive_fault)j)));
         }
     }
-    TEST_ASSERT_EQUAL_HEX16(0x0000, fault_code(DRIVE_FAULT_NONE));
-    TEST_ASSERT_EQUAL_HEX16(0x2310, fault_code(DRIVE_FAULT_OVERCURRENT));
+    TEST_ASSERT_EQUAL_HEX16(0x0000, fault_at(DRIVE_FAULT_NONE)->code);
+    TEST_ASSERT_EQUAL_HEX16(0x2310, fault_at(DRIVE_FAULT_OVERCURRENT)->code);
 }
 
 static void test_every_command_has_a_name_and_a_number_of_its_own(void)

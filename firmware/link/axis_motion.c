@@ -1,0 +1,331 @@
+#include "firmware/link/axis_motion.h"
+
+#include "firmware/application/application.h"
+#include "firmware/design/elementary.h"
+#include "firmware/drive/board_limits.h"
+#include "firmware/drive/interrupt_view.h"
+#include "firmware/link/axis_stream.h"
+#include "firmware/link/link.h"
+
+/* Bits of the controlword, in the modes that have them. */
+enum { NEW_SET_POINT = 0x10, START_HOMING = 0x10, AT_ONCE = 0x20, RELATIVE = 0x40, HALT = 0x100 };
+
+/* Bits of the statusword. */
+enum { REACHED = 0x0400, LIMITED = 0x0800, OF_MODE = 0x1000, OFF = 0x2000 };
+
+/* A ramp's jerk phases: a quarter of it each, as the console's moves, but no shorter. */
+static const float jerk_share = 0.25f;
+static const float jerk_min_s = 2e-3f;
+
+static struct axis_motion *motion_of(struct application *application)
+{
+    return &application->link->axis.motion;
+}
+
+bool axis_motion_rests(const struct application *application)
+{
+    const struct drive *drive = &application->drive;
+
+    return !interrupt_view_moves(drive) && !command_queue_holds_any(&drive->commands);
+}
+
+/* ---- limits ---- */
+
+/* Speeds and accelerations are in single precision, which the core computes by itself. */
+
+/* Where the drive refuses, rad/s and rad/s^2, and a little less. */
+float axis_motion_speed_limit(const struct application *application)
+{
+    const struct drive *drive = &application->drive;
+
+    return 0.999f * (float)board_limits_speed(&drive->settings, drive->board->facts).rad_s;
+}
+
+float axis_motion_acceleration_limit(const struct application *application)
+{
+    const struct drive_settings *settings = &application->drive.settings;
+
+    return 0.999f * (float)settings->current_limit_A * (float)settings->motor.torque_constant_Nm_A /
+           (float)settings->motor.inertia_kgm2;
+}
+
+float axis_motion_limited(struct application *application, float value, float least, float most)
+{
+    if (value >= least && value <= most) {
+        return value;
+    }
+    motion_of(application)->limited = true;
+    return value < least ? least : most;
+}
+
+static float units(const struct application *application)
+{
+    return (float)cia402_unit_rad(&application->link->objects);
+}
+
+static void put_default(uint32_t *units, float value)
+{
+    if (*units == 0u) {
+        *units = value < 4e9f ? (uint32_t)value : 4000000000u;
+    }
+}
+
+/* A share of what the motor can, as the console's moves (default_move.h); what is given stays. */
+void axis_motion_put_defaults(struct application *application)
+{
+    struct link_objects *objects = &application->link->objects;
+    const float unit_rad = units(application);
+    const float acceleration = axis_motion_acceleration_limit(application) / unit_rad;
+
+    put_default(&objects->profile_velocity,
+                0.25f * axis_motion_speed_limit(application) / unit_rad);
+    put_default(&objects->profile_acceleration, 0.25f * acceleration);
+    put_default(&objects->quick_stop_deceleration, 0.5f * acceleration);
+}
+
+/* Acceleration and jerk of a command that goes to `speed_rad_s`; false: the drive refuses it. */
+static bool post(struct application *application, struct drive_command *command, float speed_rad_s,
+                 uint32_t acceleration_units)
+{
+    const float acceleration =
+        axis_motion_limited(application, units(application) * (float)acceleration_units, 1e-3f,
+                            axis_motion_acceleration_limit(application));
+    const float jerk_s =
+        jerk_share * (speed_rad_s < 0.0f ? -speed_rad_s : speed_rad_s) / acceleration;
+
+    command->speed_rad_s = (double)speed_rad_s;
+    command->acceleration_rad_s2 = (double)acceleration;
+    command->jerk_rad_s3 = (double)(acceleration / (jerk_s > jerk_min_s ? jerk_s : jerk_min_s));
+    return cia402_command(application, command);
+}
+
+void axis_motion_brake(struct application *application)
+{
+    struct drive_command brake = {.kind = DRIVE_COMMAND_VELOCITY};
+
+    motion_of(application)->waits = false;
+    motion_of(application)->speed_rad_s = 0.0f;
+    if (!axis_motion_rests(application) &&
+        !post(application, &brake, 0.0f, application->link->objects.quick_stop_deceleration)) {
+        brake.kind = DRIVE_COMMAND_STOP;
+        (void)cia402_command(application, &brake);
+    }
+}
+
+void axis_motion_start(struct application *application)
+{
+    struct link *link = application->link;
+
+    link->axis.mode = link->objects.mode;
+    *motion_of(application) = (struct axis_motion){
+        .target_rad = cia402_signals(application)->theta_ref_rad,
+        .reached = true,
+    };
+    link->axis.stream.last_rad = motion_of(application)->target_rad;
+    link->axis.stream.before_rad = motion_of(application)->target_rad;
+}
+
+/* ---- profile position ---- */
+
+double axis_motion_target(struct application *application)
+{
+    const struct link *link = application->link;
+    struct axis_motion *motion = motion_of(application);
+    const bool relative =
+        link->axis.mode == CIA402_PROFILE_POSITION && (link->axis.controlword & RELATIVE) != 0u;
+    const double unit_rad = cia402_unit_rad(&link->objects);
+    const double from = relative ? (motion->target_rad - link->axis.zero_rad) / unit_rad : 0.0;
+    double target = from + (double)link->objects.target_position;
+
+    if (target < (double)link->objects.position_least) {
+        motion->limited = true;
+        target = (double)link->objects.position_least;
+    } else if (target > (double)link->objects.position_most) {
+        motion->limited = true;
+        target = (double)link->objects.position_most;
+    }
+    return link->axis.zero_rad + unit_rad * target;
+}
+
+static void take_set_point(struct application *application)
+{
+    struct axis_motion *motion = motion_of(application);
+
+    if (motion->waits) {
+        return; /* one is acknowledged already */
+    }
+    motion->limited = false;
+    motion->target_rad = axis_motion_target(application);
+    motion->waits = true;
+    motion->at_once = (application->link->axis.controlword & AT_ONCE) != 0u;
+    motion->acknowledged = true;
+    motion->reached = false;
+    motion->in_window_ms = 0;
+}
+
+static void go_to_target(struct application *application)
+{
+    const struct link_objects *objects = &application->link->objects;
+    struct axis_motion *motion = motion_of(application);
+    struct drive_command retarget = {.kind = DRIVE_COMMAND_RETARGET,
+                                     .position_rad = motion->target_rad};
+
+    if (!motion->waits || motion->halted || !(motion->at_once || axis_motion_rests(application))) {
+        return;
+    }
+    const float speed =
+        axis_motion_limited(application, units(application) * (float)objects->profile_velocity,
+                            1e-6f, axis_motion_speed_limit(application));
+
+    motion->limited =
+        !post(application, &retarget, speed, objects->profile_acceleration) || motion->limited;
+    motion->waits = false;
+}
+
+/* ---- profile velocity ---- */
+
+static void go_at_speed(struct application *application)
+{
+    const struct link_objects *objects = &application->link->objects;
+    struct axis_motion *motion = motion_of(application);
+    const float most = axis_motion_speed_limit(application);
+    struct drive_command velocity = {.kind = DRIVE_COMMAND_VELOCITY};
+    float speed = 0.0f;
+
+    motion->limited = false;
+    if (!motion->halted) {
+        speed = axis_motion_limited(
+            application, units(application) * (float)objects->target_velocity, -most, most);
+    }
+    if (speed != motion->speed_rad_s && !command_queue_holds_any(&application->drive.commands) &&
+        post(application, &velocity, speed, objects->profile_acceleration)) {
+        motion->speed_rad_s = speed;
+    }
+}
+
+/* ---- all ---- */
+
+void axis_motion_control(struct application *application, uint16_t risen)
+{
+    struct cia402 *axis = &application->link->axis;
+    struct axis_motion *motion = &axis->motion;
+    const bool halted = (axis->controlword & HALT) != 0u;
+
+    if (halted && !motion->halted) {
+        axis_motion_brake(application);
+    } else if (!halted && motion->halted && axis->mode == CIA402_PROFILE_POSITION) {
+        motion->waits = !motion->reached; /* goes on */
+    }
+    motion->halted = halted;
+    if ((risen & NEW_SET_POINT) != 0u && axis->mode == CIA402_PROFILE_POSITION) {
+        take_set_point(application);
+    } else if ((risen & START_HOMING) != 0u && axis->mode == CIA402_HOMING) {
+        axis->zero_rad =
+            cia402_signals(application)->theta_ref_rad -
+            cia402_unit_rad(&application->link->objects) * application->link->objects.home_offset;
+        motion->homed = true;
+    }
+}
+
+/* A mode begins at rest. */
+static bool changes_mode(struct application *application)
+{
+    struct link *link = application->link;
+
+    if (link->objects.mode == link->axis.mode) {
+        return false;
+    }
+    if (axis_motion_rests(application)) {
+        axis_motion_start(application);
+    } else if (!motion_of(application)->halted) {
+        axis_motion_brake(application);
+        motion_of(application)->halted = true;
+    }
+    return true;
+}
+
+void axis_motion_background(struct application *application)
+{
+    struct cia402 *axis = &application->link->axis;
+
+    if (changes_mode(application)) {
+        return;
+    }
+    if (axis->mode == CIA402_PROFILE_POSITION) {
+        go_to_target(application);
+        axis->motion.acknowledged =
+            axis->motion.waits ||
+            (axis->motion.acknowledged && (axis->controlword & NEW_SET_POINT) != 0u);
+    } else if (axis->mode == CIA402_PROFILE_VELOCITY) {
+        go_at_speed(application);
+    } else if (axis->mode == CIA402_CYCLIC_POSITION) {
+        axis_stream_background(application);
+    }
+}
+
+void axis_motion_cycle(struct application *application)
+{
+    const struct cia402 *axis = &application->link->axis;
+
+    if (axis->state == CIA402_OPERATION_ENABLED && axis->mode == CIA402_CYCLIC_POSITION) {
+        axis_stream_take(application);
+    }
+}
+
+/* Milliseconds in a row, up to `most`. */
+static bool lasts(uint16_t *ms, bool so, uint16_t most)
+{
+    *ms = (uint16_t)(so ? *ms + (*ms < most ? 1u : 0u) : 0u);
+    return so && *ms >= most;
+}
+
+void axis_motion_look(struct application *application)
+{
+    const struct link *link = application->link;
+    struct axis_motion *motion = motion_of(application);
+    const struct drive_signals *now = cia402_signals(application);
+    const float unit_rad = units(application);
+    const float off_rad = (float)magnitude(now->theta_ref_rad - now->theta_est_rad);
+    const float away_rad = (float)magnitude(motion->target_rad - now->theta_est_rad);
+    const bool there = !motion->waits && axis_motion_rests(application) &&
+                       away_rad <= unit_rad * (float)link->objects.target_window;
+
+    motion->reached = lasts(&motion->in_window_ms, there, link->objects.target_ms);
+    motion->off = lasts(&motion->off_ms, off_rad > unit_rad * (float)link->objects.following_window,
+                        link->objects.following_ms);
+}
+
+/* At the speed that was asked for, by the reference. */
+static bool at_speed(struct application *application)
+{
+    const struct axis_motion *motion = motion_of(application);
+    const float off = (float)cia402_signals(application)->omega_ref_rad_s - motion->speed_rad_s;
+    const float least =
+        1e-5f + 1e-3f * (motion->speed_rad_s < 0.0f ? -motion->speed_rad_s : motion->speed_rad_s);
+
+    return off <= least && -off <= least && !command_queue_holds_any(&application->drive.commands);
+}
+
+uint16_t axis_motion_status(struct application *application)
+{
+    const struct cia402 *axis = &application->link->axis;
+    const struct axis_motion *motion = &axis->motion;
+    const bool rests = axis_motion_rests(application);
+    bool reached = motion->halted ? rests : motion->reached;
+    bool of_mode = motion->acknowledged;
+    bool off = motion->off;
+
+    if (axis->mode == CIA402_PROFILE_VELOCITY) {
+        reached = at_speed(application);
+        of_mode = rests;
+        off = false;
+    } else if (axis->mode == CIA402_HOMING) {
+        reached = true;
+        of_mode = motion->homed;
+        off = false;
+    } else if (axis->mode == CIA402_CYCLIC_POSITION) {
+        of_mode = !motion->halted && axis->stream.owed == 0u; /* follows what is asked for */
+    }
+    return (uint16_t)((reached ? REACHED : 0u) | (motion->limited ? LIMITED : 0u) |
+                      (of_mode ? OF_MODE : 0u) | (off ? OFF : 0u));
+}

@@ -1,0 +1,45 @@
+/* The modes of CiA 402, in state OPERATION ENABLED, as commands of the drive. */
+#ifndef STEADYSTEP_AXIS_MOTION_H
+#define STEADYSTEP_AXIS_MOTION_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct application;
+
+/* Profile speed, acceleration and quick stop of the motor's settings, where none is given. */
+void axis_motion_put_defaults(struct application *application);
+
+/* OPERATION ENABLED begins. */
+void axis_motion_start(struct application *application);
+
+/* Bits of the controlword that have risen. */
+void axis_motion_control(struct application *application, uint16_t risen);
+
+/* Background, all the time; once in a millisecond: windows. */
+void axis_motion_background(struct application *application);
+void axis_motion_look(struct application *application);
+
+/* To rest, with the quick stop's deceleration. */
+void axis_motion_brake(struct application *application);
+
+/* A target position has come: of cyclic synchronous position. */
+void axis_motion_cycle(struct application *application);
+
+/* The target position in rad, within the software limits. */
+double axis_motion_target(struct application *application);
+
+/* What the drive can: rad/s, rad/s^2. */
+float axis_motion_speed_limit(const struct application *application);
+float axis_motion_acceleration_limit(const struct application *application);
+
+/* Cut to limits, which shows in the statusword. */
+float axis_motion_limited(struct application *application, float value, float least, float most);
+
+/* Whether the reference rests and nothing waits. */
+bool axis_motion_rests(const struct application *application);
+
+/* Bits 10 to 13 of the statusword. */
+uint16_t axis_motion_status(struct application *application);
+
+#endif

@@ -1,0 +1,29 @@
+/* A data frame of a CAN bus with an identifier of 11 bits. */
+#ifndef STEADYSTEP_CAN_FRAME_H
+#define STEADYSTEP_CAN_FRAME_H
+
+#include <stdint.h>
+#include <string.h>
+
+struct can_frame {
+    uint16_t id;
+    uint8_t length; /* bytes of data, 0...8 */
+    uint8_t data[8];
+};
+
+/* The bytes of a whole number as CANopen has them: the lowest first. Every core that this runs on
+   keeps it so, too. */
+static inline uint32_t can_get(const uint8_t *at, size_t bytes)
+{
+    uint32_t value = 0;
+
+    memcpy(&value, at, bytes);
+    return value;
+}
+
+static inline void can_put(uint8_t *at, uint32_t value, size_t bytes)
+{
+    memcpy(at, &value, bytes);
+}
+
+#endif

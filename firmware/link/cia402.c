@@ -1,0 +1,355 @@
+#include "firmware/link/cia402.h"
+
+#include "firmware/application/application.h"
+#include "firmware/drive/interrupt_view.h"
+#include "firmware/link/axis_motion.h"
+#include "firmware/link/link.h"
+
+/* Bits of the controlword. */
+enum {
+    SWITCH_ON = 0x01,
+    ENABLE_VOLTAGE = 0x02,
+    NO_QUICK_STOP = 0x04,
+    ENABLE_OPERATION = 0x08,
+    RESET_FAULT = 0x80
+};
+
+enum { VOLTAGE_ENABLED = 0x0010, WARNING = 0x0080, REMOTE = 0x0200 };
+
+/* What a controlword asks for, its reset of a fault apart. */
+enum request {
+    REQUEST_DISABLE_VOLTAGE,
+    REQUEST_QUICK_STOP,
+    REQUEST_SHUTDOWN,
+    REQUEST_SWITCH_ON,
+    REQUEST_ENABLE_OPERATION
+};
+
+enum { STAYS_IN_QUICK_STOP = 5 }; /* option codes from here on */
+
+static enum request request_of(uint16_t word)
+{
+    if ((word & ENABLE_VOLTAGE) == 0u) {
+        return REQUEST_DISABLE_VOLTAGE;
+    }
+    if ((word & NO_QUICK_STOP) == 0u) {
+        return REQUEST_QUICK_STOP;
+    }
+    if ((word & SWITCH_ON) == 0u) {
+        return REQUEST_SHUTDOWN;
+    }
+    return (word & ENABLE_OPERATION) == 0u ? REQUEST_SWITCH_ON : REQUEST_ENABLE_OPERATION;
+}
+
+bool cia402_command(struct application *application, struct drive_command *command)
+{
+    const uint32_t period = interrupt_view_period(&application->drive);
+    char refusal[DRIVE_ERROR_TEXT];
+
+    command->at_period = period;
+    return application_command(application, command, period, refusal);
+}
+
+const struct drive_signals *cia402_signals(struct application *application)
+{
+    struct cia402 *axis = &application->link->axis;
+    const uint32_t period = interrupt_view_period(&application->drive);
+
+    if (period != axis->signals_in) {
+        axis->signals_in = period;
+        drive_signals_read(&application->drive, &axis->signals);
+    }
+    return &axis->signals;
+}
+
+/* ---- states ---- */
+
+static void switch_off(struct application *application, enum cia402_state state)
+{
+    struct drive_command disable = {.kind = DRIVE_COMMAND_DISABLE};
+    struct cia402 *axis = &application->link->axis;
+
+    (void)cia402_command(application, &disable);
+    axis->asked = false;
+    axis->lost = false;
+    axis->state = (uint8_t)state;
+}
+
+/* Once, as soon as the bridge is off. */
+static void switch_on(struct application *application, enum drive_state drive)
+{
+    struct drive_command enable = {.kind = DRIVE_COMMAND_ENABLE};
+    struct cia402 *axis = &application->link->axis;
+
+    if (drive == DRIVE_SWITCH_ON_DISABLED && !axis->asked && !axis->refused) {
+        axis->asked = cia402_command(application, &enable);
+        axis->refused = !axis->asked;
+    } else if (drive == DRIVE_ALIGNING || drive == DRIVE_OPERATION_ENABLED) {
+        axis->state = CIA402_SWITCHED_ON;
+    }
+}
+
+static void leave_ready(struct application *application, enum drive_state drive,
+                        enum request request)
+{
+    struct cia402 *axis = &application->link->axis;
+
+    if (request >= REQUEST_SWITCH_ON) {
+        switch_on(application, drive);
+    } else if (request != REQUEST_SHUTDOWN || axis->asked) {
+        switch_off(application, request == REQUEST_SHUTDOWN ? CIA402_READY_TO_SWITCH_ON
+                                                            : CIA402_SWITCH_ON_DISABLED);
+    }
+}
+
+static void leave_switched_on(struct application *application, enum drive_state drive,
+                              enum request request)
+{
+    struct cia402 *axis = &application->link->axis;
+
+    if (request == REQUEST_ENABLE_OPERATION && drive == DRIVE_OPERATION_ENABLED) {
+        axis->state = CIA402_OPERATION_ENABLED;
+        axis_motion_start(application);
+    } else if (request < REQUEST_SWITCH_ON) {
+        switch_off(application, request == REQUEST_SHUTDOWN ? CIA402_READY_TO_SWITCH_ON
+                                                            : CIA402_SWITCH_ON_DISABLED);
+    }
+}
+
+static void leave_operation(struct application *application, enum request request)
+{
+    struct cia402 *axis = &application->link->axis;
+
+    switch (request) {
+    case REQUEST_DISABLE_VOLTAGE:
+        switch_off(application, CIA402_SWITCH_ON_DISABLED);
+        break;
+    case REQUEST_SHUTDOWN:
+        switch_off(application, CIA402_READY_TO_SWITCH_ON);
+        break;
+    case REQUEST_QUICK_STOP:
+        axis->state = CIA402_QUICK_STOP_ACTIVE;
+        axis_motion_brake(application);
+        break;
+    case REQUEST_SWITCH_ON:
+        axis->state = CIA402_SWITCHED_ON;
+        axis_motion_brake(application);
+        break;
+    default:
+        break;
+    }
+}
+
+static void leave_quick_stop(struct application *application, enum request request)
+{
+    struct cia402 *axis = &application->link->axis;
+    const bool stays =
+        !axis->lost && application->link->objects.quick_stop_option >= STAYS_IN_QUICK_STOP;
+
+    if (request == REQUEST_DISABLE_VOLTAGE || (!stays && axis_motion_rests(application))) {
+        switch_off(application, CIA402_SWITCH_ON_DISABLED);
+    } else if (stays && request == REQUEST_ENABLE_OPERATION) {
+        axis->state = CIA402_OPERATION_ENABLED;
+        axis_motion_start(application);
+    }
+}
+
+/* What the drive has done by itself. */
+static void follow(struct cia402 *axis, enum drive_state drive)
+{
+    const bool powered = axis->state == CIA402_SWITCHED_ON ||
+                         axis->state == CIA402_OPERATION_ENABLED ||
+                         axis->state == CIA402_QUICK_STOP_ACTIVE;
+
+    if (drive == DRIVE_FAULT) {
+        axis->state = CIA402_FAULT;
+        axis->asked = false;
+    } else if (axis->state == CIA402_FAULT || (powered && drive == DRIVE_SWITCH_ON_DISABLED)) {
+        axis->state = CIA402_SWITCH_ON_DISABLED;
+        axis->asked = false;
+        axis->lost = false;
+    }
+}
+
+void cia402_background(struct application *application)
+{
+    struct cia402 *axis = &application->link->axis;
+    const enum drive_state drive = interrupt_view_state(&application->drive);
+    const enum request request = request_of(axis->controlword);
+
+    follow(axis, drive);
+    switch (axis->state) {
+    case CIA402_SWITCH_ON_DISABLED:
+        if (request == REQUEST_SHUTDOWN) {
+            axis->state = CIA402_READY_TO_SWITCH_ON;
+        }
+        break;
+    case CIA402_READY_TO_SWITCH_ON:
+        leave_ready(application, drive, request);
+        break;
+    case CIA402_SWITCHED_ON:
+        leave_switched_on(application, drive, request);
+        break;
+    case CIA402_OPERATION_ENABLED:
+        leave_operation(application, request);
+        break;
+    case CIA402_QUICK_STOP_ACTIVE:
+        leave_quick_stop(application, request);
+        break;
+    default:
+        break;
+    }
+    if (axis->state == CIA402_OPERATION_ENABLED) {
+        axis_motion_background(application);
+    } else {
+        axis->mode = application->link->objects.mode;
+    }
+}
+
+void cia402_control(struct application *application, uint16_t word)
+{
+    struct cia402 *axis = &application->link->axis;
+    const uint16_t risen = (uint16_t)(word & ~axis->controlword);
+
+    axis->refused = axis->refused && word == axis->controlword;
+    axis->controlword = word;
+    if ((risen & RESET_FAULT) != 0u && axis->state == CIA402_FAULT) {
+        struct drive_command disable = {.kind = DRIVE_COMMAND_DISABLE};
+
+        (void)cia402_command(application, &disable);
+    }
+    if (axis->state == CIA402_OPERATION_ENABLED) {
+        axis_motion_control(application, risen);
+    }
+    cia402_background(application);
+}
+
+void cia402_look(struct application *application)
+{
+    if (application->link->axis.state == CIA402_OPERATION_ENABLED) {
+        axis_motion_look(application);
+    }
+}
+
+void cia402_lose(struct application *application)
+{
+    struct cia402 *axis = &application->link->axis;
+
+    if (axis->state == CIA402_OPERATION_ENABLED) {
+        axis->state = CIA402_QUICK_STOP_ACTIVE;
+        axis_motion_brake(application);
+        axis->lost = true;
+        axis->controlword = ENABLE_VOLTAGE;
+    } else if (axis->state == CIA402_SWITCHED_ON) {
+        switch_off(application, CIA402_SWITCH_ON_DISABLED);
+        axis->controlword = 0;
+    }
+}
+
+/* A drive that the console has enabled is switched on, and waits for "enable operation". */
+void cia402_start(struct application *application)
+{
+    struct cia402 *axis = &application->link->axis;
+    const enum drive_state drive = interrupt_view_state(&application->drive);
+    const double zero_rad = axis->zero_rad;
+
+    *axis = (struct cia402){
+        .zero_rad = zero_rad,
+        .mode = application->link->objects.mode,
+        .signals_in = interrupt_view_period(&application->drive) - 1u,
+        .state = drive == DRIVE_FAULT                ? CIA402_FAULT
+                 : drive == DRIVE_SWITCH_ON_DISABLED ? CIA402_SWITCH_ON_DISABLED
+                                                     : CIA402_SWITCHED_ON,
+    };
+    axis->controlword =
+        axis->state == CIA402_SWITCHED_ON ? SWITCH_ON | ENABLE_VOLTAGE | NO_QUICK_STOP : 0u;
+    axis_motion_put_defaults(application);
+}
+
+/* ---- objects ---- */
+
+static uint16_t statusword(struct application *application)
+{
+    const struct cia402 *axis = &application->link->axis;
+    const enum drive_state drive = interrupt_view_state(&application->drive);
+    const bool doubtful = interrupt_view_synchronism(&application->drive) != DRIVE_SYNCHRONISM_SURE;
+    uint16_t status = axis->state | REMOTE;
+
+    status |= drive != DRIVE_SWITCH_ON_DISABLED && drive != DRIVE_FAULT ? VOLTAGE_ENABLED : 0u;
+    status |= axis->refused || (axis->state == CIA402_OPERATION_ENABLED && doubtful) ? WARNING : 0u;
+    if (axis->state == CIA402_OPERATION_ENABLED) {
+        status |= axis_motion_status(application);
+    }
+    return status;
+}
+
+double cia402_unit_rad(const struct link_objects *objects)
+{
+    return 6.283185307179586 * (double)objects->feed_shaft * (double)objects->gear_motor /
+           ((double)objects->feed * (double)objects->gear_shaft);
+}
+
+/* A whole number of 32 bits, rounded; the nearest one where it is beyond. */
+static int32_t rounded(double value)
+{
+    if (value >= 2147483647.0) {
+        return INT32_MAX;
+    }
+    if (value <= -2147483648.0) {
+        return INT32_MIN;
+    }
+    return (int32_t)(value < 0.0 ? value - 0.5 : value + 0.5);
+}
+
+/* In units; of those that are measured in them. */
+static double quantity(struct application *application, uint16_t index)
+{
+    const struct link *link = application->link;
+    const struct drive_signals *now = cia402_signals(application);
+    double less = link->axis.zero_rad;
+    double value;
+
+    switch (index) {
+    case 0x6062:
+        value = now->theta_ref_rad;
+        break;
+    case 0x6064:
+        value = now->theta_est_rad;
+        break;
+    case 0x606b:
+        value = now->omega_ref_rad_s;
+        less = 0.0;
+        break;
+    case 0x606c:
+        value = now->omega_est_rad_s;
+        less = 0.0;
+        break;
+    case 0x60f4:
+        value = now->theta_ref_rad;
+        less = now->theta_est_rad;
+        break;
+    default:
+        return 1e3 * now->bus_V;
+    }
+    return (value - less) / cia402_unit_rad(&link->objects);
+}
+
+void cia402_ask(struct application *application, const struct object *object, uint8_t *value)
+{
+    const struct cia402 *axis = &application->link->axis;
+
+    switch (object->index) {
+    case 0x6040:
+        can_put(value, axis->controlword, 2);
+        break;
+    case 0x6041:
+        can_put(value, statusword(application), 2);
+        break;
+    case 0x6061:
+        can_put(value, (uint8_t)axis->mode, 1);
+        break;
+    default:
+        can_put(value, (uint32_t)rounded(quantity(application, object->index)), 4);
+        break;
+    }
+}

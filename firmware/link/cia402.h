@@ -1,0 +1,90 @@
+/*
+ * The drive profile, CiA 402 (IEC 61800-7-201): its state machine on the drive's own, and the modes
+ * profile position (1), profile velocity (3), homing on the present position (6) and cyclic
+ * synchronous position (8), on the drive's own commands (axis_motion.c).
+ *
+ * Where enabling belongs: "switch on" begins it, SWITCHED ON shows once the bridge is on, and
+ * OPERATION ENABLED, if that was asked for, when the drive is ready, 0.35 to 0.45 s behind "switch
+ * on" without an encoder. From SWITCHED ON on the rotor is held, and drawn in before.
+ */
+#ifndef STEADYSTEP_CIA402_H
+#define STEADYSTEP_CIA402_H
+
+#include "firmware/interface/drive_interface.h"
+#include "firmware/link/axis_stream.h"
+#include "firmware/link/objects.h"
+
+/* By their bits of the statusword. */
+enum cia402_state {
+    CIA402_SWITCH_ON_DISABLED = 0x40,
+    CIA402_READY_TO_SWITCH_ON = 0x21,
+    CIA402_SWITCHED_ON = 0x23,
+    CIA402_OPERATION_ENABLED = 0x27,
+    CIA402_QUICK_STOP_ACTIVE = 0x07,
+    CIA402_FAULT = 0x08
+};
+
+enum cia402_mode {
+    CIA402_PROFILE_POSITION = 1,
+    CIA402_PROFILE_VELOCITY = 3,
+    CIA402_HOMING = 6,
+    CIA402_CYCLIC_POSITION = 8
+};
+
+struct application;
+
+/* What the motion of a mode goes by: axis_motion.c. */
+struct axis_motion {
+    double target_rad; /* of the last set-point */
+    float speed_rad_s; /* as commanded last, of profile velocity */
+    uint16_t in_window_ms, off_ms;
+    bool waits;        /* a set-point has not begun */
+    bool at_once;      /* it preempts what is in motion */
+    bool acknowledged; /* bit 12 of profile position */
+    bool reached;
+    bool limited; /* a limit has cut what was asked for */
+    bool off;     /* beyond the following error window */
+    bool homed;
+    bool halted;
+};
+
+struct cia402 {
+    double zero_rad; /* where the drive is when its position is 0 */
+    uint16_t controlword;
+    uint8_t state;       /* enum cia402_state */
+    int8_t mode;         /* in force */
+    bool asked;          /* enabling has begun on behalf of "switch on" */
+    bool refused;        /* by the drive; until the controlword changes */
+    bool lost;           /* the connection: off as soon as the reference rests */
+    uint32_t signals_in; /* period of `signals` */
+    struct axis_motion motion;
+    struct axis_stream stream;
+    struct drive_signals signals;
+};
+
+/* The channel opens: as the drive is. */
+void cia402_start(struct application *application);
+
+/* A controlword has come. */
+void cia402_control(struct application *application, uint16_t word);
+
+/* Background, all the time; once in a millisecond. */
+void cia402_background(struct application *application);
+void cia402_look(struct application *application);
+
+/* Whoever commands the drive is heard no more: stops, then switches off. */
+void cia402_lose(struct application *application);
+
+/* The objects of CiA 402 that code answers for. */
+void cia402_ask(struct application *application, const struct object *object, uint8_t *value);
+
+/* What the drive shows in the present period. */
+const struct drive_signals *cia402_signals(struct application *application);
+
+/* A position unit of the factor group in rad of the motor. */
+double cia402_unit_rad(const struct link_objects *objects);
+
+/* Asks the drive for a command at once. false: refused. */
+bool cia402_command(struct application *application, struct drive_command *command);
+
+#endif

@@ -1,0 +1,446 @@
+#include "firmware/link/link.h"
+
+#include "firmware/application/application.h"
+#include "firmware/application/setting_change.h"
+#include "firmware/drive/interrupt_view.h"
+#include "firmware/interface/dictionary.h"
+#include "firmware/link/slcan.h"
+
+/* Identifiers, without a node's number. */
+enum { ID_NMT = 0x000, ID_HEARTBEAT = 0x700 };
+
+enum nmt_command {
+    NMT_START = 1,
+    NMT_STOP = 2,
+    NMT_PRE_OPERATIONAL = 0x80,
+    NMT_RESET_NODE = 0x81,
+    NMT_RESET_COMMUNICATION = 0x82
+};
+
+enum { SAVE = 0x65766173, LOAD = 0x64616f6c }; /* "save", "load" */
+
+enum { MILLISECOND_us = 1000, ERRORS_KEPT = 4 };
+
+uint8_t link_node(const struct application *application)
+{
+    return (uint8_t)application->chosen.node_id;
+}
+
+void link_init(struct link *link)
+{
+    *link = (struct link){.open = false};
+}
+
+/* ---- frames out ---- */
+
+bool link_has_room(const struct application *application, size_t count)
+{
+    const struct console *console = &application->console;
+
+    return console->answer_length + count * SLCAN_FRAME_BYTES <= sizeof console->answer;
+}
+
+static void put_text(struct application *application, const char *text)
+{
+    struct console *console = &application->console;
+
+    while (*text != '\0' && console->answer_length < sizeof console->answer) {
+        console->answer[console->answer_length++] = *text++;
+    }
+}
+
+void link_send(struct application *application, const struct can_frame *frame)
+{
+    struct console *console = &application->console;
+
+    if (link_has_room(application, 1)) {
+        console->answer_length += slcan_write(frame, &console->answer[console->answer_length]);
+    }
+}
+
+static void send_state(struct application *application, uint8_t state)
+{
+    const struct can_frame heartbeat = {
+        .id = (uint16_t)(ID_HEARTBEAT + link_node(application)), .length = 1, .data = {state}};
+
+    application->link->beaten_us = application->link->now_us;
+    link_send(application, &heartbeat);
+}
+
+/* ---- errors ---- */
+
+/* Of CiA 301: generic, and what kind of code it is. */
+static uint8_t error_register(const struct application *application)
+{
+    static const uint8_t kinds[16] = {[2] = 0x02, [3] = 0x04, [4] = 0x08, [5] = 0x20,
+                                      [6] = 0x20, [7] = 0x20, [8] = 0x10, [15] = 0x80};
+    const enum drive_fault fault = application->link->reported;
+
+    return (uint8_t)((fault == DRIVE_FAULT_NONE ? 0u : 0x01u | kinds[fault_at(fault)->code >> 12]) |
+                     (application->link->unheard ? 0x11u : 0u));
+}
+
+static void keep_error(struct link *link, uint32_t error)
+{
+    struct link_objects *objects = &link->objects;
+
+    objects->error_4 = objects->error_3;
+    objects->error_3 = objects->error_2;
+    objects->error_2 = objects->error_1;
+    objects->error_1 = error;
+    link->errors = (uint8_t)(link->errors + (link->errors < ERRORS_KEPT ? 1u : 0u));
+}
+
+/* `more`: a byte of our own behind the code, the fault by its place in faults.md. */
+static void send_emergency(struct application *application, uint16_t code, uint8_t more)
+{
+    struct can_frame emergency = {.id = (uint16_t)application->link->objects.emergency_cob_id,
+                                  .length = 8};
+
+    can_put(emergency.data, code, 2);
+    emergency.data[2] = error_register(application);
+    emergency.data[3] = more;
+    link_send(application, &emergency);
+    if (code != 0u) {
+        keep_error(application->link, code | (uint32_t)more << 16);
+    }
+}
+
+static void report_faults(struct application *application)
+{
+    struct link *link = application->link;
+    const enum drive_fault fault = interrupt_view_state(&application->drive) == DRIVE_FAULT
+                                       ? cia402_signals(application)->fault
+                                       : DRIVE_FAULT_NONE;
+
+    if (fault != link->reported && link_has_room(application, 1)) {
+        link->reported = fault;
+        send_emergency(application, fault_at(fault)->code, (uint8_t)fault);
+    }
+}
+
+/* ---- objects ---- */
+
+enum object_abort link_ask(struct application *application, const struct object *object,
+                           uint8_t value[OBJECT_BYTES_MAX], const char **text)
+{
+    switch (object->index) {
+    case 0x1001:
+        value[0] = error_register(application);
+        break;
+    case 0x1003:
+        value[0] = application->link->errors;
+        break;
+    case 0x1008:
+        *text = application->facts.board_name;
+        break;
+    case 0x100a:
+        *text = application->board.version;
+        break;
+    case 0x1010:
+    case 0x1011:
+        can_put(value, 1, 4); /* on command */
+        break;
+    default:
+        if (object->index < 0x2000u) {
+            pdo_ask(&application->link->pdos, object, value);
+        } else {
+            cia402_ask(application, object, value);
+        }
+        break;
+    }
+    return OBJECT_DONE;
+}
+
+static enum object_abort store(struct application *application, uint32_t signature)
+{
+    char refusal[DRIVE_ERROR_TEXT];
+
+    if (signature != SAVE) {
+        return OBJECT_NOT_TRANSFERRED;
+    }
+    return settings_store(application, refusal) == RECORD_REFUSED ? OBJECT_STORE_FAILED
+                                                                  : OBJECT_DONE;
+}
+
+static enum object_abort restore(struct application *application, uint32_t signature)
+{
+    char refusal[DRIVE_ERROR_TEXT];
+
+    if (signature != LOAD) {
+        return OBJECT_NOT_TRANSFERRED;
+    }
+    return settings_restore(application, refusal) ? OBJECT_DONE : OBJECT_WRONG_STATE;
+}
+
+enum object_abort link_obey(struct application *application, const struct object *object,
+                            const uint8_t value[OBJECT_BYTES_MAX])
+{
+    switch (object->index) {
+    case 0x1003:
+        if (value[0] != 0u) {
+            return OBJECT_OUT_OF_RANGE;
+        }
+        application->link->errors = 0;
+        application->link->objects.error_1 = 0;
+        return OBJECT_DONE;
+    case 0x1010:
+        return store(application, can_get(value, 4));
+    case 0x1011:
+        return restore(application, can_get(value, 4));
+    case 0x6040:
+        cia402_control(application, (uint16_t)can_get(value, 2));
+        return OBJECT_DONE;
+    default:
+        return pdo_obey(&application->link->pdos, object, value);
+    }
+}
+
+static bool is_mode(int8_t mode)
+{
+    return mode == CIA402_PROFILE_POSITION || mode == CIA402_PROFILE_VELOCITY ||
+           mode == CIA402_HOMING || mode == CIA402_CYCLIC_POSITION || mode == 0;
+}
+
+bool link_accepts(const struct application *application, const struct object *object,
+                  const uint8_t value[OBJECT_BYTES_MAX])
+{
+    const uint32_t number = can_get(value, object_bytes(object));
+
+    (void)application;
+    switch (object->index) {
+    case 0x6060:
+        return is_mode((int8_t)value[0]);
+    case 0x6098:
+        return value[0] == 35u || value[0] == 37u; /* on the present position */
+    case 0x60c2:
+        return object->sub == 1u ? number != 0u : (int8_t)value[0] >= -6 && (int8_t)value[0] <= 0;
+    case 0x605a:
+        return number == 2u || number == 6u;
+    case 0x6081:
+    case 0x6083:
+    case 0x6085:
+    case 0x6091:
+    case 0x6092:
+        return number != 0u;
+    default:
+        return true;
+    }
+}
+
+/* ---- who commands ---- */
+
+enum { HEARTBEAT_LOST = 0x8130, COMMUNICATION_LOST = 0x8100 };
+
+static void lose(struct application *application, uint16_t code)
+{
+    struct link *link = application->link;
+
+    link->heard = false;
+    link->synced = false;
+    link->unheard = true;
+    send_emergency(application, code, 0);
+    cia402_lose(application);
+}
+
+static void hear(struct link *link, const struct can_frame *frame)
+{
+    const uint32_t consumer = link->objects.consumer_heartbeat;
+
+    if ((consumer & 0xffffu) != 0u && frame->id == ID_HEARTBEAT + (consumer >> 16 & 0x7fu)) {
+        link->heard = true;
+        link->heard_us = link->now_us;
+        link->unheard = false;
+    }
+}
+
+/* A SYNC may be late by half of its period. */
+static void watch(struct application *application)
+{
+    const struct link *link = application->link;
+    const uint32_t heartbeat_ms = link->objects.consumer_heartbeat & 0xffffu;
+    const uint32_t period_us = link->objects.sync_period_us;
+
+    if (link->heard && heartbeat_ms > 0u &&
+        link_since(link, link->heard_us) > 1000u * heartbeat_ms) {
+        lose(application, HEARTBEAT_LOST);
+    } else if (link->synced && period_us > 0u && link->nmt == LINK_OPERATIONAL &&
+               link_since(link, link->synced_us) > period_us + period_us / 2u) {
+        lose(application, COMMUNICATION_LOST);
+    }
+}
+
+/* ---- frames in ---- */
+
+static void reset_communication(struct application *application)
+{
+    struct link *link = application->link;
+
+    objects_put_presets(&link->objects, link_node(application));
+    pdo_put_presets(&link->pdos, link_node(application));
+    link->sdo.state = SDO_IDLE;
+    link->nmt = LINK_PRE_OPERATIONAL;
+    link->reported = DRIVE_FAULT_NONE;
+    link->errors = 0;
+    link->heard = false;
+    link->synced = false;
+    link->unheard = false;
+    cia402_start(application);
+    send_state(application, 0); /* boot-up */
+}
+
+static void obey_nmt(struct application *application, enum nmt_command command)
+{
+    struct link *link = application->link;
+
+    switch (command) {
+    case NMT_START:
+        if (link->nmt != LINK_OPERATIONAL) {
+            pdo_start(&link->pdos);
+        }
+        link->nmt = LINK_OPERATIONAL;
+        break;
+    case NMT_STOP:
+        link->nmt = LINK_STOPPED;
+        break;
+    case NMT_PRE_OPERATIONAL:
+        link->nmt = LINK_PRE_OPERATIONAL;
+        break;
+    case NMT_RESET_NODE:
+        cia402_control(application, 0);
+        reset_communication(application);
+        break;
+    case NMT_RESET_COMMUNICATION:
+        reset_communication(application);
+        break;
+    default:
+        break;
+    }
+}
+
+static void receive(struct application *application, const struct can_frame *frame)
+{
+    struct link *link = application->link;
+    struct can_frame response;
+
+    application_hear(application, interrupt_view_period(&application->drive));
+    hear(link, frame);
+    if (frame->id == ID_NMT) {
+        if (frame->length == 2u &&
+            (frame->data[1] == 0u || frame->data[1] == link_node(application))) {
+            obey_nmt(application, (enum nmt_command)frame->data[0]);
+        }
+    } else if (frame->id == link->objects.sdo_request) {
+        if (link->nmt != LINK_STOPPED && sdo_serve(application, frame, &response)) {
+            response.id = (uint16_t)link->objects.sdo_response;
+            link_send(application, &response);
+        }
+    } else if (link->nmt == LINK_OPERATIONAL) {
+        if (frame->id == (link->objects.sync_cob_id & 0x7ffu)) {
+            link->synced = true;
+            link->synced_us = link->now_us;
+            pdo_sync(application);
+        } else {
+            pdo_receive(application, frame);
+        }
+    }
+}
+
+/* ---- the channel ---- */
+
+static void open_channel(struct application *application, bool listens_only)
+{
+    struct link *link = application->link;
+
+    if (!link->open) {
+        link->open = true;
+        link->listens_only = listens_only;
+        reset_communication(application);
+    }
+}
+
+/* The console goes on with what happens from now on. */
+static void close_channel(struct application *application)
+{
+    struct link *link = application->link;
+
+    if (link->heard || (link->synced && link->objects.sync_period_us > 0u)) {
+        cia402_lose(application);
+    }
+    link->open = false;
+    console_skip_announcements(application);
+}
+
+static bool obey(struct application *application, const char *line, size_t length)
+{
+    struct link *link = application->link;
+    struct can_frame frame = {.id = 0};
+    const enum slcan_meaning meaning = slcan_read(line, length, &frame);
+
+    if (meaning == SLCAN_UNKNOWN) {
+        return false;
+    }
+    put_text(application, slcan_answer(meaning, link->open && !link->listens_only));
+    if (meaning == SLCAN_OPENS || meaning == SLCAN_LISTENS) {
+        open_channel(application, meaning == SLCAN_LISTENS);
+    } else if (meaning == SLCAN_CLOSES) {
+        close_channel(application);
+    } else if (meaning == SLCAN_SENDS && link->open && !link->listens_only) {
+        receive(application, &frame);
+    }
+    return true;
+}
+
+bool link_obey_line(struct application *application, const char *line, size_t length)
+{
+    struct link *link = application->link;
+
+    if (link == NULL) {
+        return false;
+    }
+    link->now_us = (uint32_t)application->board.time_us(application->board.context);
+    return obey(application, line, length);
+}
+
+void link_take(struct application *application, char byte)
+{
+    struct console *console = &application->console;
+
+    if (byte == '\r') {
+        if (!obey(application, console->line, console->line_length) && console->line_length > 0u) {
+            put_text(application, "\a");
+        }
+        console->line_length = 0;
+    } else if (byte != '\n' && console->line_length <= SLCAN_LINE_BYTES) {
+        console->line[console->line_length++] = byte;
+    }
+}
+
+void link_finish(struct application *application)
+{
+    if (application->link->axis.lost) {
+        cia402_background(application);
+    }
+}
+
+void link_background(struct application *application)
+{
+    struct link *link = application->link;
+
+    link->now_us = (uint32_t)application->board.time_us(application->board.context);
+    cia402_background(application);
+    if (link_since(link, link->looked_us) < MILLISECOND_us) {
+        return;
+    }
+    link->looked_us = link->now_us;
+    cia402_look(application);
+    watch(application);
+    report_faults(application);
+    if (link->nmt == LINK_OPERATIONAL) {
+        pdo_look(application);
+    }
+    if (link->objects.heartbeat_ms > 0u &&
+        link_since(link, link->beaten_us) >= 1000u * link->objects.heartbeat_ms) {
+        send_state(application, link->nmt);
+    }
+}

@@ -1,0 +1,90 @@
+/*
+ * The drive as a CANopen node of the profile for drives: CiA 301 and 402, carried as text frames
+ * (slcan.h) by the board's serial line. While the channel is open, from the line "O" to "C", the
+ * console is silent and the line carries frames alone; what the drive does goes on when it closes.
+ *
+ * A slave: NMT, heartbeat, emergencies, SYNC, one SDO server (sdo.h), four PDOs each way (pdo.h),
+ * and the drive profile (cia402.h). All of it runs in the background, as the console does.
+ */
+#ifndef STEADYSTEP_LINK_H
+#define STEADYSTEP_LINK_H
+
+#include "firmware/interface/drive_interface.h"
+#include "firmware/link/can_frame.h"
+#include "firmware/link/cia402.h"
+#include "firmware/link/objects.h"
+#include "firmware/link/pdo.h"
+#include "firmware/link/sdo.h"
+
+#ifdef STEADYSTEP_WITHOUT_LINK
+enum { LINK_CARRIED = 0 };
+#else
+enum { LINK_CARRIED = 1 };
+#endif
+
+/* States of the node, by the numbers of its heartbeat. */
+enum link_nmt { LINK_STOPPED = 0x04, LINK_OPERATIONAL = 0x05, LINK_PRE_OPERATIONAL = 0x7f };
+
+struct application;
+
+struct link {
+    bool open;
+    bool heard;                /* the heartbeat that 1016h names, at least once */
+    bool synced;               /* SYNC has come, at least once */
+    bool unheard;              /* either no more: an emergency said so */
+    bool listens_only;         /* the client does: it sends nothing */
+    uint8_t nmt;               /* enum link_nmt */
+    uint8_t errors;            /* in the field 1003h */
+    enum drive_fault reported; /* by an emergency */
+    uint32_t now_us;           /* of this pass; wraps */
+    uint32_t beaten_us;        /* last heartbeat */
+    uint32_t looked_us;        /* last millisecond's look */
+    uint32_t heard_us, synced_us;
+    struct link_objects objects;
+    struct sdo_server sdo;
+    struct pdos pdos;
+    struct cia402 axis;
+    struct drive_command command; /* parameters put by 2201h and on, for 2200h */
+};
+
+/* Before the first pass: closed. */
+void link_init(struct link *link);
+
+/* The console, closed: obeys the line if it is one of slcan. false: it is none. */
+bool link_obey_line(struct application *application, const char *line, size_t length);
+
+/* A byte that has come while the channel is open. */
+void link_take(struct application *application, char byte);
+
+/* Background, while the channel is open: what nobody asked for, and what time brings. */
+void link_background(struct application *application);
+
+/* Background, closed: what the drive was in the midst of, a quick stop, ends. */
+void link_finish(struct application *application);
+
+/* Whether so many more frames fit into what is being sent. */
+bool link_has_room(const struct application *application, size_t count);
+
+/* A frame to the bus; lost if none fits. */
+void link_send(struct application *application, const struct can_frame *frame);
+
+/* Of objects that code answers for (objects.h). */
+enum object_abort link_ask(struct application *application, const struct object *object,
+                           uint8_t value[OBJECT_BYTES_MAX], const char **text);
+enum object_abort link_obey(struct application *application, const struct object *object,
+                            const uint8_t value[OBJECT_BYTES_MAX]);
+
+/* Whether a member of struct link_objects may become so. */
+bool link_accepts(const struct application *application, const struct object *object,
+                  const uint8_t value[OBJECT_BYTES_MAX]);
+
+/* The node's number. */
+uint8_t link_node(const struct application *application);
+
+/* Microseconds since a time that has passed, less than half an hour ago. */
+static inline uint32_t link_since(const struct link *link, uint32_t then_us)
+{
+    return link->now_us - then_us;
+}
+
+#endif

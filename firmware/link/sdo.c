@@ -1,0 +1,187 @@
+#include "firmware/link/sdo.h"
+
+#include "firmware/application/application.h"
+#include "firmware/link/link.h"
+
+/* Command specifiers: the three highest bits of the first byte. */
+enum { CLIENT_SEGMENT_DOWN, CLIENT_DOWN, CLIENT_UP, CLIENT_SEGMENT_UP, CLIENT_ABORTS };
+
+enum { SEGMENT_BYTES = 7, TOGGLE = 0x10, LAST = 0x01 };
+
+enum { ABORT_TOGGLE = 0x05030000, ABORT_SPECIFIER = 0x05040001, ABORT_TOO_LONG = 0x06070012 };
+
+static void refuse(struct sdo_server *sdo, struct can_frame *response, uint32_t code)
+{
+    sdo->state = SDO_IDLE;
+    response->data[0] = 0x80;
+    can_put(&response->data[1], sdo->object.index, 2);
+    response->data[3] = sdo->object.sub;
+    can_put(&response->data[4], code, 4);
+}
+
+static size_t text_length(const char *text)
+{
+    size_t length = 0;
+
+    while (length < 255u && text[length] != '\0') {
+        length++;
+    }
+    return length;
+}
+
+/* The object of a request that begins a transfer. */
+static uint32_t find(struct sdo_server *sdo, const struct can_frame *request)
+{
+    const uint16_t index = (uint16_t)can_get(&request->data[1], 2);
+
+    sdo->state = SDO_IDLE;
+    sdo->toggle = 0;
+    sdo->done = 0;
+    sdo->text = NULL;
+    return objects_find(index, request->data[3], &sdo->object);
+}
+
+static uint32_t begin_upload(struct application *application, const struct can_frame *request,
+                             struct can_frame *response)
+{
+    struct sdo_server *sdo = &application->link->sdo;
+    uint32_t abort = find(sdo, request);
+
+    if (abort == OBJECT_DONE) {
+        abort = object_get(application, &sdo->object, sdo->value, &sdo->text);
+    }
+    if (abort != OBJECT_DONE) {
+        return abort;
+    }
+    sdo->length =
+        (uint8_t)(sdo->text == NULL ? object_bytes(&sdo->object) : text_length(sdo->text));
+    memcpy(&response->data[1], &request->data[1], 3);
+    if (sdo->text == NULL && sdo->length <= 4u) {
+        response->data[0] = (uint8_t)(0x43u | (4u - sdo->length) << 2);
+        memcpy(&response->data[4], sdo->value, sdo->length);
+    } else {
+        sdo->state = SDO_SENDS;
+        response->data[0] = 0x41;
+        response->data[4] = sdo->length;
+    }
+    return OBJECT_DONE;
+}
+
+static uint32_t send_segment(struct sdo_server *sdo, const struct can_frame *request,
+                             struct can_frame *response)
+{
+    const size_t left = (size_t)sdo->length - sdo->done;
+    const size_t count = left < SEGMENT_BYTES ? left : SEGMENT_BYTES;
+    const uint8_t *from = sdo->text == NULL ? sdo->value : (const uint8_t *)sdo->text;
+
+    if (sdo->state != SDO_SENDS) {
+        return ABORT_SPECIFIER;
+    }
+    if ((request->data[0] & TOGGLE) != sdo->toggle) {
+        return ABORT_TOGGLE;
+    }
+    response->data[0] = (uint8_t)(sdo->toggle | (SEGMENT_BYTES - count) << 1);
+    memcpy(&response->data[1], from + sdo->done, count);
+    sdo->done = (uint8_t)(sdo->done + count);
+    sdo->toggle ^= TOGGLE;
+    if (sdo->done == sdo->length) {
+        response->data[0] |= LAST;
+        sdo->state = SDO_IDLE;
+    }
+    return OBJECT_DONE;
+}
+
+static uint32_t begin_download(struct application *application, const struct can_frame *request,
+                               struct can_frame *response)
+{
+    struct sdo_server *sdo = &application->link->sdo;
+    const uint8_t specifier = request->data[0];
+    const bool at_once = (specifier & 0x02u) != 0u;
+    const bool sized = (specifier & 0x01u) != 0u;
+    const uint32_t abort = find(sdo, request);
+    const size_t bytes = object_bytes(&sdo->object);
+    const size_t given = at_once ? 4u - (specifier >> 2 & 3u) : can_get(&request->data[4], 4);
+
+    if (abort != OBJECT_DONE) {
+        return abort;
+    }
+    if ((sdo->object.access & OBJECT_WRITE) == 0u) {
+        return OBJECT_READ_ONLY;
+    }
+    if (sized ? given != bytes : at_once && bytes > 4u) {
+        return OBJECT_WRONG_LENGTH;
+    }
+    response->data[0] = 0x60;
+    memcpy(&response->data[1], &request->data[1], 3);
+    if (at_once) {
+        memcpy(sdo->value, &request->data[4], 4);
+        return object_put(application, &sdo->object, sdo->value);
+    }
+    sdo->state = SDO_RECEIVES;
+    sdo->length = 0;
+    return OBJECT_DONE;
+}
+
+static uint32_t take_segment(struct application *application, const struct can_frame *request,
+                             struct can_frame *response)
+{
+    struct sdo_server *sdo = &application->link->sdo;
+    const size_t count = SEGMENT_BYTES - (request->data[0] >> 1 & 7u);
+
+    if (sdo->state != SDO_RECEIVES) {
+        return ABORT_SPECIFIER;
+    }
+    if ((request->data[0] & TOGGLE) != sdo->toggle) {
+        return ABORT_TOGGLE;
+    }
+    if (sdo->length + count > object_bytes(&sdo->object)) {
+        return ABORT_TOO_LONG;
+    }
+    memcpy(&sdo->value[sdo->length], &request->data[1], count);
+    sdo->length = (uint8_t)(sdo->length + count);
+    response->data[0] = 0x20u | sdo->toggle;
+    sdo->toggle ^= TOGGLE;
+    if ((request->data[0] & LAST) == 0u) {
+        return OBJECT_DONE;
+    }
+    sdo->state = SDO_IDLE;
+    return sdo->length == object_bytes(&sdo->object)
+               ? object_put(application, &sdo->object, sdo->value)
+               : OBJECT_WRONG_LENGTH;
+}
+
+bool sdo_serve(struct application *application, const struct can_frame *request,
+               struct can_frame *response)
+{
+    struct sdo_server *sdo = &application->link->sdo;
+    uint32_t abort = ABORT_SPECIFIER;
+
+    *response = (struct can_frame){.length = 8};
+    if (request->length != 8u) {
+        return false;
+    }
+    switch (request->data[0] >> 5) {
+    case CLIENT_SEGMENT_DOWN:
+        abort = take_segment(application, request, response);
+        break;
+    case CLIENT_DOWN:
+        abort = begin_download(application, request, response);
+        break;
+    case CLIENT_UP:
+        abort = begin_upload(application, request, response);
+        break;
+    case CLIENT_SEGMENT_UP:
+        abort = send_segment(sdo, request, response);
+        break;
+    case CLIENT_ABORTS:
+        sdo->state = SDO_IDLE;
+        return false;
+    default:
+        (void)find(sdo, request);
+        break;
+    }
+    if (abort != OBJECT_DONE) {
+        refuse(sdo, response, abort);
+    }
+    return true;
+}

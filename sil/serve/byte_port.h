@@ -1,0 +1,64 @@
+/*
+ * A line of bytes that other programs open: a pseudo-terminal, as a serial adapter would be, and,
+ * if asked for, TCP on the loopback interface. What comes in on either is one stream; what goes out
+ * goes to both. Nothing waits: bytes for a program that does not read them are lost, as on a wire.
+ */
+#ifndef STEADYSTEP_SERVE_BYTE_PORT_H
+#define STEADYSTEP_SERVE_BYTE_PORT_H
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <poll.h>
+
+namespace serve
+{
+
+struct PortPlace {
+    std::string link;            /* symbolic link to the pseudo-terminal; "": none */
+    std::optional<unsigned> tcp; /* port on 127.0.0.1, 0: a free one */
+};
+
+class BytePort
+{
+  public:
+    /* Throws scenario::InputError: a place that cannot be had, with the reason. */
+    explicit BytePort(const PortPlace &place);
+    ~BytePort();
+    BytePort(const BytePort &) = delete;
+    BytePort &operator=(const BytePort &) = delete;
+
+    /* "/dev/pts/3" and "127.0.0.1:40001", as they are opened. */
+    std::vector<std::string> places() const;
+
+    /* What poll() is to wake for. */
+    void watch(std::vector<pollfd> &watched) const;
+
+    /* What has come since the last call. */
+    std::string read();
+
+    void write(const std::string &bytes);
+
+  private:
+    void open_terminal();
+    bool empty_terminal() const;
+    void link_terminal();
+    void listen(unsigned port);
+    void look_at_terminal();
+    void accept_client();
+    void close_client();
+
+    PortPlace place_;
+    std::string terminal_name_;
+    int terminal_ = -1, listener_ = -1, client_ = -1;
+    unsigned tcp_port_ = 0;
+    bool terminal_open_ = false; /* by a program */
+    bool linked_ = false;
+    std::string to_terminal_, to_client_; /* not taken yet */
+};
+
+} // namespace serve
+
+#endif

@@ -1,0 +1,46 @@
+"""An unmodified python-canopen on a served drive, as it would be on a board's serial adapter."""
+import pathlib
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+CLIENTS = ROOT / "build" / "clients"
+sys.path.insert(0, str(CLIENTS))
+EDS = str(ROOT / "firmware" / "interface" / "steadystep.eds")
+
+try:
+    import canopen  # noqa: E402
+    from canopen.profiles.p402 import BaseNode402  # noqa: E402
+except ImportError:
+    sys.exit(f"python-canopen is not in {CLIENTS}: tools/setup clients installs it")
+
+
+class Bus:
+    """A network on slcan; `with` connects and disconnects."""
+
+    def __init__(self, place, nodes=(1,), kind=BaseNode402):
+        self.network = canopen.Network()
+        self.place, self.ids, self.kind = str(place), nodes, kind
+
+    def __enter__(self):
+        self.nodes = [self.network.add_node(self.kind(number, EDS)) for number in self.ids]
+        self.network.connect(interface="slcan", channel=self.place, bitrate=500000,
+                             sleep_after_open=0)
+        self.node = self.nodes[0]
+        for node in self.nodes:
+            node.sdo.RESPONSE_TIMEOUT = 2
+            wait_for(lambda node=node: node.nmt.state == "PRE-OPERATIONAL")
+        return self
+
+    def __exit__(self, *_):
+        self.network.disconnect()
+
+
+def wait_for(condition, timeout_s=5.0):
+    """Whether it has come true in that time."""
+    end = time.monotonic() + timeout_s
+    while time.monotonic() < end:
+        if condition():
+            return True
+        time.sleep(0.005)
+    return bool(condition())

@@ -1,0 +1,137 @@
+"""An unmodified python-canopen operates the drive: dictionary, states, profile modes, faults, store.
+
+usage: canopen_client.py SIL
+"""
+import logging
+import time
+
+from canopen_bus import EDS, Bus, canopen, wait_for
+from served import Checks, Line, Served
+
+CHECKS = Checks()
+TURN = 65536
+
+
+def every_object_is_served_as_the_sheet_says(node):
+    for entry in node.object_dictionary.values():
+        several = isinstance(entry, (canopen.objectdictionary.ODRecord,
+                                     canopen.objectdictionary.ODArray))
+        for variable in entry.subindices.values() if several else [entry]:
+            name = f"{variable.index:04x}sub{variable.subindex} {variable.name}"
+            if not variable.readable:
+                continue
+            data = node.sdo.upload(variable.index, variable.subindex)
+            if variable.data_type == canopen.objectdictionary.VISIBLE_STRING:
+                CHECKS.that(data, name)
+                continue
+            CHECKS.that(8 * len(data) == len(variable), f"{name}: {len(data)} bytes")
+            if variable.default is not None:
+                CHECKS.that(variable.decode_raw(data) == variable.default, f"{name}: its default")
+
+
+def the_sheet_is_read_without_a_remark():
+    remarks = []
+    handler = logging.Handler(logging.WARNING)
+    handler.emit = remarks.append
+    logging.getLogger("canopen").addHandler(handler)
+    CHECKS.that(len(canopen.import_od(EDS, 1)) > 100 and not remarks, f"the sheet: {remarks}")
+    logging.getLogger("canopen").removeHandler(handler)
+
+
+def settings_are_read_and_written(node):
+    limit = node.sdo["current_limit_A"]
+    CHECKS.that(limit.raw == 3.0, "a real number is read")
+    limit.raw = 2.0
+    CHECKS.that(limit.raw == 2.0, "and written")
+    for name, value, code in (("current_limit_A", 100.0, 0x06090030), ("law", 77, 0x06090030)):
+        try:
+            node.sdo[name].raw = value
+            CHECKS.that(False, f"{name} = {value} is refused")
+        except canopen.SdoAbortedError as refusal:
+            CHECKS.that(refusal.code == code, f"{name}: {refusal}")
+    limit.raw = 3.0
+
+
+def it_is_enabled_in_time(node):
+    node.setup_402_state_machine()
+    node.nmt.state = "OPERATIONAL"
+    wait_for(lambda: node.state == "SWITCH ON DISABLED")
+    begin = time.monotonic()
+    for state in ("READY TO SWITCH ON", "SWITCHED ON", "OPERATION ENABLED"):
+        step = time.monotonic()
+        node.state = state
+        CHECKS.that(time.monotonic() - step <= 0.4, f"{state}: {time.monotonic() - step:.3f} s")
+    CHECKS.that(time.monotonic() - begin <= 0.7, f"in all {time.monotonic() - begin:.3f} s")
+
+
+def set_point(node, position, word=0x1F):
+    """Set-point handshake."""
+    node.sdo[0x607A].raw = position
+    node.controlword = word
+    CHECKS.that(wait_for(lambda: node.sdo[0x6041].raw & 0x1000), "the set-point is acknowledged")
+    CHECKS.that(not node.sdo[0x6041].raw & 0x400, "which takes `target reached` back")
+    node.controlword = 0x0F
+    CHECKS.that(wait_for(lambda: not node.sdo[0x6041].raw & 0x1000), "and the next may come")
+
+
+def it_goes_to_positions(node, knobs):
+    node.op_mode = "PROFILED POSITION"
+    CHECKS.that(node.sdo[0x6081].raw > 0 and node.sdo[0x6083].raw > 0, "speed and acceleration")
+    set_point(node, TURN)
+    CHECKS.that(wait_for(lambda: node.sdo[0x6041].raw & 0x400), "it reaches its target")
+    CHECKS.that(abs(node.sdo[0x6064].raw - TURN) < 100, f"a turn: {node.sdo[0x6064].raw}")
+    truth = float(knobs.ask("state").split("theta_rad=")[1].split()[0])
+    CHECKS.that(abs(truth - 6.2832) < 0.01, f"the rotor does: {truth}")
+    set_point(node, 20 * TURN)
+    set_point(node, 0, 0x3F)  # at once
+    CHECKS.that(wait_for(lambda: node.sdo[0x6041].raw & 0x400), "it reaches the newer target")
+    CHECKS.that(abs(node.sdo[0x6064].raw) < 100, f"back: {node.sdo[0x6064].raw}")
+
+
+def it_turns_at_a_speed(node):
+    node.op_mode = "PROFILED VELOCITY"
+    node.sdo[0x60FF].raw = 2 * TURN
+    CHECKS.that(wait_for(lambda: node.sdo[0x6041].raw & 0x400), "the speed is reached")
+    CHECKS.that(wait_for(lambda: abs(node.sdo[0x606C].raw - 2 * TURN) < TURN // 10),
+                f"two turns a second: {node.sdo[0x606C].raw}")
+    node.state = "QUICK STOP ACTIVE"
+    CHECKS.that(wait_for(lambda: node.state == "SWITCH ON DISABLED"), "a quick stop ends with it off")
+    node.sdo[0x60FF].raw = 0
+
+
+def a_fault_is_seen_and_reset(node, knobs):
+    node.state = "OPERATION ENABLED"
+    knobs.ask("plant.bus_V = 8")
+    CHECKS.that(wait_for(lambda: node.state == "FAULT"), "the supply fails")
+    CHECKS.that(node.sdo[0x603F].raw == 0x3200, "the error code is its")
+    CHECKS.that(wait_for(lambda: [error.code for error in node.emcy.log] == [0x3200]), "emergency")
+    knobs.ask("plant.bus_V = 24")
+    node.reset_from_fault()
+    CHECKS.that(wait_for(lambda: node.state != "FAULT"), "it is reset")
+    CHECKS.that(node.emcy.active == [], "and said so")
+    node.state = "SWITCH ON DISABLED"
+
+
+def what_is_stored_survives(node, knobs):
+    time.sleep(0.05)
+    node.sdo["law_bandwidth_rad_s"].raw = 180.0
+    node.sdo[0x1010][1].raw = 0x65766173
+    node.sdo["law_bandwidth_rad_s"].raw = 150.0
+    CHECKS.that(knobs.ask('command = "power-cycle"').startswith("ok"), "the supply fails and returns")
+
+
+the_sheet_is_read_without_a_remark()
+with Served() as served:
+    KNOBS = Line(str(served.knobs_link))
+    with Bus(served.link) as bus:
+        every_object_is_served_as_the_sheet_says(bus.node)
+        settings_are_read_and_written(bus.node)
+        it_is_enabled_in_time(bus.node)
+        it_goes_to_positions(bus.node, KNOBS)
+        it_turns_at_a_speed(bus.node)
+        a_fault_is_seen_and_reset(bus.node, KNOBS)
+        what_is_stored_survives(bus.node, KNOBS)
+    with Bus(served.link) as bus:
+        CHECKS.that(bus.node.sdo["law_bandwidth_rad_s"].raw == 180.0, "what was stored is in force")
+    KNOBS.close()
+CHECKS.end()

@@ -1,0 +1,118 @@
+"""The served drive: its console on a pseudo-terminal and on TCP, its knobs, its time, its end.
+
+usage: serve.py SIL
+"""
+import os
+import signal
+import subprocess
+import time
+
+from served import SIL, Checks, Line, Served
+
+CHECKS = Checks()
+
+
+def value_of(line, name):
+    return float(line.split(f"{name}=")[1].split()[0])
+
+
+def a_drive_moves_as_on_a_table(served):
+    drive, knobs = Line(str(served.link)), Line(str(served.knobs_link))
+    drive.send("state\n")
+    CHECKS.that(drive.until("ok switch-on-disabled"), "the console answers")
+    drive.send("enable\n")
+    CHECKS.that(drive.until("ready:"), "it becomes ready")
+    CHECKS.that(drive.ask("move 1.5").startswith("ok move"), "it takes a move")
+    time.sleep(0.5)
+    CHECKS.that(abs(value_of(knobs.ask("state"), "theta_rad") - 1.5) < 0.01, "it has moved")
+    drive.close()
+    knobs.close()
+
+
+def a_client_that_comes_back_reads_nothing_old(served):
+    first = Line(str(served.link))
+    first.send("help\n")
+    time.sleep(0.2)
+    first.close()
+    time.sleep(0.1)
+    second = Line(str(served.link))
+    CHECKS.that(second.ask("cycles").startswith("ok cycles"), "the answer is its own")
+    second.close()
+
+
+def tcp_carries_the_same(served):
+    drive, knobs = Line(served.serial[-1]), Line(served.knobs[-1])
+    CHECKS.that(drive.ask("state").startswith("ok operation-enabled"), "the console answers on TCP")
+    CHECKS.that(knobs.ask("state").startswith("ok time_s="), "the knobs answer on TCP")
+    drive.close()
+    drive = Line(served.serial[-1])
+    CHECKS.that(drive.ask("get law").startswith("ok get law"), "and the next client, too")
+    drive.close()
+    knobs.close()
+
+
+def knobs_do_what_events_do(served):
+    drive, knobs = Line(served.serial[-1]), Line(served.knobs[-1])
+    CHECKS.that(knobs.ask("load_torque_Nm = 0.05, ramp_s = 0.1").startswith("ok time_s="), "a load")
+    time.sleep(0.3)
+    CHECKS.that(abs(value_of(knobs.ask("state"), "load_torque_Nm") - 0.05) < 1e-6, "is on it")
+    CHECKS.that(knobs.ask("load_torque_Nm = 0").startswith("ok"), "and goes")
+    CHECKS.that(knobs.ask("plant.bus_V = 8").startswith("ok"), "the supply sags")
+    CHECKS.that(drive.until("fault: bus-voltage"), "which the drive sees")
+    CHECKS.that(knobs.ask("plant.bus_V = 24").startswith("ok"), "and comes back")
+    for bad, said in (("load_torque_Nm = 1000", "load_torque_Nm: expected"),
+                      ("jam", "error:"), ("open_phase = \"c\"", "one of a, b"),
+                      ("command = \"enable\"", "serial line"), ("x = 1 } ]\ny = 3", "error:")):
+        answer = knobs.ask(bad)
+        CHECKS.that(answer.startswith("error: ") and said in answer, f"{bad}: {answer}")
+    knobs.until("error", 0.2)
+    drive.close()
+    knobs.close()
+
+
+def a_power_cycle_keeps_what_was_stored(served):
+    drive, knobs = Line(str(served.link)), Line(served.knobs[-1])
+    drive.send("disable\nset current_limit_A 2\nset law_bandwidth_rad_s 180\n")
+    drive.until("ok set law_bandwidth")
+    CHECKS.that(drive.ask("store") == "ok store", "it stores")
+    drive.ask("set current_limit_A 1")
+    CHECKS.that(knobs.ask("command = \"power-cycle\"").startswith("ok"), "the supply fails")
+    CHECKS.that("steadystep" in drive.read(), "it announces itself anew")
+    CHECKS.that(drive.ask("get current_limit_A").startswith("ok get current_limit_A=2 A"),
+                "what was stored is in force")
+    CHECKS.that("=180 " in drive.ask("get law_bandwidth_rad_s"), "all of it")
+    drive.close()
+    knobs.close()
+
+
+def it_ends_in_order(number):
+    with Served("--speed", "20") as served:
+        time.sleep(0.3)
+        code, said, complaint = served.end(number)
+        words = said.split()
+        CHECKS.that(code == 0 and complaint == "", f"{code} {complaint}")
+        CHECKS.that(words[0] == "served" and float(words[1]) > 10 * float(words[4]),
+                    f"twenty times as fast, or nearly: {said}")
+        CHECKS.that(not os.path.lexists(served.link), "no link stays")
+
+
+def what_cannot_be_had_is_said():
+    for arguments, said in ((["--link", "/nowhere/at/all"], "/nowhere/at/all: No such file"),
+                            (["--speed", "0"], "--speed"), (["no-such-scenario"], "no-such"),
+                            (["--set", "motor=nothing"], "nothing")):
+        done = subprocess.run([SIL, "serve", *arguments], capture_output=True, text=True,
+                              timeout=20, check=False)
+        CHECKS.that(done.returncode == 2 and said in done.stderr and done.stderr.count("\n") == 1,
+                    f"{arguments}: {done.returncode} {done.stderr}")
+
+
+with Served() as one:
+    a_drive_moves_as_on_a_table(one)
+    a_client_that_comes_back_reads_nothing_old(one)
+    tcp_carries_the_same(one)
+    knobs_do_what_events_do(one)
+    a_power_cycle_keeps_what_was_stored(one)
+it_ends_in_order(signal.SIGTERM)
+it_ends_in_order(signal.SIGINT)
+what_cannot_be_had_is_said()
+CHECKS.end()

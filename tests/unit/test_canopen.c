@@ -1,0 +1,229 @@
+/* The node on the bus: channel, network management, SDO, PDO, emergencies. */
+#include <unity.h>
+
+#include "tests/unit/link_bench.h"
+
+void setUp(void)
+{
+    link_bench_start();
+}
+
+void tearDown(void)
+{
+}
+
+static void assert_heard(const char *part, const char *heard)
+{
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(heard, part), heard);
+}
+
+static void test_an_open_channel_boots_the_node_and_silences_the_console(void)
+{
+    TEST_ASSERT_EQUAL_STRING("\r", link_bench_say("C", 1));
+    TEST_ASSERT_EQUAL_STRING("\r", link_bench_say("S6", 1));
+    TEST_ASSERT_EQUAL_STRING("\rt701100\r", link_bench_say("O", 2));
+    TEST_ASSERT_EQUAL_STRING("\a", link_bench_say("state", 2));
+    TEST_ASSERT_EQUAL_STRING("\r", link_bench_say("C", 2));
+    assert_heard("ok switch-on-disabled", bench_ask("state"));
+}
+
+static void test_a_client_that_listens_is_answered_nothing(void)
+{
+    (void)link_bench_say("L", 1);
+    TEST_ASSERT_EQUAL_STRING("\a", link_bench_say("t60184000100000000000", 2));
+}
+
+static void test_heartbeats_show_the_state_of_the_node(void)
+{
+    link_bench_open();
+    TEST_ASSERT_EQUAL_STRING("6017100000000000", link_bench_sdo("2B1710000A000000"));
+    assert_heard("t70117F\r", link_bench_say("t0000", 110));
+    assert_heard("t701105\r", link_bench_say("t00020101", 110));
+    assert_heard("t701104\r", link_bench_say("t00020200", 110));
+    TEST_ASSERT_EQUAL_STRING("", link_bench_sdo("4000100000000000")); /* stopped: no SDO */
+    assert_heard("t701100\r", link_bench_say("t00028101", 1));
+    TEST_ASSERT_EQUAL_STRING("", link_bench_say("t00020102", 3) + 2); /* for another node */
+}
+
+static void test_objects_are_read_at_once_or_in_segments(void)
+{
+    link_bench_open();
+    TEST_ASSERT_EQUAL_STRING("4300100092010400", link_bench_sdo("4000100000000000"));
+    TEST_ASSERT_EQUAL_STRING("4F01100000000000", link_bench_sdo("4001100000000000"));
+    TEST_ASSERT_EQUAL_STRING("4120210008000000", link_bench_sdo("4020210000000000"));
+    TEST_ASSERT_EQUAL_STRING("0000000000000008", link_bench_sdo("6000000000000000"));
+    TEST_ASSERT_EQUAL_STRING("1D40000000000000", link_bench_sdo("7000000000000000"));
+    TEST_ASSERT_EQUAL_STRING("8020210001000405", link_bench_sdo("6000000000000000")); /* over */
+    TEST_ASSERT_EQUAL_STRING("410A100007000000", link_bench_sdo("400A100000000000"));
+    TEST_ASSERT_EQUAL_STRING("0176657273696F6E", link_bench_sdo("6000000000000000"));
+}
+
+static void test_what_is_not_there_is_said_by_its_abort_code(void)
+{
+    link_bench_open();
+    TEST_ASSERT_EQUAL_STRING("8002100000000206", link_bench_sdo("4002100000000000")); /* object */
+    TEST_ASSERT_EQUAL_STRING("8000100111000906", link_bench_sdo("4000100100000000")); /* sub */
+    TEST_ASSERT_EQUAL_STRING("8000100002000106", link_bench_sdo("2300100001000000")); /* ro */
+    TEST_ASSERT_EQUAL_STRING("8000220001000106", link_bench_sdo("4000220000000000")); /* wo */
+    TEST_ASSERT_EQUAL_STRING("8017100010000706", link_bench_sdo("2317100001000000")); /* length */
+    TEST_ASSERT_EQUAL_STRING("8060600030000906", link_bench_sdo("2F60600004000000")); /* range */
+    TEST_ASSERT_EQUAL_STRING("8001210030000906", link_bench_sdo("2F012100FF000000")); /* no law */
+    TEST_ASSERT_EQUAL_STRING("8000000001000405", link_bench_sdo("E000000000000000"));
+}
+
+/* 2.0 as a double is 4000 0000 0000 0000h. */
+static void test_a_setting_is_written_in_segments(void)
+{
+    link_bench_open();
+    TEST_ASSERT_EQUAL_STRING("6020210000000000", link_bench_sdo("2120210008000000"));
+    TEST_ASSERT_EQUAL_STRING("2000000000000000", link_bench_sdo("0000000000000000"));
+    TEST_ASSERT_EQUAL_STRING("3000000000000000", link_bench_sdo("1D40000000000000"));
+    TEST_ASSERT_TRUE(bench.application.chosen.current_limit_A == 2.0);
+    TEST_ASSERT_EQUAL_STRING("6020210000000000", link_bench_sdo("2120210008000000"));
+    TEST_ASSERT_EQUAL_STRING("8020210000000305", link_bench_sdo("1000000000000000")); /* toggle */
+    TEST_ASSERT_EQUAL_STRING("8020210010000706", link_bench_sdo("2120210004000000"));
+}
+
+static void test_a_setting_that_waits_is_refused_while_the_drive_is_ready(void)
+{
+    link_bench_open();
+    (void)link_bench_sdo("2F00220001000000"); /* enable */
+    bench_periods(10);
+    TEST_ASSERT_EQUAL(DRIVE_OPERATION_ENABLED, bench.application.drive.supervision.state);
+    TEST_ASSERT_EQUAL_STRING("8007210022000008", link_bench_sdo("2F07210000000000"));
+}
+
+static void test_a_fault_is_an_emergency_and_stays_in_the_list(void)
+{
+    link_bench_open();
+    (void)link_bench_sdo("2F00220001000000");
+    bench_periods(10);
+    bench.samples.bus_voltage = 0;
+    assert_heard("t0818003205040000000", link_bench_say("t0000", 30));
+    TEST_ASSERT_EQUAL_STRING("4F01100005000000", link_bench_sdo("4001100000000000"));
+    TEST_ASSERT_EQUAL_STRING("4303100100320400", link_bench_sdo("4003100100000000"));
+    bench.samples.bus_voltage = 3151;
+    assert_heard("t08180000000000000000",
+                 link_bench_say("t60182F00220002000000", 30)); /* disable */
+}
+
+/* The first that is sent, with what stands in `entry` as its only object. */
+static const char *map_one(const char *entry)
+{
+    char line[32];
+
+    (void)link_bench_sdo("2F001A0000000000");
+    snprintf(line, sizeof line, "23001A01%s", entry);
+    return link_bench_sdo(line);
+}
+
+static void test_a_pdo_is_mapped_at_run_time_and_sent_when_it_changes(void)
+{
+    link_bench_open();
+    TEST_ASSERT_EQUAL_STRING("6000180200000000", link_bench_sdo("2F001802FF000000"));
+    TEST_ASSERT_EQUAL_STRING("6000180500000000", link_bench_sdo("2B00180500000000"));
+    TEST_ASSERT_EQUAL_STRING("60001A0100000000", map_one("08000023")); /* 2300h, state */
+    TEST_ASSERT_EQUAL_STRING("60001A0000000000", link_bench_sdo("2F001A0001000000"));
+    assert_heard("t181100\r", link_bench_say("t00020101", 12));
+    TEST_ASSERT_EQUAL_STRING("z\r", link_bench_say("t1230", 100));
+    assert_heard("t181104\r", link_bench_say("t60182F00220001000000", 20)); /* enable */
+    TEST_ASSERT_EQUAL_STRING("8000180130000906", link_bench_sdo("23001801FFFFFF1F"));
+}
+
+static void test_a_mapping_that_cannot_be_is_refused(void)
+{
+    link_bench_open();
+    TEST_ASSERT_EQUAL_STRING("80001A0141000406", map_one("08006060")); /* 6060h, not sent */
+    TEST_ASSERT_EQUAL_STRING("80001A0141000406", map_one("10000023")); /* of 8 bits, not 16 */
+    TEST_ASSERT_EQUAL_STRING("80001A0100000206", map_one("08000250")); /* there is none */
+    TEST_ASSERT_EQUAL_STRING("60001A0100000000", map_one("40002023"));
+    TEST_ASSERT_EQUAL_STRING("60001A0200000000", link_bench_sdo("23001A0240002123"));
+    TEST_ASSERT_EQUAL_STRING("80001A0042000406", link_bench_sdo("2F001A0002000000")); /* 128 bits */
+    TEST_ASSERT_EQUAL_STRING("60001A0000000000", link_bench_sdo("2F001A0001000000"));
+    TEST_ASSERT_EQUAL_STRING("80001A0122000008", link_bench_sdo("23001A0108000023")); /* in force */
+}
+
+static void test_pdos_wait_for_sync(void)
+{
+    link_bench_open();
+    (void)link_bench_sdo("2F00180202000000"); /* sent with every second */
+    (void)link_bench_sdo("2F00140200000000"); /* received: acts with the next */
+    (void)link_bench_say("t00020101", 2);
+    (void)link_bench_say("t20120600", 2); /* shutdown */
+    TEST_ASSERT_EQUAL_STRING("4B41600040020000", link_bench_sdo("4041600000000000"));
+    TEST_ASSERT_EQUAL_STRING("z\r", link_bench_say("t0800", 20));
+    TEST_ASSERT_EQUAL_STRING("4B41600021020000", link_bench_sdo("4041600000000000"));
+    assert_heard("t18122102\r", link_bench_say("t0800", 20));
+}
+
+static uint32_t draw(uint32_t below)
+{
+    static uint32_t state = 1;
+
+    state = state * 1664525u + 1013904223u;
+    return (state >> 8) % below;
+}
+
+/* Frames for the node, valid as text, of any content. */
+static void type_any_frame(void)
+{
+    static const unsigned ids[] = {0x000, 0x080, 0x201, 0x301, 0x401, 0x501, 0x601, 0x701};
+    static const unsigned indexes[] = {0x10, 0x14, 0x16, 0x18, 0x1a, 0x20, 0x21, 0x22, 0x23, 0x60};
+    const unsigned id = draw(8) == 0u ? draw(2048) : ids[draw(8)];
+    const unsigned length = draw(4) == 0u ? draw(9) : id == 0u ? 2 : 8;
+    char line[40];
+    size_t end = (size_t)snprintf(line, sizeof line, "t%03X%u", id, length);
+
+    for (unsigned i = 0; i < length; i++) {
+        const unsigned byte = id == 0x601u && i == 2u   ? indexes[draw(10)]
+                              : id == 0x601u && i == 3u ? draw(4)
+                              : id == 0u && i == 1u     ? draw(2)
+                                                        : draw(256);
+
+        end += (size_t)snprintf(&line[end], sizeof line - end, "%02X", byte);
+    }
+    bench_type(line);
+    bench_type("\r");
+}
+
+static void test_whatever_comes_the_node_goes_on(void)
+{
+    for (int i = 0; i < 20000; i++) {
+        if (draw(8) == 0u) {
+            char bytes[8];
+
+            for (size_t n = 0; n < sizeof bytes; n++) {
+                bytes[n] = (char)draw(256);
+            }
+            bench_type_bytes(bytes, sizeof bytes);
+        }
+        if (!bench_link.open) {
+            bench_type("\rO\r");
+        }
+        type_any_frame();
+        bench_periods(4);
+        (void)bench_heard();
+    }
+    (void)link_bench_say("", 20); /* the end of a line that is being received */
+    (void)link_bench_say("C", 20);
+    (void)link_bench_say("O", 2);
+    TEST_ASSERT_EQUAL_STRING("4300100092010400", link_bench_sdo("4000100000000000"));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_an_open_channel_boots_the_node_and_silences_the_console);
+    RUN_TEST(test_a_client_that_listens_is_answered_nothing);
+    RUN_TEST(test_heartbeats_show_the_state_of_the_node);
+    RUN_TEST(test_objects_are_read_at_once_or_in_segments);
+    RUN_TEST(test_what_is_not_there_is_said_by_its_abort_code);
+    RUN_TEST(test_a_setting_is_written_in_segments);
+    RUN_TEST(test_a_setting_that_waits_is_refused_while_the_drive_is_ready);
+    RUN_TEST(test_a_fault_is_an_emergency_and_stays_in_the_list);
+    RUN_TEST(test_a_pdo_is_mapped_at_run_time_and_sent_when_it_changes);
+    RUN_TEST(test_a_mapping_that_cannot_be_is_refused);
+    RUN_TEST(test_pdos_wait_for_sync);
+    RUN_TEST(test_whatever_comes_the_node_goes_on);
+    return UNITY_END();
+}

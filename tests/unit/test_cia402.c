@@ -1,0 +1,339 @@
+/* The drive profile: states, set-points, speeds, cyclic positions, homing, and who is heard no
+ * more. */
+#include <unity.h>
+
+#include "firmware/link/axis_motion.h"
+#include "tests/unit/link_bench.h"
+
+enum { TURN = 65536, CYCLE = 40 /* periods */ };
+
+void setUp(void)
+{
+    link_bench_start();
+    link_bench_open();
+    (void)link_bench_say("t00020101", 1);
+}
+
+void tearDown(void)
+{
+}
+
+/* Writes up to four bytes; any answer will do. */
+static void put(unsigned index, unsigned sub, unsigned bytes, uint32_t value)
+{
+    char request[40];
+
+    snprintf(request, sizeof request, "%02X%02X%02X%02X%02X%02X%02X%02X", 0x23u | (4u - bytes) << 2,
+             index & 255u, index >> 8, sub, (unsigned)(value & 255u), (unsigned)(value >> 8 & 255u),
+             (unsigned)(value >> 16 & 255u), (unsigned)(value >> 24));
+    TEST_ASSERT_EQUAL_STRING_LEN("60", link_bench_sdo(request), 2);
+}
+
+static uint32_t get(unsigned index)
+{
+    char request[40];
+    unsigned byte[8] = {0};
+
+    snprintf(request, sizeof request, "40%02X%02X0000000000", index & 255u, index >> 8);
+    TEST_ASSERT_EQUAL(8,
+                      sscanf(link_bench_sdo(request), "%2x%2x%2x%2x%2x%2x%2x%2x", &byte[0],
+                             &byte[1], &byte[2], &byte[3], &byte[4], &byte[5], &byte[6], &byte[7]));
+    return byte[4] | byte[5] << 8 | byte[6] << 16 | byte[7] << 24;
+}
+
+/* The statusword behind a controlword. */
+static uint32_t control(unsigned word)
+{
+    put(0x6040, 0, 2, word);
+    bench_periods(20);
+    return get(0x6041);
+}
+
+static void assert_state(unsigned state, uint32_t status)
+{
+    TEST_ASSERT_EQUAL_HEX16(state, status & 0x6fu);
+}
+
+static void enable(int mode)
+{
+    put(0x6060, 0, 1, (uint32_t)mode);
+    assert_state(0x21, control(0x06));
+    assert_state(0x23, control(0x07));
+    assert_state(0x27, control(0x0f));
+}
+
+static double reference_rad(void)
+{
+    return position_to_rad(bench.application.drive.reference.now.position,
+                           bench_params.rotor_teeth);
+}
+
+static bool rests(void)
+{
+    return axis_motion_rests(&bench.application);
+}
+
+static void test_states_follow_the_controlword(void)
+{
+    assert_state(0x40, control(0x0f)); /* no way past "shutdown" */
+    assert_state(0x21, control(0x06));
+    assert_state(0x40, control(0x00));
+    assert_state(0x21, control(0x06));
+    assert_state(0x27, control(0x0f)); /* both steps in one */
+    assert_state(0x23, control(0x07));
+    assert_state(0x21, control(0x06));
+    TEST_ASSERT_EQUAL(DRIVE_SWITCH_ON_DISABLED, bench.application.drive.supervision.state);
+    assert_state(0x27, control(0x0f));
+    assert_state(0x40, control(0x00));
+    assert_state(0x21, control(0x06));
+    assert_state(0x40, control(0x02)); /* quick stop */
+}
+
+static void test_a_fault_stays_until_it_is_reset(void)
+{
+    enable(1);
+    bench.samples.bus_voltage = 0;
+    assert_state(0x08, control(0x0f));
+    bench.samples.bus_voltage = 3151;
+    assert_state(0x08, control(0x06));
+    assert_state(0x40, control(0x80));
+    assert_state(0x21, control(0x06));
+}
+
+static void test_a_set_point_is_acknowledged_and_reached(void)
+{
+    uint32_t status;
+
+    enable(1);
+    TEST_ASSERT_TRUE(get(0x6081) > 0u && get(0x6083) > 0u);
+    put(0x6067, 0, 4, 0x7fffffffu); /* the rotor of this bench stands */
+    put(0x607a, 0, 4, TURN / 8);
+    status = control(0x1f);
+    TEST_ASSERT_EQUAL_HEX16(0x1000, status & 0x1400u);
+    status = control(0x0f);
+    TEST_ASSERT_EQUAL_HEX16(0x0000, status & 0x1400u);
+    bench_periods(4000);
+    TEST_ASSERT_EQUAL_HEX16(0x0400, get(0x6041) & 0x1400u);
+    TEST_ASSERT_TRUE(get(0x6062) == TURN / 8);
+    (void)control(0x5f); /* relative, the same again */
+    bench_periods(4000);
+    TEST_ASSERT_TRUE(get(0x6062) == TURN / 4);
+}
+
+static void test_software_limits_cut_a_target(void)
+{
+    enable(1);
+    put(0x607d, 2, 4, TURN / 16);
+    put(0x607a, 0, 4, TURN);
+    TEST_ASSERT_EQUAL_HEX16(0x0800, control(0x1f) & 0x0800u);
+    bench_periods(4000);
+    TEST_ASSERT_TRUE(get(0x6062) == TURN / 16);
+}
+
+static void test_a_new_target_waits_or_preempts(void)
+{
+    enable(1);
+    put(0x607a, 0, 4, 2 * TURN);
+    (void)control(0x1f);
+    put(0x607a, 0, 4, TURN);
+    (void)control(0x0f);
+    TEST_ASSERT_EQUAL_HEX16(0x1000, control(0x1f) & 0x1000u);
+    TEST_ASSERT_EQUAL_HEX16(0x1000, control(0x0f) & 0x1000u); /* waits for the first */
+    bench_periods(8000);
+    TEST_ASSERT_TRUE(get(0x6062) == TURN);
+    put(0x607a, 0, 4, 20 * TURN);
+    (void)control(0x1f);
+    (void)control(0x0f);
+    put(0x607a, 0, 4, 0);
+    (void)control(0x3f);
+    bench_periods(8000);
+    TEST_ASSERT_TRUE(get(0x6062) == 0u);
+}
+
+static void test_halt_stops_and_lets_go_on(void)
+{
+    enable(1);
+    put(0x607a, 0, 4, 4 * TURN);
+    (void)control(0x1f);
+    bench_periods(1000);
+    (void)control(0x10f);
+    bench_periods(3000);
+    TEST_ASSERT_TRUE(rests() && reference_rad() < 20.0);
+    (void)control(0x0f);
+    bench_periods(12000);
+    TEST_ASSERT_TRUE(get(0x6062) == 4 * TURN);
+}
+
+static void test_a_speed_is_reached_changed_and_quick_stopped(void)
+{
+    enable(3);
+    put(0x60ff, 0, 4, TURN);
+    bench_periods(3000);
+    TEST_ASSERT_EQUAL_HEX16(0x0400, get(0x6041) & 0x1400u);
+    TEST_ASSERT_INT_WITHIN(10, TURN, (int)get(0x606b));
+    put(0x60ff, 0, 4, (uint32_t)-TURN);
+    bench_periods(3000);
+    TEST_ASSERT_INT_WITHIN(10, -TURN, (int32_t)get(0x606b));
+    assert_state(0x07, control(0x0b));
+    bench_periods(3000);
+    assert_state(0x40, get(0x6041));
+}
+
+/* Of a speed that begins and ends smoothly, target number n. */
+static int32_t target_of(int n)
+{
+    return (int32_t)(n < 50 ? 4 * n * n : 4 * 50 * 50 + 400 * (n - 50));
+}
+
+static void cycle(int n)
+{
+    char line[40];
+    const uint32_t target = (uint32_t)target_of(n);
+
+    snprintf(line, sizeof line, "t20160F00%02X%02X%02X%02X\r", (unsigned)(target & 255u),
+             (unsigned)(target >> 8 & 255u), (unsigned)(target >> 16 & 255u),
+             (unsigned)(target >> 24));
+    bench_type(line);
+}
+
+static void enable_cyclic(void)
+{
+    put(0x1600, 0, 1, 0);
+    put(0x1600, 2, 4, 0x607a0020);
+    put(0x1600, 0, 1, 2);
+    enable(8);
+}
+
+/* Greatest distance from target n - lag, in units, of the reference at each target. */
+static int follow(int lag, bool (*comes)(int n))
+{
+    int off = 0;
+
+    for (int n = 1; n < 200; n++) {
+        if (comes(n)) {
+            cycle(n);
+        }
+        for (int i = 0; i < CYCLE; i++) {
+            bench_period();
+            (void)bench_heard();
+        }
+        if (n > 20) {
+            const int here = (int)(reference_rad() / 6.283185307179586 * TURN) - target_of(n - lag);
+
+            off = here > off ? here : -here > off ? -here : off;
+        }
+    }
+    return off;
+}
+
+static bool always(int n)
+{
+    (void)n;
+    return true;
+}
+
+/* Two of ten are lost. */
+static bool mostly(int n)
+{
+    return n % 10 > 1;
+}
+
+static int best(bool (*comes)(int n))
+{
+    int least = INT32_MAX;
+
+    for (int lag = 3; lag <= 5; lag++) {
+        setUp();
+        enable_cyclic();
+        const int off = follow(lag, comes);
+
+        least = off < least ? off : least;
+    }
+    return least;
+}
+
+static void test_cyclic_positions_are_followed(void)
+{
+    TEST_ASSERT_LESS_THAN(500, best(always)); /* 400 are one interval */
+    TEST_ASSERT_EQUAL(0, bench.application.drive.planner.underruns);
+}
+
+static void test_cyclic_positions_that_do_not_come_are_made_up_for(void)
+{
+    TEST_ASSERT_LESS_THAN(900, best(mostly));
+    TEST_ASSERT_EQUAL(0, bench.application.drive.planner.underruns);
+}
+
+static void test_cyclic_positions_that_end_bring_it_to_rest(void)
+{
+    enable_cyclic();
+    (void)follow(4, always);
+    bench_periods(3000);
+    TEST_ASSERT_TRUE(rests());
+    TEST_ASSERT_EQUAL(1, bench.application.drive.planner.underruns);
+}
+
+static void test_homing_makes_here_the_offset(void)
+{
+    enable(6);
+    put(0x607c, 0, 4, 1000);
+    TEST_ASSERT_EQUAL_HEX16(0x1400, control(0x1f) & 0x3400u);
+    TEST_ASSERT_EQUAL(1000, get(0x6062));
+}
+
+static void test_a_lost_heartbeat_stops_and_switches_off(void)
+{
+    put(0x1016, 1, 4, 0x00050014); /* node 5, 20 ms */
+    put(0x6085, 0, 4, 10 * TURN);
+    enable(3);
+    put(0x60ff, 0, 4, TURN);
+    for (int i = 0; i < 20; i++) {
+        (void)link_bench_say("t705105", 100);
+    }
+    assert_state(0x27, get(0x6041));
+    (void)link_bench_say("t705105", 300);
+    assert_state(0x07, get(0x6041));
+    bench_periods(3000);
+    assert_state(0x40, get(0x6041));
+}
+
+static void test_a_channel_that_closes_is_a_heartbeat_lost(void)
+{
+    put(0x1016, 1, 4, 0x00050014);
+    enable(3);
+    put(0x60ff, 0, 4, TURN);
+    (void)link_bench_say("t705105", 100);
+    (void)link_bench_say("C", 1);
+    bench_periods(3000);
+    TEST_ASSERT_EQUAL(DRIVE_SWITCH_ON_DISABLED, bench.application.drive.supervision.state);
+}
+
+static void test_a_lost_sync_stops_and_switches_off(void)
+{
+    put(0x1006, 0, 4, 4000);
+    enable(1);
+    (void)link_bench_say("t0800", 40);
+    assert_state(0x27, get(0x6041));
+    bench_periods(100);
+    assert_state(0x40, get(0x6041));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_states_follow_the_controlword);
+    RUN_TEST(test_a_fault_stays_until_it_is_reset);
+    RUN_TEST(test_a_set_point_is_acknowledged_and_reached);
+    RUN_TEST(test_software_limits_cut_a_target);
+    RUN_TEST(test_a_new_target_waits_or_preempts);
+    RUN_TEST(test_halt_stops_and_lets_go_on);
+    RUN_TEST(test_a_speed_is_reached_changed_and_quick_stopped);
+    RUN_TEST(test_cyclic_positions_are_followed);
+    RUN_TEST(test_cyclic_positions_that_do_not_come_are_made_up_for);
+    RUN_TEST(test_cyclic_positions_that_end_bring_it_to_rest);
+    RUN_TEST(test_homing_makes_here_the_offset);
+    RUN_TEST(test_a_lost_heartbeat_stops_and_switches_off);
+    RUN_TEST(test_a_channel_that_closes_is_a_heartbeat_lost);
+    RUN_TEST(test_a_lost_sync_stops_and_switches_off);
+    return UNITY_END();
+}
