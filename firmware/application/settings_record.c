@@ -14,6 +14,18 @@ union double_bits {
 
 enum { SIZE_1, SIZE_4, SIZE_8, SIZE_SHIFT = 14 };
 
+/* All settings fit, each with its key. */
+#define MOTOR_ENTRY_REAL(...)              +2 + 8
+#define MOTOR_ENTRY_COUNT(...)             +2 + 4
+#define ENTRY_BYTE(...)                    +2 + 1
+#define ENTRY_REALS(index, member, n, ...) +(n) * (2 + 8)
+enum {
+    ENTRIES = 0 MOTOR_SETTINGS(MOTOR_ENTRY_REAL, MOTOR_ENTRY_COUNT)
+        DRIVE_SETTINGS(ENTRY_BYTE, ENTRY_BYTE, MOTOR_ENTRY_REAL, ENTRY_REALS, MOTOR_ENTRY_COUNT)
+};
+_Static_assert((int)ENTRIES <= (int)SETTINGS_RECORD_PAYLOAD,
+               "a setting has no place in the record");
+
 static const uint8_t bytes_of[] = {[SIZE_1] = 1, [SIZE_4] = 4, [SIZE_8] = 8};
 
 static uint8_t *put_entry(uint8_t *at, uint16_t index, unsigned size, uint64_t value)

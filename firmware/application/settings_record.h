@@ -1,6 +1,6 @@
 /*
  * The settings of a drive as a record in the parameter store, pages 2 and 3 (drive/record_log.h,
- * format 0x5304). Independent of number format, compiler and layout of structs: entries by the
+ * format 0x5305). Independent of number format, compiler and layout of structs: entries by the
  * index of their setting (interface/settings_table.h), so that a record survives settings that are
  * added, moved or dropped. What comes back is what went in, bit for bit; what a record does not
  * have, keeps its default, and what the firmware does not know is passed over.
@@ -24,8 +24,8 @@ extern "C" {
 
 enum {
     SETTINGS_RECORD_FIRST_PAGE = 2,
-    SETTINGS_RECORD_FORMAT = 0x5304,
-    SETTINGS_RECORD_PAYLOAD = 516, /* all of them, and room for two dozen more numbers */
+    SETTINGS_RECORD_FORMAT = 0x5305,
+    SETTINGS_RECORD_PAYLOAD = 772, /* all of them, and room for a dozen more numbers */
     SETTINGS_RECORD_BYTES = RECORD_BYTES(SETTINGS_RECORD_PAYLOAD)
 };
 

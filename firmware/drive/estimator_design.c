@@ -86,6 +86,9 @@ static bool check_hold(const struct drive_settings *settings, double period_s,
         return false;
     }
     hold.hold_current_A = settings->idle_current_A;
+    if (settings->idle_current_A == settings->hold_current_A) {
+        return true;
+    }
     if (hold_control_check(&hold, limit) && hold_estimator_check(&hold, gains, limit)) {
         return true;
     }

@@ -1,7 +1,8 @@
 /*
- * The last four pages of the flash. The chip has one bank: while a page is erased (up to 40 ms) or
- * a word programmed (0.1 ms) the core stalls at its next fetch from flash. Both are refused while
- * the bridge is on.
+ * The last two pages of the flash, which are the store's pages 2 and 3, of the settings. Pages 0
+ * and 1 would be of what a drive with an encoder learns, and there is none. The chip has one bank:
+ * while a page is erased (up to 40 ms) or a word programmed (0.1 ms) the core stalls at its next
+ * fetch from flash. Both are refused while the bridge is on.
  *
  * A loss of power meanwhile leaves double words that fail the ECC. Reading one raises NMI; its
  * handler lets a read of the store answer "not readable", and the log of records skips that slot
@@ -19,6 +20,7 @@
 enum {
     STORE_BYTES = PARAMETER_PAGES * FLASH_PAGE_BYTES,
     FIRST_PAGE = FLASH_BANK_BYTES / FLASH_PAGE_BYTES - PARAMETER_PAGES,
+    SETTINGS_PAGE = 2,
     BUSY_WAIT = 700000 /* passes, > 43 ms, < 160 ms; an erase takes 40 ms at most */
 };
 
@@ -34,7 +36,8 @@ static volatile bool reads_store, damaged;
 
 static bool in_store(uint32_t offset, size_t count)
 {
-    return offset <= STORE_BYTES && count <= STORE_BYTES - offset;
+    return offset >= SETTINGS_PAGE * FLASH_PAGE_BYTES && offset <= STORE_BYTES &&
+           count <= STORE_BYTES - offset;
 }
 
 /* Nobody else can feed the watchdog while the core stalls, or while this waits. */
@@ -79,7 +82,7 @@ static bool unlock(void)
 
 bool parameter_flash_erase(uint32_t page)
 {
-    if (page >= PARAMETER_PAGES || !unlock()) {
+    if (page < SETTINGS_PAGE || page >= PARAMETER_PAGES || !unlock()) {
         return false;
     }
     FLASH->cr = FLASH_CR_PER | FLASH_CR_PNB(FIRST_PAGE + page);

@@ -616,7 +616,7 @@ static void test_the_start_names_settings_board_and_what_the_hold_bears(void)
                    "torque_constant_Nm_A=0.157 viscous_friction_Nms_rad=0.000307 "
                    "inertia_kgm2=0.0001562 rated_current_A=3 supply_V=24 rotor_teeth=50 "
                    "law=state-feedback feedback=sensorless blind_below_rad_s=0.00690436 "
-                   "hold_torque_Nm=0.471 hold_load_step_Nm=0.341287 hold_heat_W=3.33; "
+                   "hold_torque_Nm=0.471 hold_load_step_Nm=0.341287 hold_heat_W=3.33 brake=0; "
                    "started by: crash: hard fault at 0x08001234\n",
                    STEADYSTEP_NUM == NUM_FLOAT   ? "float"
                    : STEADYSTEP_NUM == NUM_FIXED ? "fixed"
@@ -653,8 +653,8 @@ static void test_every_command_says_what_it_takes(void)
          "retarget position_rad= speed_rad_s= acceleration_rad_s2= jerk_rad_s3= [ at= ]: "},
         {"help store", "store: keeps settings and what was learned;"},
         {"help", "help, state, cycles, signals, move, enable, disable, hold, move-trapezoid, "
-                 "move-smooth, step, stop, sine, set-point, velocity, retarget, store, get, set, "
-                 "defaults; help <command> explains one\n"},
+                 "move-smooth, step, stop, sine, set-point, velocity, retarget, store, "
+                 "set-position, get, set, defaults; help <command> explains one\n"},
     };
     char expected[300];
 
@@ -675,13 +675,14 @@ static void test_state_and_signals_name_all_that_they_show(void)
         "omega_est_rad_s=0 load_torque_est_Nm=0 theta_ref_rad=0 omega_ref_rad_s=0 "
         "reference_moving=no holding=no synchronism=sure i_d_A=0 i_q_A=0 i_d_ref_A=0 i_q_ref_A=0 "
         "u_d_V=0 u_q_V=0 resistance_est_ohm=0.37 bus_V=24 phase_imbalance=0 "
-        "reference_underruns=0 commands_dropped=0 dropped_kind=enable\n",
+        "reference_underruns=0 commands_dropped=0 dropped_kind=enable position_reference=assumed "
+        "motor_zero_rad=0 motor_heat=0 bridge_derating=0\n",
         bench_ask("signals"));
     TEST_ASSERT_EQUAL_STRING(
         "ok switch-on-disabled fault=none period=4294967295 position_rad=0 speed_rad_s=0 "
         "load_torque_Nm=0 "
         "reference_rad=0 reference_rad_s=0 moving=no holding=no synchronism=sure i_d_A=0 i_q_A=0 "
-        "resistance_ohm=0.37 bus_V=24 underruns=0 dropped=0 law=state-feedback "
+        "resistance_ohm=0.37 bus_V=24 underruns=0 dropped=0 position=assumed law=state-feedback "
         "feedback=sensorless; version\n",
         bench_ask("state"));
 }
