@@ -14,17 +14,16 @@ union double_bits {
 
 enum { SIZE_1, SIZE_4, SIZE_8, SIZE_SHIFT = 14 };
 
-/* All settings fit, each with its key. */
-#define MOTOR_ENTRY_REAL(...)              +2 + 8
-#define MOTOR_ENTRY_COUNT(...)             +2 + 4
-#define ENTRY_BYTE(...)                    +2 + 1
-#define ENTRY_REALS(index, member, n, ...) +(n) * (2 + 8)
-enum {
-    ENTRIES = 0 MOTOR_SETTINGS(MOTOR_ENTRY_REAL, MOTOR_ENTRY_COUNT)
-        DRIVE_SETTINGS(ENTRY_BYTE, ENTRY_BYTE, MOTOR_ENTRY_REAL, ENTRY_REALS, MOTOR_ENTRY_COUNT)
+/* All settings, each with its key. */
+#define REAL_ENTRY(index, member, ...)     uint8_t member[2 + 8];
+#define COUNT_ENTRY(index, member, ...)    uint8_t member[2 + 4];
+#define BYTE_ENTRY(index, member, ...)     uint8_t member[2 + 1];
+#define REALS_ENTRY(index, member, n, ...) uint8_t member[n][2 + 8];
+struct all_entries {
+    MOTOR_SETTINGS(REAL_ENTRY, COUNT_ENTRY)
+    DRIVE_SETTINGS(BYTE_ENTRY, BYTE_ENTRY, REAL_ENTRY, REALS_ENTRY, COUNT_ENTRY)
 };
-_Static_assert((int)ENTRIES <= (int)SETTINGS_RECORD_PAYLOAD,
-               "a setting has no place in the record");
+_Static_assert(sizeof(struct all_entries) <= SETTINGS_RECORD_PAYLOAD, "the record has no place");
 
 static const uint8_t bytes_of[] = {[SIZE_1] = 1, [SIZE_4] = 4, [SIZE_8] = 8};
 

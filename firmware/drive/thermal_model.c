@@ -6,10 +6,10 @@
 #define CURRENT_MAX NUM(2.5)
 
 /* Copper, of a rise of 80 K. */
-static const heat_real rated_rise = (heat_real)(0.00393 * 80.0);
+static const num_real rated_rise = (num_real)(0.00393 * 80.0);
 
-static const heat_real reference_K = (heat_real)298.15;
-static const heat_real zero_C_K = (heat_real)273.15;
+static const num_real reference_K = (num_real)298.15;
+static const num_real zero_C_K = (num_real)273.15;
 
 void winding_heat_look(struct winding_heat *winding, struct phases current)
 {
@@ -24,7 +24,7 @@ void winding_heat_look(struct winding_heat *winding, struct phases current)
 }
 
 /* Implicit, so that it is stable for any time constant. The rated current is a half in per-unit. */
-void winding_heat_pass(struct winding_heat *winding, heat_real span_s, heat_real time_constant_s)
+void winding_heat_pass(struct winding_heat *winding, num_real span_s, num_real time_constant_s)
 {
     const coef_t share = coef_from_double((double)(span_s / (time_constant_s + span_s)));
 
@@ -38,9 +38,9 @@ void winding_heat_pass(struct winding_heat *winding, heat_real span_s, heat_real
     winding->looks = 0;
 }
 
-void winding_heat_begin(struct winding_heat *winding, heat_real ratio)
+void winding_heat_begin(struct winding_heat *winding, num_real ratio)
 {
-    const heat_real rise = (ratio - 1) / rated_rise;
+    const num_real rise = (ratio - 1) / rated_rise;
     const num_t heat = num_from_double((double)(rise < 1 ? rise : 1));
 
     for (int i = 0; i < 2; i++) {
@@ -48,9 +48,9 @@ void winding_heat_begin(struct winding_heat *winding, heat_real ratio)
     }
 }
 
-uint32_t bridge_temperature_code(heat_real bridge_C, heat_real beta_K, uint32_t codes)
+uint32_t bridge_temperature_code(num_real bridge_C, num_real beta_K, uint32_t codes)
 {
-    const heat_real exponent = beta_K / reference_K - beta_K / (bridge_C + zero_C_K);
+    const num_real exponent = beta_K / reference_K - beta_K / (bridge_C + zero_C_K);
 
-    return (uint32_t)((heat_real)codes / (1 + (heat_real)exponential((double)exponent)));
+    return (uint32_t)((num_real)codes / (1 + (num_real)exponential((double)exponent)));
 }

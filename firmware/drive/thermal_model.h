@@ -25,14 +25,6 @@
 
 #include "firmware/motor/park.h"
 
-/* Of the background: single where the core has it. A core in fixed point has doubles in software,
-   for its design, and need have nothing for singles. */
-#if STEADYSTEP_NUM == NUM_FIXED
-typedef double heat_real;
-#else
-typedef float heat_real;
-#endif
-
 #define WINDING_LOOKS 32 /* at most, of a span */
 
 struct winding_heat {
@@ -45,10 +37,10 @@ struct winding_heat {
 void winding_heat_look(struct winding_heat *winding, struct phases current);
 
 /* A span passes, as much of it as was looked at. */
-void winding_heat_pass(struct winding_heat *winding, heat_real span_s, heat_real time_constant_s);
+void winding_heat_pass(struct winding_heat *winding, num_real span_s, num_real time_constant_s);
 
 /* At least what a resistance says that has risen to `ratio` of the cold one; 1 at most. */
-void winding_heat_begin(struct winding_heat *winding, heat_real ratio);
+void winding_heat_begin(struct winding_heat *winding, num_real ratio);
 
 /* Of the hotter phase. */
 static inline num_t winding_heat_most(const struct winding_heat *winding)
@@ -57,7 +49,7 @@ static inline num_t winding_heat_most(const struct winding_heat *winding)
 }
 
 /* Of the bridge at this temperature: the hotter, the less. */
-uint32_t bridge_temperature_code(heat_real bridge_C, heat_real beta_K, uint32_t codes);
+uint32_t bridge_temperature_code(num_real bridge_C, num_real beta_K, uint32_t codes);
 
 /* An NTC that is shorted or open: beyond 200 or below -55 degrees Celsius. */
 static inline bool bridge_temperature_is_implausible(uint32_t code, uint32_t codes)

@@ -20,15 +20,15 @@ void thermal_watch_design(struct drive *drive)
 {
     const struct hal_facts *facts = drive->board->facts;
     const struct drive_settings *settings = &drive->settings;
-    const heat_real beta_K = (heat_real)facts->bridge_ntc_beta_K;
-    const heat_real fault_C = (heat_real)settings->bridge_fault_C;
+    const num_real beta_K = (num_real)facts->bridge_ntc_beta_K;
+    const num_real fault_C = (num_real)settings->bridge_fault_C;
     struct thermal_watch *watch = &drive->thermal;
 
     watch->limit_A = settings->current_limit_A;
     watch->motor_in_force = watch->bridge_in_force = 0u;
     watch->fault_code = 0u;
     if (beta_K > 0 && fault_C > 0) {
-        watch->derate_code = (uint16_t)bridge_temperature_code((heat_real)settings->bridge_derate_C,
+        watch->derate_code = (uint16_t)bridge_temperature_code((num_real)settings->bridge_derate_C,
                                                                beta_K, facts->converter_codes);
         watch->fault_code =
             (uint16_t)bridge_temperature_code(fault_C, beta_K, facts->converter_codes);
@@ -77,9 +77,9 @@ static void show(struct thermal_watch *watch, unsigned flag, uint32_t steps)
 static enum drive_fault judge_winding(struct drive *drive)
 {
     struct thermal_watch *watch = &drive->thermal;
-    const heat_real span_s =
-        (heat_real)SPAN_PERIODS * (heat_real)drive->board->facts->control_period_s;
-    const heat_real time_constant_s = (heat_real)drive->settings.motor_time_constant_s;
+    const num_real span_s =
+        (num_real)SPAN_PERIODS * (num_real)drive->board->facts->control_period_s;
+    const num_real time_constant_s = (num_real)drive->settings.motor_time_constant_s;
     num_t step = NUM(HEAT_DERATES);
     uint8_t steps = 0;
 
@@ -120,9 +120,9 @@ static enum drive_fault judge_bridge(struct thermal_watch *watch, const struct h
 /* A resistance that has just been calibrated. */
 static void begin(struct drive *drive)
 {
-    const heat_real cold_ohm = (heat_real)drive->settings.cold_resistance_ohm;
-    const heat_real ohm = (heat_real)num_to_double(drive->estimator.estimate.winding.resistance) *
-                          (heat_real)drive->base.resistance_ohm;
+    const num_real cold_ohm = (num_real)drive->settings.cold_resistance_ohm;
+    const num_real ohm = (num_real)num_to_double(drive->estimator.estimate.winding.resistance) *
+                          (num_real)drive->base.resistance_ohm;
 
     if (cold_ohm > 0) {
         winding_heat_begin(&drive->thermal.winding, ohm / cold_ohm);

@@ -22,7 +22,7 @@ static float interval_s(const struct application *application)
     const struct link_objects *objects = &application->link->objects;
     float interval = (float)objects->interval;
 
-    for (int exponent = objects->interval_exponent; exponent < 0; exponent++) {
+    for (int8_t exponent = objects->interval_exponent; exponent < 0; exponent++) {
         interval *= 0.1f;
     }
     return interval;

@@ -14,8 +14,6 @@ enum {
     RESET_FAULT = 0x80
 };
 
-enum { VOLTAGE_ENABLED = 0x0010, WARNING = 0x0080, REMOTE = 0x0200 };
-
 /* What a controlword asks for, its reset of a fault apart. */
 enum request {
     REQUEST_DISABLE_VOLTAGE,
@@ -264,92 +262,4 @@ void cia402_start(struct application *application)
     axis->controlword =
         axis->state == CIA402_SWITCHED_ON ? SWITCH_ON | ENABLE_VOLTAGE | NO_QUICK_STOP : 0u;
     axis_motion_put_defaults(application);
-}
-
-/* ---- objects ---- */
-
-static uint16_t statusword(struct application *application)
-{
-    const struct cia402 *axis = &application->link->axis;
-    const enum drive_state drive = interrupt_view_state(&application->drive);
-    const bool doubtful = interrupt_view_synchronism(&application->drive) != DRIVE_SYNCHRONISM_SURE;
-    uint16_t status = axis->state | REMOTE;
-
-    status |= drive != DRIVE_SWITCH_ON_DISABLED && drive != DRIVE_FAULT ? VOLTAGE_ENABLED : 0u;
-    status |= axis->refused || (axis->state == CIA402_OPERATION_ENABLED && doubtful) ? WARNING : 0u;
-    if (axis->state == CIA402_OPERATION_ENABLED) {
-        status |= axis_motion_status(application);
-    }
-    return status;
-}
-
-double cia402_unit_rad(const struct link_objects *objects)
-{
-    return 6.283185307179586 * (double)objects->feed_shaft * (double)objects->gear_motor /
-           ((double)objects->feed * (double)objects->gear_shaft);
-}
-
-/* A whole number of 32 bits, rounded; the nearest one where it is beyond. */
-static int32_t rounded(double value)
-{
-    if (value >= 2147483647.0) {
-        return INT32_MAX;
-    }
-    if (value <= -2147483648.0) {
-        return INT32_MIN;
-    }
-    return (int32_t)(value < 0.0 ? value - 0.5 : value + 0.5);
-}
-
-/* In units; of those that are measured in them. */
-static double quantity(struct application *application, uint16_t index)
-{
-    const struct link *link = application->link;
-    const struct drive_signals *now = cia402_signals(application);
-    double less = link->axis.zero_rad;
-    double value;
-
-    switch (index) {
-    case 0x6062:
-        value = now->theta_ref_rad;
-        break;
-    case 0x6064:
-        value = now->theta_est_rad;
-        break;
-    case 0x606b:
-        value = now->omega_ref_rad_s;
-        less = 0.0;
-        break;
-    case 0x606c:
-        value = now->omega_est_rad_s;
-        less = 0.0;
-        break;
-    case 0x60f4:
-        value = now->theta_ref_rad;
-        less = now->theta_est_rad;
-        break;
-    default:
-        return 1e3 * now->bus_V;
-    }
-    return (value - less) / cia402_unit_rad(&link->objects);
-}
-
-void cia402_ask(struct application *application, const struct object *object, uint8_t *value)
-{
-    const struct cia402 *axis = &application->link->axis;
-
-    switch (object->index) {
-    case 0x6040:
-        can_put(value, axis->controlword, 2);
-        break;
-    case 0x6041:
-        can_put(value, statusword(application), 2);
-        break;
-    case 0x6061:
-        can_put(value, (uint8_t)axis->mode, 1);
-        break;
-    default:
-        can_put(value, (uint32_t)rounded(quantity(application, object->index)), 4);
-        break;
-    }
 }

@@ -1,7 +1,6 @@
 #include "firmware/link/link.h"
 
 #include "firmware/application/application.h"
-#include "firmware/application/setting_change.h"
 #include "firmware/drive/interrupt_view.h"
 #include "firmware/interface/dictionary.h"
 #include "firmware/link/slcan.h"
@@ -16,8 +15,6 @@ enum nmt_command {
     NMT_RESET_NODE = 0x81,
     NMT_RESET_COMMUNICATION = 0x82
 };
-
-enum { SAVE = 0x65766173, LOAD = 0x64616f6c }; /* "save", "load" */
 
 enum { MILLISECOND_us = 1000, ERRORS_KEPT = 4 };
 
@@ -70,7 +67,7 @@ static void send_state(struct application *application, uint8_t state)
 /* ---- errors ---- */
 
 /* Of CiA 301: generic, and what kind of code it is. */
-static uint8_t error_register(const struct application *application)
+uint8_t link_error_register(const struct application *application)
 {
     static const uint8_t kinds[16] = {[2] = 0x02, [3] = 0x04, [4] = 0x08, [5] = 0x20,
                                       [6] = 0x20, [7] = 0x20, [8] = 0x10, [15] = 0x80};
@@ -98,7 +95,7 @@ static void send_emergency(struct application *application, uint16_t code, uint8
                                   .length = 8};
 
     can_put(emergency.data, code, 2);
-    emergency.data[2] = error_register(application);
+    emergency.data[2] = link_error_register(application);
     emergency.data[3] = more;
     link_send(application, &emergency);
     if (code != 0u) {
@@ -116,115 +113,6 @@ static void report_faults(struct application *application)
     if (fault != link->reported && link_has_room(application, 1)) {
         link->reported = fault;
         send_emergency(application, fault_at(fault)->code, (uint8_t)fault);
-    }
-}
-
-/* ---- objects ---- */
-
-enum object_abort link_ask(struct application *application, const struct object *object,
-                           uint8_t value[OBJECT_BYTES_MAX], const char **text)
-{
-    switch (object->index) {
-    case 0x1001:
-        value[0] = error_register(application);
-        break;
-    case 0x1003:
-        value[0] = application->link->errors;
-        break;
-    case 0x1008:
-        *text = application->facts.board_name;
-        break;
-    case 0x100a:
-        *text = application->board.version;
-        break;
-    case 0x1010:
-    case 0x1011:
-        can_put(value, 1, 4); /* on command */
-        break;
-    default:
-        if (object->index < 0x2000u) {
-            pdo_ask(&application->link->pdos, object, value);
-        } else {
-            cia402_ask(application, object, value);
-        }
-        break;
-    }
-    return OBJECT_DONE;
-}
-
-static enum object_abort store(struct application *application, uint32_t signature)
-{
-    char refusal[DRIVE_ERROR_TEXT];
-
-    if (signature != SAVE) {
-        return OBJECT_NOT_TRANSFERRED;
-    }
-    return settings_store(application, refusal) == RECORD_REFUSED ? OBJECT_STORE_FAILED
-                                                                  : OBJECT_DONE;
-}
-
-static enum object_abort restore(struct application *application, uint32_t signature)
-{
-    char refusal[DRIVE_ERROR_TEXT];
-
-    if (signature != LOAD) {
-        return OBJECT_NOT_TRANSFERRED;
-    }
-    return settings_restore(application, refusal) ? OBJECT_DONE : OBJECT_WRONG_STATE;
-}
-
-enum object_abort link_obey(struct application *application, const struct object *object,
-                            const uint8_t value[OBJECT_BYTES_MAX])
-{
-    switch (object->index) {
-    case 0x1003:
-        if (value[0] != 0u) {
-            return OBJECT_OUT_OF_RANGE;
-        }
-        application->link->errors = 0;
-        application->link->objects.error_1 = 0;
-        return OBJECT_DONE;
-    case 0x1010:
-        return store(application, can_get(value, 4));
-    case 0x1011:
-        return restore(application, can_get(value, 4));
-    case 0x6040:
-        cia402_control(application, (uint16_t)can_get(value, 2));
-        return OBJECT_DONE;
-    default:
-        return pdo_obey(&application->link->pdos, object, value);
-    }
-}
-
-static bool is_mode(int8_t mode)
-{
-    return mode == CIA402_PROFILE_POSITION || mode == CIA402_PROFILE_VELOCITY ||
-           mode == CIA402_HOMING || mode == CIA402_CYCLIC_POSITION || mode == 0;
-}
-
-bool link_accepts(const struct application *application, const struct object *object,
-                  const uint8_t value[OBJECT_BYTES_MAX])
-{
-    const uint32_t number = can_get(value, object_bytes(object));
-
-    (void)application;
-    switch (object->index) {
-    case 0x6060:
-        return is_mode((int8_t)value[0]);
-    case 0x6098:
-        return value[0] == 35u || value[0] == 37u; /* on the present position */
-    case 0x60c2:
-        return object->sub == 1u ? number != 0u : (int8_t)value[0] >= -6 && (int8_t)value[0] <= 0;
-    case 0x605a:
-        return number == 2u || number == 6u;
-    case 0x6081:
-    case 0x6083:
-    case 0x6085:
-    case 0x6091:
-    case 0x6092:
-        return number != 0u;
-    default:
-        return true;
     }
 }
 

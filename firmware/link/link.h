@@ -78,6 +78,9 @@ enum object_abort link_obey(struct application *application, const struct object
 bool link_accepts(const struct application *application, const struct object *object,
                   const uint8_t value[OBJECT_BYTES_MAX]);
 
+/* The error register: which kinds of error there are. */
+uint8_t link_error_register(const struct application *application);
+
 /* The node's number. */
 uint8_t link_node(const struct application *application);
 

@@ -41,6 +41,7 @@
 
 typedef int32_t num_t;
 typedef int32_t unit_t;
+typedef double num_real; /* of the background; the core has doubles in software, for its design */
 typedef struct {
     _Alignas(4) int16_t mantissa; /* value = mantissa 2^(left - right - 16) */
     uint8_t left;
@@ -244,11 +245,13 @@ static inline num_t num_abs(num_t a)
 #define NUM_FORMAT float
 #define NUM_ABS    __builtin_fabsf
 typedef float num_t;
+typedef float num_real; /* of the background: what the core counts in by itself */
 #define NUM(x)     ((float)(x))
 #elif STEADYSTEP_NUM == NUM_DOUBLE
 #define NUM_FORMAT double
 #define NUM_ABS    __builtin_fabs
 typedef double num_t;
+typedef double num_real;
 #define NUM(x)     ((double)(x))
 #else
 #error "unknown STEADYSTEP_NUM"

@@ -57,6 +57,21 @@ void keep(std::string &kept, const std::string &bytes)
     }
 }
 
+bool ends_line(char byte)
+{
+    return byte == '\n' || byte == '\r' || byte == '\a';
+}
+
+/* While `skips`, nothing up to the end of the line that is being written. */
+std::string behind_line(const std::string &bytes, bool &skips)
+{
+    std::size_t begin = 0;
+    while (skips && begin < bytes.size()) {
+        skips = !ends_line(bytes[begin++]);
+    }
+    return bytes.substr(begin);
+}
+
 /* false: whoever wrote is gone. */
 bool read_all(int file, std::string &bytes)
 {
@@ -193,6 +208,7 @@ void BytePort::look_at_terminal()
         empty_terminal();
         make_raw(terminal_);
     }
+    terminal_skips_ = terminal_open_ ? terminal_skips_ : in_line_;
     terminal_open_ = open_now;
 }
 
@@ -204,6 +220,7 @@ void BytePort::accept_client()
     }
     client_ = accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (client_ >= 0) {
+        client_skips_ = in_line_;
         const int on = 1;
         setsockopt(client_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     }
@@ -230,12 +247,13 @@ std::string BytePort::read()
 
 void BytePort::write(const std::string &bytes)
 {
+    in_line_ = bytes.empty() ? in_line_ : !ends_line(bytes.back());
     if (terminal_open_) {
-        keep(to_terminal_, bytes);
+        keep(to_terminal_, behind_line(bytes, terminal_skips_));
         flush(terminal_, to_terminal_);
     }
     if (client_ >= 0) {
-        keep(to_client_, bytes);
+        keep(to_client_, behind_line(bytes, client_skips_));
         flush(client_, to_client_);
     }
 }

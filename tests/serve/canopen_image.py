@@ -1,3 +1,4 @@
+#!/usr/bin/python3
 """The image of the board, served by the virtual board, is operated by python-canopen as the simulator's
 drive is.
 

@@ -7,7 +7,7 @@
 #include "firmware/application/application.h"
 #include "tests/unit/bench.h"
 
-enum { BENCH_PAGE = 800, BENCH_PAGES = 4, BENCH_STREAM = 700, BENCH_TYPED = 410, BENCH_LINES = 8 };
+enum { BENCH_PAGE = 800, BENCH_PAGES = 4, BENCH_STREAM = 1400, BENCH_TYPED = 410, BENCH_LINES = 8 };
 
 struct console_bench {
     struct application application;

@@ -42,7 +42,7 @@ static void pass(uint32_t periods, uint32_t every)
     }
 }
 
-static void idles_after_its_delay_and_not_before(void)
+static void test_idles_after_its_delay_and_not_before(void)
 {
     pass(DELAY - 1, 1);
     TEST_ASSERT_NUM_WITHIN(2e-6, 0.5, current);
@@ -50,7 +50,7 @@ static void idles_after_its_delay_and_not_before(void)
     TEST_ASSERT_TRUE(current < full);
 }
 
-static void falls_to_the_idle_current_in_ten_ramps_and_no_further(void)
+static void test_falls_to_the_idle_current_in_ten_ramps_and_no_further(void)
 {
     pass(DELAY, 1);
     pass(500, 1); /* 0.3 of it takes 0.6 of 0.1 s */
@@ -61,14 +61,14 @@ static void falls_to_the_idle_current_in_ten_ramps_and_no_further(void)
     TEST_ASSERT_NUM_WITHIN(2e-6, 0.2, current);
 }
 
-static void takes_the_same_time_where_the_background_comes_seldom(void)
+static void test_takes_the_same_time_where_the_background_comes_seldom(void)
 {
     pass(DELAY, 10);
     pass(500, 10);
     TEST_ASSERT_NUM_WITHIN(6e-3, 0.25, current);
 }
 
-static void has_all_of_it_at_once_when_the_reference_moves_and_for_the_delay_from_then_on(void)
+static void test_has_all_of_it_at_once_when_the_reference_moves_and_for_the_delay_from_then_on(void)
 {
     pass(2 * DELAY, 1);
     look.holds = false;
@@ -81,7 +81,7 @@ static void has_all_of_it_at_once_when_the_reference_moves_and_for_the_delay_fro
     TEST_ASSERT_NUM_WITHIN(2e-6, 0.2, current);
 }
 
-static void has_all_of_it_at_once_when_the_load_changes_by_more_than_a_fifth_of_the_rated(void)
+static void test_has_all_of_it_at_once_when_the_load_changes_by_more_than_a_fifth_of_the_rated(void)
 {
     pass(2 * DELAY, 1);
     look.load = idle_load + NUM(0.09);
@@ -92,7 +92,7 @@ static void has_all_of_it_at_once_when_the_load_changes_by_more_than_a_fifth_of_
     TEST_ASSERT_NUM_WITHIN(2e-6, 0.5, current);
 }
 
-static void idles_again_under_a_load_that_stays(void)
+static void test_idles_again_under_a_load_that_stays(void)
 {
     pass(2 * DELAY, 1);
     look.load = idle_load + NUM(0.2);
@@ -101,7 +101,7 @@ static void idles_again_under_a_load_that_stays(void)
     TEST_ASSERT_NUM_WITHIN(2e-6, 0.2, current);
 }
 
-static void a_background_that_was_busy_for_long_makes_a_small_step(void)
+static void test_a_background_that_was_busy_for_long_makes_a_small_step(void)
 {
     pass(DELAY, 1);
     look.period += 100000;
@@ -112,12 +112,12 @@ static void a_background_that_was_busy_for_long_makes_a_small_step(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(idles_after_its_delay_and_not_before);
-    RUN_TEST(falls_to_the_idle_current_in_ten_ramps_and_no_further);
-    RUN_TEST(takes_the_same_time_where_the_background_comes_seldom);
-    RUN_TEST(has_all_of_it_at_once_when_the_reference_moves_and_for_the_delay_from_then_on);
-    RUN_TEST(has_all_of_it_at_once_when_the_load_changes_by_more_than_a_fifth_of_the_rated);
-    RUN_TEST(idles_again_under_a_load_that_stays);
-    RUN_TEST(a_background_that_was_busy_for_long_makes_a_small_step);
+    RUN_TEST(test_idles_after_its_delay_and_not_before);
+    RUN_TEST(test_falls_to_the_idle_current_in_ten_ramps_and_no_further);
+    RUN_TEST(test_takes_the_same_time_where_the_background_comes_seldom);
+    RUN_TEST(test_has_all_of_it_at_once_when_the_reference_moves_and_for_the_delay_from_then_on);
+    RUN_TEST(test_has_all_of_it_at_once_when_the_load_changes_by_more_than_a_fifth_of_the_rated);
+    RUN_TEST(test_idles_again_under_a_load_that_stays);
+    RUN_TEST(test_a_background_that_was_busy_for_long_makes_a_small_step);
     return UNITY_END();
 }

@@ -1,0 +1,113 @@
+/* The objects of CiA 301 that code answers for, and what may become of those that are stored. */
+#include "firmware/application/application.h"
+#include "firmware/application/setting_change.h"
+#include "firmware/link/link.h"
+
+enum { SAVE = 0x65766173, LOAD = 0x64616f6c }; /* "save", "load" */
+
+enum object_abort link_ask(struct application *application, const struct object *object,
+                           uint8_t value[OBJECT_BYTES_MAX], const char **text)
+{
+    switch (object->index) {
+    case 0x1001:
+        value[0] = link_error_register(application);
+        break;
+    case 0x1003:
+        value[0] = application->link->errors;
+        break;
+    case 0x1008:
+        *text = application->facts.board_name;
+        break;
+    case 0x100a:
+        *text = application->board.version;
+        break;
+    case 0x1010:
+    case 0x1011:
+        can_put(value, 1, 4); /* on command */
+        break;
+    default:
+        if (object->index < 0x2000u) {
+            pdo_ask(&application->link->pdos, object, value);
+        } else {
+            cia402_ask(application, object, value);
+        }
+        break;
+    }
+    return OBJECT_DONE;
+}
+
+static enum object_abort store(struct application *application, uint32_t signature)
+{
+    char refusal[DRIVE_ERROR_TEXT];
+
+    if (signature != SAVE) {
+        return OBJECT_NOT_TRANSFERRED;
+    }
+    return settings_store(application, refusal) == RECORD_REFUSED ? OBJECT_STORE_FAILED
+                                                                  : OBJECT_DONE;
+}
+
+static enum object_abort restore(struct application *application, uint32_t signature)
+{
+    char refusal[DRIVE_ERROR_TEXT];
+
+    if (signature != LOAD) {
+        return OBJECT_NOT_TRANSFERRED;
+    }
+    return settings_restore(application, refusal) ? OBJECT_DONE : OBJECT_WRONG_STATE;
+}
+
+enum object_abort link_obey(struct application *application, const struct object *object,
+                            const uint8_t value[OBJECT_BYTES_MAX])
+{
+    switch (object->index) {
+    case 0x1003:
+        if (value[0] != 0u) {
+            return OBJECT_OUT_OF_RANGE;
+        }
+        application->link->errors = 0;
+        application->link->objects.error_1 = 0;
+        return OBJECT_DONE;
+    case 0x1010:
+        return store(application, can_get(value, 4));
+    case 0x1011:
+        return restore(application, can_get(value, 4));
+    case 0x6040:
+        cia402_control(application, (uint16_t)can_get(value, 2));
+        return OBJECT_DONE;
+    default:
+        return pdo_obey(&application->link->pdos, object, value);
+    }
+}
+
+static bool is_mode(int8_t mode)
+{
+    return mode == CIA402_PROFILE_POSITION || mode == CIA402_PROFILE_VELOCITY ||
+           mode == CIA402_HOMING || mode == CIA402_CYCLIC_POSITION || mode == 0;
+}
+
+bool link_accepts(const struct application *application, const struct object *object,
+                  const uint8_t value[OBJECT_BYTES_MAX])
+{
+    const uint32_t number = can_get(value, object_bytes(object));
+
+    (void)application;
+    switch (object->index) {
+    case 0x6060:
+        return is_mode((int8_t)value[0]);
+    case 0x6098:
+        return value[0] == 35u || value[0] == 37u; /* on the present position */
+    case 0x60c2:
+        return object->sub == 1u ? number != 0u : (int8_t)value[0] >= -6 && (int8_t)value[0] <= 0;
+    case 0x605a:
+        return number == 2u || number == 6u;
+    case 0x6081:
+    case 0x6083:
+    case 0x6085:
+    case 0x6091:
+    case 0x6092:
+        return number != 0u;
+    default:
+        return true;
+    }
+}
