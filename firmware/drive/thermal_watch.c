@@ -122,7 +122,7 @@ static void begin(struct drive *drive)
 {
     const num_real cold_ohm = (num_real)drive->settings.cold_resistance_ohm;
     const num_real ohm = (num_real)num_to_double(drive->estimator.estimate.winding.resistance) *
-                          (num_real)drive->base.resistance_ohm;
+                         (num_real)drive->base.resistance_ohm;
 
     if (cold_ohm > 0) {
         winding_heat_begin(&drive->thermal.winding, ohm / cold_ohm);
