@@ -136,9 +136,6 @@ void axis_note_disabled(struct drive *drive)
 
 void axis_follow_encoder(struct drive *drive)
 {
-    if (!ESTIMATORS_READ_ENCODER || !drive->axis.counts) {
-        return;
-    }
     const struct position here =
         encoder_step(&drive->axis.encoder, &drive->params.estimator.encoder_observer.encoder,
                      drive->encoder_count);

@@ -55,7 +55,8 @@ void axis_note_disabled(struct drive *drive);
 /* Interrupt: the rotor may no longer be where it is said to be. */
 void axis_note_uncertain(struct drive *drive);
 
-/* Interrupt, with the bridge off: takes the reference along with the rotor as it is counted. */
+/* Interrupt, with the bridge off and an encoder that counts: takes the reference along with the
+ * rotor as it is counted. */
 void axis_follow_encoder(struct drive *drive);
 
 /* Interrupt, at rest or with the bridge off: the reference's position is this one. */

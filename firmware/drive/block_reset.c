@@ -15,9 +15,11 @@ void drive_reset_control(struct drive *drive)
 void drive_reset_motion(struct drive *drive)
 {
     const struct drive_params *params = &drive->params;
+    const bool encoder = estimator_has_encoder(&params->estimator);
+    const struct position kept = drive->reference.next.position;
     const struct estimator_start start = {
-        .position = axis_position(drive, params->enabling.encoder_zero_assumed),
-        .encoder_position = axis_position(drive, params->enabling.encoder_zero),
+        .position = encoder ? axis_position(drive, params->enabling.encoder_zero_assumed) : kept,
+        .encoder_position = encoder ? axis_position(drive, params->enabling.encoder_zero) : kept,
         .load_torque = params->enabling.initial_load_torque,
         .resistance = drive->estimator.estimate.winding.resistance,
         .unloaded_periods =

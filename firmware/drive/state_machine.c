@@ -333,22 +333,31 @@ bool state_machine_obey(struct drive *drive, const struct hal_samples *samples)
     return drive->supervision.state == DRIVE_OPERATION_ENABLED;
 }
 
-bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
+/* The bridge is off as the period begins. Apart: rare. */
+__attribute__((noinline)) static void step_unpowered(struct drive *drive,
+                                                     const struct hal_samples *samples)
 {
-    const bool was_powered = state_machine_powered(drive);
-
-    drive->encoder_count = samples->encoder_count;
-    if (!was_powered) {
+    if (ESTIMATORS_READ_ENCODER && drive->axis.counts) {
         axis_follow_encoder(drive);
     }
     if (command_queue_is_due(&drive->commands, drive->supervision.period)) {
         take_commands(drive);
     }
-    if (!step_outside_operation(drive, samples)) {
-        return false;
-    }
-    if (!was_powered) { /* it has only been reset; and a fault is entered at once */
+    if (step_outside_operation(drive,
+                               samples)) { /* it has only been reset; a fault comes at once */
         state_machine_check_samples(drive, samples);
     }
-    return was_powered;
+}
+
+bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
+{
+    drive->encoder_count = samples->encoder_count;
+    if (!state_machine_powered(drive)) {
+        step_unpowered(drive, samples);
+        return false;
+    }
+    if (command_queue_is_due(&drive->commands, drive->supervision.period)) {
+        take_commands(drive);
+    }
+    return step_outside_operation(drive, samples);
 }
