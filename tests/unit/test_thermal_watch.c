@@ -257,26 +257,26 @@ static void test_every_law_is_derated(void)
     }
 }
 
-static void heat_bridge(float bridge_C)
+static void heat_bridge(num_real bridge_C)
 {
-    bridge_code = (uint16_t)bridge_temperature_code(bridge_C, 3435.0f, CODES);
+    bridge_code = (uint16_t)bridge_temperature_code(bridge_C, (num_real)3435.0, CODES);
     pass(0.06, 0.0, 0.0);
 }
 
 static void test_a_hot_bridge_takes_the_limit_evenly_and_opens_at_its_end(void)
 {
-    heat_bridge(79.0f);
+    heat_bridge((num_real)79.0);
     TEST_ASSERT_DOUBLE_WITHIN(1e-4, 1.5 * RATED_A, law_limit_A());
-    heat_bridge(90.0f);
+    heat_bridge((num_real)90.0);
     TEST_ASSERT_DOUBLE_WITHIN(0.12 * RATED_A, 0.75 * RATED_A, law_limit_A());
     TEST_ASSERT_DOUBLE_WITHIN(0.12 * RATED_A, 0.75 * RATED_A,
                               limit_A(drive.params.hold.current_limit));
     TEST_ASSERT_EQUAL_UINT8(THERMAL_BRIDGE_DERATES, drive.thermal.shown);
-    heat_bridge(99.0f);
+    heat_bridge((num_real)99.0);
     TEST_ASSERT_EQUAL_INT(DRIVE_FAULT_NONE, drive.supervision.asked_for);
-    heat_bridge(100.5f);
+    heat_bridge((num_real)100.5);
     TEST_ASSERT_EQUAL_INT(DRIVE_FAULT_BRIDGE_OVERHEATED, drive.supervision.asked_for);
-    heat_bridge(60.0f);
+    heat_bridge((num_real)60.0);
     TEST_ASSERT_EQUAL_UINT8(0, drive.thermal.shown);
 }
 
@@ -285,9 +285,9 @@ static void test_a_derating_that_begins_too_late_leaves_the_fault_where_it_is(vo
 {
     settings.bridge_derate_C = 120.0;
     start();
-    heat_bridge(99.0f);
+    heat_bridge((num_real)99.0);
     TEST_ASSERT_EQUAL_INT(DRIVE_FAULT_NONE, drive.supervision.asked_for);
-    heat_bridge(101.0f);
+    heat_bridge((num_real)101.0);
     TEST_ASSERT_EQUAL_INT(DRIVE_FAULT_BRIDGE_OVERHEATED, drive.supervision.asked_for);
 }
 
@@ -302,7 +302,7 @@ static void test_a_sensor_that_is_broken_is_said_and_takes_nothing(void)
         TEST_ASSERT_EQUAL_INT(DRIVE_FAULT_NONE, drive.supervision.asked_for);
         TEST_ASSERT_DOUBLE_WITHIN(1e-4, 1.5 * RATED_A, law_limit_A());
     }
-    heat_bridge(40.0f);
+    heat_bridge((num_real)40.0);
     TEST_ASSERT_EQUAL_UINT8(0, drive.thermal.shown);
 }
 
