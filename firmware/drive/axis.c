@@ -6,16 +6,17 @@
 #include "firmware/drive/drive.h"
 #include "firmware/drive/state_machine.h"
 
-#define FAULT_BIT(fault) (1u << DRIVE_FAULT_##fault)
+/* What a fault's row says of the position. */
+enum { STANDS, WITH_ENCODER, UNCERTAIN };
 
-/* They come of supply, board and winding. */
-#define SAY_NOTHING_OF_ROTOR                                                                       \
-    (FAULT_BIT(NONE) | FAULT_BIT(OVERCURRENT) | FAULT_BIT(HARDWARE_OVERCURRENT) |                  \
-     FAULT_BIT(DEADLINE_MISSED) | FAULT_BIT(BUS_VOLTAGE) | FAULT_BIT(PHASE_IMBALANCE))
-
-/* May come of an encoder that does not count what the rotor does, or of a search that failed. */
-#define SAY_ENCODER_MAY_FAIL                                                                       \
-    (FAULT_BIT(FOLLOWING_ERROR) | FAULT_BIT(ESTIMATE_RANGE) | FAULT_BIT(POSITION_NOT_FOUND))
+#define BIT_IF_STANDS(constant, code, name, cause, limit, position, remedy)                        \
+    | (uint32_t)((position) == STANDS) << DRIVE_FAULT_##constant
+#define BIT_IF_UNCERTAIN(constant, code, name, cause, limit, position, remedy)                     \
+    | (uint32_t)((position) == UNCERTAIN) << DRIVE_FAULT_##constant
+static const uint32_t say_nothing_of_rotor = 1u
+                                             << DRIVE_FAULT_NONE DRIVE_FAULTS_TABLE(BIT_IF_STANDS);
+static const uint32_t say_encoder_may_fail = 0u DRIVE_FAULTS_TABLE(BIT_IF_UNCERTAIN);
+_Static_assert((int)DRIVE_FAULTS <= 32, "a bit each");
 
 static bool is_one_of(enum drive_fault fault, uint32_t faults)
 {
@@ -123,9 +124,9 @@ void axis_note_bridge_off(struct drive *drive, enum drive_fault fault)
     const struct encoder *encoder = estimator_encoder(&drive->estimator, &drive->params.estimator);
 
     if (encoder == NULL) {
-        leave_rotor(drive, powered, is_one_of(fault, SAY_NOTHING_OF_ROTOR));
+        leave_rotor(drive, powered, is_one_of(fault, say_nothing_of_rotor));
     } else if (powered) {
-        leave_encoder(drive, encoder, !is_one_of(fault, SAY_ENCODER_MAY_FAIL));
+        leave_encoder(drive, encoder, !is_one_of(fault, say_encoder_may_fail));
     }
 }
 

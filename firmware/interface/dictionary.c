@@ -77,7 +77,7 @@ const char *signal_word(const struct signal_row *signal, double value)
 #define LIMIT(member) offsetof(struct drive_settings, member)
 #define NO_LIMIT      FAULT_WITHOUT_LIMIT
 
-#define FAULT_ROW(constant, code, name, cause, limit, remedy) {name, cause, code, limit},
+#define FAULT_ROW(constant, code, name, cause, limit, position, remedy) {name, cause, code, limit},
 
 static const struct fault_row faults[DRIVE_FAULTS] = {{"none", "", 0x0000, NO_LIMIT},
                                                       DRIVE_FAULTS_TABLE(FAULT_ROW)};

@@ -85,7 +85,7 @@ const struct signal_text *signal_text(enum drive_signal signal)
 
 /* ---- faults ---- */
 
-#define FAULT_REMEDY(constant, code, name, cause, limit, remedy) remedy,
+#define FAULT_REMEDY(constant, code, name, cause, limit, position, remedy) remedy,
 
 const char *fault_remedy(enum drive_fault fault)
 {

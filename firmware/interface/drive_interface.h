@@ -33,7 +33,8 @@ enum drive_state {
 };
 
 /* Why the bridge was opened; faults_table.h has each with cause and remedy. */
-#define DRIVE_FAULT_CONSTANT(constant, code, name, cause, limit, remedy) DRIVE_FAULT_##constant,
+#define DRIVE_FAULT_CONSTANT(constant, code, name, cause, limit, position, remedy)                 \
+    DRIVE_FAULT_##constant,
 enum drive_fault { DRIVE_FAULT_NONE, DRIVE_FAULTS_TABLE(DRIVE_FAULT_CONSTANT) DRIVE_FAULTS };
 #undef DRIVE_FAULT_CONSTANT
 

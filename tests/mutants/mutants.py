@@ -687,6 +687,11 @@ MUTANTS = [
            "what_is_set_in_motion_is_derated_too",
            "drive->thermal.motor_in_force + drive->thermal.bridge_in_force > 0", "false"),
 
+    Mutant("firmware/interface/faults_table.h", "axis",
+           "an_encoder_that_stands_still_is_aligned_anew",
+           'FAULT(ENCODER, 0x7305, "encoder", "no count comes at full torque", NO_LIMIT, UNCERTAIN,',
+           'FAULT(ENCODER, 0x7305, "encoder", "no count comes at full torque", NO_LIMIT, STANDS,'),
+
     # ---- application ----
     Mutant(APPLICATION + "console.c", "console",
            "a_motion_stops_when_no_line_comes_for_the_command_timeout",

@@ -19,7 +19,7 @@ ROWS = [
     ("signals_table.h", "#define DRIVE_SIGNALS_TABLE(",
      'COUNT(0x2ff1, proof_count, planner.underruns, "", TRACED, "signal of the proof")'),
     ("faults_table.h", "#define DRIVE_FAULTS_TABLE(",
-     'FAULT(PROOF, 0xfff0, "proven", "cause of the proof", NO_LIMIT, "remedy of the proof")'),
+     'FAULT(PROOF, 0xfff0, "proven", "cause of the proof", NO_LIMIT, STANDS, "remedy of the proof")'),
 ]
 ACT = ("    if (!command_rules_check(drive, command, asked_in, error)) {\n        return false;\n    }\n",
        "    if (command->kind == DRIVE_COMMAND_PROOF) {\n"

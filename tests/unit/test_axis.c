@@ -2,6 +2,7 @@
    The whole drive on the simulated motor: averaged bridge, converters without noise. */
 #include <string.h>
 
+#include "firmware/drive/state_machine.h"
 #include "tests/unit/fake_board.h"
 #include "tests/unit/num_assert.h"
 
@@ -403,6 +404,39 @@ static void test_a_following_error_leaves_an_encoder_to_be_aligned_anew(void)
     the_position_is("uncertain", &one);
 }
 
+/* Asked for by the background, as the watches do, of a drive at rest that has been homed. */
+static const char *position_behind(enum drive_fault fault, bool encoder)
+{
+    power_up(&one, encoder);
+    enable(&one);
+    post(&one, set_position(3.0));
+    run(&one, 2);
+    state_machine_ask_for_fault(&one.drive, fault);
+    run(&one, 2);
+    TEST_ASSERT_EQUAL(fault, signals(&one).fault);
+    disable(&one);
+    return drive_position_reference_name(signals(&one).position_reference);
+}
+
+static void test_heat_says_nothing_of_the_rotor(void)
+{
+    TEST_ASSERT_EQUAL_STRING("kept", position_behind(DRIVE_FAULT_MOTOR_OVERHEATED, false));
+    TEST_ASSERT_EQUAL_STRING("kept", position_behind(DRIVE_FAULT_BRIDGE_OVERHEATED, false));
+    TEST_ASSERT_EQUAL_STRING("referenced", position_behind(DRIVE_FAULT_MOTOR_OVERHEATED, true));
+}
+
+static void test_a_broken_lead_says_nothing_of_what_an_encoder_counts(void)
+{
+    TEST_ASSERT_EQUAL_STRING("uncertain", position_behind(DRIVE_FAULT_OPEN_PHASE_A, false));
+    TEST_ASSERT_EQUAL_STRING("referenced", position_behind(DRIVE_FAULT_OPEN_PHASE_A, true));
+}
+
+static void test_an_encoder_that_stands_still_is_aligned_anew(void)
+{
+    TEST_ASSERT_EQUAL_STRING("uncertain", position_behind(DRIVE_FAULT_ENCODER, true));
+    TEST_ASSERT_FALSE(one.drive.axis.aligned);
+}
+
 static void test_a_disable_within_the_search_does_not_take_it_for_done(void)
 {
     power_up(&one, true);
@@ -630,6 +664,9 @@ int main(void)
     RUN_TEST(test_an_encoder_sees_a_rotor_that_is_turned_while_disabled);
     RUN_TEST(test_an_encoder_is_aligned_once);
     RUN_TEST(test_a_following_error_leaves_an_encoder_to_be_aligned_anew);
+    RUN_TEST(test_heat_says_nothing_of_the_rotor);
+    RUN_TEST(test_a_broken_lead_says_nothing_of_what_an_encoder_counts);
+    RUN_TEST(test_an_encoder_that_stands_still_is_aligned_anew);
     RUN_TEST(test_a_disable_within_the_search_does_not_take_it_for_done);
     RUN_TEST(test_a_setting_of_the_zero_begins_anew_and_no_other_does);
     RUN_TEST(test_no_bit_of_the_duties_depends_on_the_zero);
