@@ -134,7 +134,7 @@ double axis_motion_target(struct application *application)
     const bool relative =
         link->axis.mode == CIA402_PROFILE_POSITION && (link->axis.controlword & RELATIVE) != 0u;
     const double unit_rad = cia402_unit_rad(&link->objects);
-    const double from = relative ? (motion->target_rad - link->axis.zero_rad) / unit_rad : 0.0;
+    const double from = relative ? motion->target_rad / unit_rad : 0.0;
     double target = from + (double)link->objects.target_position;
 
     if (target < (double)link->objects.position_least) {
@@ -144,7 +144,7 @@ double axis_motion_target(struct application *application)
         motion->limited = true;
         target = (double)link->objects.position_most;
     }
-    return link->axis.zero_rad + unit_rad * target;
+    return unit_rad * target;
 }
 
 static void take_set_point(struct application *application)
@@ -203,6 +203,17 @@ static void go_at_speed(struct application *application)
     }
 }
 
+/* ---- homing ---- */
+
+static void home(struct application *application)
+{
+    const struct link_objects *objects = &application->link->objects;
+    struct drive_command here = {.kind = DRIVE_COMMAND_SET_POSITION,
+                                 .position_rad = cia402_unit_rad(objects) * objects->home_offset};
+
+    motion_of(application)->homed = cia402_command(application, &here);
+}
+
 /* ---- all ---- */
 
 void axis_motion_control(struct application *application, uint16_t risen)
@@ -220,10 +231,7 @@ void axis_motion_control(struct application *application, uint16_t risen)
     if ((risen & NEW_SET_POINT) != 0u && axis->mode == CIA402_PROFILE_POSITION) {
         take_set_point(application);
     } else if ((risen & START_HOMING) != 0u && axis->mode == CIA402_HOMING) {
-        axis->zero_rad =
-            cia402_signals(application)->theta_ref_rad -
-            cia402_unit_rad(&application->link->objects) * application->link->objects.home_offset;
-        motion->homed = true;
+        home(application);
     }
 }
 
@@ -321,7 +329,7 @@ uint16_t axis_motion_status(struct application *application)
         off = false;
     } else if (axis->mode == CIA402_HOMING) {
         reached = true;
-        of_mode = motion->homed;
+        of_mode = motion->homed && rests;
         off = false;
     } else if (axis->mode == CIA402_CYCLIC_POSITION) {
         of_mode = !motion->halted && axis->stream.owed == 0u; /* follows what is asked for */

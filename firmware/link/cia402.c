@@ -249,10 +249,8 @@ void cia402_start(struct application *application)
 {
     struct cia402 *axis = &application->link->axis;
     const enum drive_state drive = interrupt_view_state(&application->drive);
-    const double zero_rad = axis->zero_rad;
 
     *axis = (struct cia402){
-        .zero_rad = zero_rad,
         .mode = application->link->objects.mode,
         .signals_in = interrupt_view_period(&application->drive) - 1u,
         .state = drive == DRIVE_FAULT                ? CIA402_FAULT

@@ -49,7 +49,6 @@ struct axis_motion {
 };
 
 struct cia402 {
-    double zero_rad; /* where the drive is when its position is 0 */
     uint16_t controlword;
     uint8_t state;       /* enum cia402_state */
     int8_t mode;         /* in force */

@@ -43,9 +43,7 @@ static int32_t rounded(double value)
 /* In units; of those that are measured in them. */
 static double quantity(struct application *application, uint16_t index)
 {
-    const struct link *link = application->link;
     const struct drive_signals *now = cia402_signals(application);
-    double less = link->axis.zero_rad;
     double value;
 
     switch (index) {
@@ -57,20 +55,17 @@ static double quantity(struct application *application, uint16_t index)
         break;
     case 0x606b:
         value = now->omega_ref_rad_s;
-        less = 0.0;
         break;
     case 0x606c:
         value = now->omega_est_rad_s;
-        less = 0.0;
         break;
     case 0x60f4:
-        value = now->theta_ref_rad;
-        less = now->theta_est_rad;
+        value = now->theta_ref_rad - now->theta_est_rad;
         break;
     default:
         return 1e3 * now->bus_V;
     }
-    return (value - less) / cia402_unit_rad(&link->objects);
+    return value / cia402_unit_rad(&application->link->objects);
 }
 
 void cia402_ask(struct application *application, const struct object *object, uint8_t *value)
