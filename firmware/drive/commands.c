@@ -49,7 +49,7 @@ static bool plan(struct drive *drive, const struct drive_command *command, struc
 static bool set_position(struct drive *drive, const struct drive_command *command,
                          struct queued_command *queued, char error[DRIVE_ERROR_TEXT])
 {
-    const double range = 1e9 * drive->base.rad_per_turn;
+    const double range = POSITION_TURNS_MAX * drive->base.rad_per_turn;
 
     queued->position = position_from_rad(command->position_rad, drive->settings.motor.rotor_teeth);
     return design_require_within(error, "position", command->position_rad, -range, range, "rad",
@@ -63,7 +63,7 @@ static bool put_set_point(struct drive *drive, const struct drive_command *comma
                           char error[DRIVE_ERROR_TEXT])
 {
     const int32_t teeth = drive->settings.motor.rotor_teeth;
-    const double range = 1e9 * drive->base.rad_per_turn;
+    const double range = POSITION_TURNS_MAX * drive->base.rad_per_turn;
 
     if (!(command->position_rad >= -range && command->position_rad <= range)) {
         return design_refuse(error, "set-point refused: the position is out of range");

@@ -9,7 +9,6 @@
 #define SPEED_MAX_TURNS        0.45
 #define ACCELERATION_MAX_TURNS 0.0078125
 
-#define TURNS_MAX         1e9
 #define DURATION_MAX      1073741824.0 /* 2^30 periods */
 #define JERK_TIME_MAX     131072.0 /* 2^17 periods: rounding of the jerk stays far below 2^-32 turn */
 #define SINE_PERIODS_MIN  20.0     /* of a cycle */
@@ -103,7 +102,7 @@ static bool request_retarget(struct drive *drive, const struct drive_command *co
 {
     const struct units units = units_of(drive);
     const struct speed_limit limit = speed_limit(drive, &units);
-    const double range = TURNS_MAX * units.turn_rad;
+    const double range = POSITION_TURNS_MAX * units.turn_rad;
     const int32_t teeth = drive->settings.motor.rotor_teeth;
     const struct position here = reference_position(drive);
     double distance;
@@ -158,7 +157,7 @@ static bool request_sine(const struct drive *drive, const struct drive_command *
     struct motion_limits *limits = &request->limits;
 
     if (!design_require_within(error, "amplitude", amplitude, AMPLITUDE_MIN_rad,
-                               TURNS_MAX * units.turn_rad, "rad", "range of amplitudes") ||
+                               POSITION_TURNS_MAX * units.turn_rad, "rad", "range of amplitudes") ||
         !design_require_within(error, "frequency", command->frequency_Hz, FREQUENCY_MIN_Hz,
                                1.0 / (SINE_PERIODS_MIN * T), "Hz",
                                "20 control periods to a cycle") ||

@@ -55,7 +55,7 @@ bool planned_end_require_no_stop(struct drive *drive, char error[DRIVE_ERROR_TEX
 bool planned_end_require_in_range(struct drive *drive, struct position position,
                                   char error[DRIVE_ERROR_TEXT])
 {
-    const double range = 1e9 * drive->base.rad_per_turn;
+    const double range = POSITION_TURNS_MAX * drive->base.rad_per_turn;
     const double position_rad = position_to_rad(position_plus(position, drive->planned_end.offset),
                                                 drive->settings.motor.rotor_teeth);
 

@@ -15,6 +15,9 @@ enum planned_end_known {
     PLANNED_END_AFTER_ENABLING, /* where the rotor is when the drive is ready */
 };
 
+/* Positions that a motion may begin and end at, electrical turns either way. */
+#define POSITION_TURNS_MAX 1e9
+
 struct planned_end {
     struct position position; /* the last one that was known, the motor's */
     struct position offset;   /* from there to the user's coordinates: drive/axis.h */
