@@ -56,7 +56,7 @@ void axis_note_disabled(struct drive *drive);
 void axis_note_uncertain(struct drive *drive);
 
 /* Interrupt, with the bridge off and an encoder that counts: takes the reference along with the
- * rotor as it is counted. */
+   rotor as it is counted. */
 void axis_follow_encoder(struct drive *drive);
 
 /* Interrupt, at rest or with the bridge off: the reference's position is this one. */

@@ -490,7 +490,7 @@ void drive_control_cycle(struct drive *drive, const struct hal_samples *samples,
         rest(drive, samples, outputs);
         return;
     }
-    drive->current_codes.a = samples->current_a; /* for phase_watch.h, in the background */
+    drive->current_codes.a = samples->current_a; /* for the watches in the background */
     drive->current_codes.b = samples->current_b;
     if (RARE(drive->params.path.general)) {
         control_general(drive, samples, outputs);

@@ -16,8 +16,8 @@
  * In a hold a stuck sensor lets the true current drift away, and the resistance that is found with
  * it: at the end of its range it is the sensor of the larger current.
  *
- * In the background, by four looks at least; behind fourteen periods that
- * it does not come to it begins anew.
+ * In the background, by four looks at least; behind fourteen periods that it does not come to it
+ * begins anew.
  */
 #ifndef STEADYSTEP_PHASE_WATCH_H
 #define STEADYSTEP_PHASE_WATCH_H

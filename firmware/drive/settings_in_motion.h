@@ -2,9 +2,10 @@
  * Settings that change in a drive that is ready: rows of interface/settings_table.h that say
  * IN_MOTION. Each is a constant of the interrupt that is written as a whole, and none makes a kink:
  *
- *   current_limit_A      of the q current in law and hold, less what thermal_watch.h takes of it,
- * and what the synchronism monitor takes for all of it: a demand beyond it is cut, any other goes
- * on as it is motion_current_A     to which i_d* ramps, with the ramp of the hold current
+ *   current_limit_A      of the q current in law and hold, less what thermal_watch.h takes, and
+ *                        what the synchronism monitor takes for all of it: a demand beyond it is
+ *                        cut, any other goes on as it is
+ *   motion_current_A     to which i_d* ramps, with the ramp of the hold current
  *   overcurrent_trip_A   the range of codes; for a period it may be the wider of both
  *   synchronism_policy   between fault and warn
  */

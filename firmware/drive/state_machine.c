@@ -343,8 +343,8 @@ __attribute__((noinline)) static void step_unpowered(struct drive *drive,
     if (command_queue_is_due(&drive->commands, drive->supervision.period)) {
         take_commands(drive);
     }
-    if (step_outside_operation(drive,
-                               samples)) { /* it has only been reset; a fault comes at once */
+    if (step_outside_operation(drive, samples)) {
+        /* the control has only been reset; a fault is entered at once */
         state_machine_check_samples(drive, samples);
     }
 }

@@ -14,11 +14,12 @@
  *                         shunts is in series
  *   CURRENT_A_CHANNEL...  of the converter, 0...14, which is all that its sequencer knows: currents
  *                         A and B, LEG_A_PLUS_CHANNEL..., BUS_CHANNEL, TEMPERATURE_CHANNEL
- *   BRIDGE_NTC_BETA_K     of the NTC resistor at the latter, firmware/drive/thermal_model.h; 0:
- * none CURRENT_A_PER_CODE, CURRENT_ZERO_CODE, BUS_V_PER_CODE PHASE_VOLTAGE_V_PER_CODE   of the
- * difference of two legs: a code is two codes of a leg HAS_BRAKE             1: an output
- * BRAKE_PORT, BRAKE_PIN connects the brake resistor while it is high; pulled down, here and
- * outside. 0: none BAUD                  of LPUART1
+ *   BRIDGE_NTC_BETA_K     of the NTC resistor there, firmware/drive/thermal_model.h; 0: none
+ *   CURRENT_A_PER_CODE, CURRENT_ZERO_CODE, BUS_V_PER_CODE
+ *   PHASE_VOLTAGE_V_PER_CODE   of the difference of two legs: a code is two codes of a leg
+ *   HAS_BRAKE             1: an output BRAKE_PORT, BRAKE_PIN connects the brake resistor while it
+ *                         is high; pulled down, here and outside. 0: none
+ *   BAUD                  of LPUART1
  */
 #ifndef STEADYSTEP_STM32G071_BOARD_H
 #define STEADYSTEP_STM32G071_BOARD_H

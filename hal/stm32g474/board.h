@@ -18,11 +18,13 @@
  *   DEAD_TIME_CYCLES      of TIM1, 1/170 us; 64...127, even 128...254, of 256...504 multiples of
  *                         8; 0 with BRIDGE_INTEGRATED, whose own is BRIDGE_DEAD_TIME_s
  *   BRIDGE_RESISTANCE_OHM of both switches that conduct, and what of the shunts is in series; 0:
- * the hold at enabling measures it with the motor's CHANNEL_A_PLUS...     channel 1...4 of TIM1 of
- * each leg: A_PLUS, A_MINUS, B_PLUS, B_MINUS AMPLIFIER_A, _B       OPAMP of a phase's shunt, that
- * of the leg minus: 1 for a, which ADC1 converts, 2 or 3 for b, which ADC2 does; 0: an amplifier
- * outside AMPLIFIER_A_INPUT...  its input VINP0...2 AMPLIFIER_GAIN        of both: 2, 4, 8, 16, 32
- * or 64 CURRENT_A_CHANNEL, _B of ADC1 and of ADC2: 13 of OPAMP1, 16 of OPAMP2, 18 of OPAMP3
+ *                         the hold at enabling measures it with the motor's
+ *   CHANNEL_A_PLUS...     channel 1...4 of TIM1 of each leg: A_PLUS, A_MINUS, B_PLUS, B_MINUS
+ *   AMPLIFIER_A, _B       OPAMP of a phase's shunt, that of the leg minus: 1 for a, which ADC1
+ *                         converts, 2 or 3 for b, which ADC2 does; 0: an amplifier outside
+ *   AMPLIFIER_A_INPUT...  its input VINP0...2
+ *   AMPLIFIER_GAIN        of both: 2, 4, 8, 16, 32 or 64
+ *   CURRENT_A_CHANNEL, _B of ADC1 and of ADC2: 13 of OPAMP1, 16 of OPAMP2, 18 of OPAMP3
  *   CURRENT_A_PER_CODE, CURRENT_ZERO_CODE
  *   OVERCURRENT_COMPARATORS(COMPARATOR)
  *                         COMPARATOR(COMP1...7, input INP0 or INP1) of every shunt that trips; may
@@ -32,10 +34,12 @@
  *   LEGS_A_CONVERTER, _B  ADC3, ADC4 or ADC5, and there LEG_A_PLUS_CHANNEL... 1...18
  *   PHASE_VOLTAGE_V_PER_CODE  of the difference of two legs: a code is two codes of a leg
  *   BUS_CHANNEL, BUS_V_PER_CODE, TEMPERATURE_CHANNEL   of ADC1, ADC1 and ADC2
- *   BRIDGE_NTC_BETA_K     of the NTC resistor at the latter, firmware/drive/thermal_model.h; 0:
- * none HAS_BRAKE             1: an output BRAKE_PORT, BRAKE_PIN connects the brake resistor while
- * it is high; pulled down, here and outside. 0: none ENCODER_TIMER         4, 5 or 8: its channels
- * 1 and 2; 0: none BAUD                  of LPUART1 LED_PORT, LED_PIN
+ *   BRIDGE_NTC_BETA_K     of the NTC resistor there, firmware/drive/thermal_model.h; 0: none
+ *   HAS_BRAKE             1: an output BRAKE_PORT, BRAKE_PIN connects the brake resistor while it
+ *                         is high; pulled down, here and outside. 0: none
+ *   ENCODER_TIMER         4, 5 or 8: its channels 1 and 2; 0: none
+ *   BAUD                  of LPUART1
+ *   LED_PORT, LED_PIN
  */
 #ifndef STEADYSTEP_STM32G474_BOARD_H
 #define STEADYSTEP_STM32G474_BOARD_H
