@@ -158,6 +158,8 @@ def g071_memory(sources):
     from arm_image import memory
     elf = image(sources, G071)
     sections = section_sizes(elf)
+    flash = 1024 * int(re.search(r"FLASH .*LENGTH = (\d+)K",
+                                 (ROOT / "hal/stm32g071/memory.ld").read_text(encoding="utf-8"))[1])
     used = re.search(r"stack: (\d+) bytes used",
                      sources.text(sources.built("sil/tests/stm32g071_run", "sil"), elf))[1]
     bound = re.findall(r"(\d+) B in all", sources.tool("stack_bound", elf))[-1]
@@ -165,7 +167,7 @@ def g071_memory(sources):
     data = sum(sections[name] for name in (".data", ".bss", ".no_init"))
     return table(["memory", "bytes", "of"], [
         ["flash, with the code that is copied to RAM", f"{loaded:,}",
-         "122,880 (8,192 more are the store)"],
+         f"{flash:,} ({128 * 1024 - flash:,} more are the store)"],
         ["RAM: code and tables of the interrupt", f"{sections['.ram_code']:,}", ""],
         ["RAM: data", f"{data:,}", ""],
         ["RAM: stack, used in the run / static bound", f"{int(used):,} / {int(bound):,}",
