@@ -2,9 +2,9 @@
 
 #include <stddef.h>
 
+#include "firmware/design/text.h"
 #include "firmware/drive/default_settings.h"
 #include "firmware/drive/encoder_aligning.h"
-#include "firmware/design/text.h"
 
 #define BEGINS_WITH_ITS_ESTIMATE(constant, name)                                                   \
     _Static_assert(offsetof(struct name, estimate) == 0, #name);
