@@ -5,7 +5,7 @@ usage: run.py ROOT UNITY [--compiler CC] [--jobs N] [--only TEXT] [--one-per-fil
 
 Each mutant of mutants.py replaces one text of one firmware file in a copy and must make the tests
 it names fail; unbroken, they must pass. exit 1 with one line per mutant that survives, does not
-compile, or whose text is no longer found exactly once.
+compile, or whose text is no longer found exactly once; the last is asked of every mutant.
 """
 import argparse
 import concurrent.futures
@@ -17,15 +17,30 @@ from build import Build, Failure, overlay_of
 from mutants import MUTANTS
 
 
-def broken(build, number, mutant):
-    """What the test prints with the mutant in place."""
-    path = build.root / mutant.file
+def text_of(root, mutant):
+    """The file that the mutant breaks; a Failure unless it holds the mutant's text once."""
+    path = root / mutant.file
     if not path.is_file():
         raise Failure(f"no such file: {mutant.file}")
     text = path.read_text(encoding="utf-8")
     if text.count(mutant.old) != 1:
         raise Failure(f"found {text.count(mutant.old)} times in {mutant.file}, "
                       f"not once: {mutant.old!r}")
+    return text
+
+
+def outdated(root, mutants):
+    """One line per mutant whose text is not there, run or not."""
+    for mutant in mutants:
+        try:
+            text_of(root, mutant)
+        except Failure as failure:
+            yield f"{mutant.fails}: {failure}"
+
+
+def broken(build, number, mutant):
+    """What the test prints with the mutant in place."""
+    text = text_of(build.root, mutant)
     folder = build.scratch / f"mutant-{number}"
     overlay = overlay_of(folder / "tree", mutant.file, text.replace(mutant.old, mutant.new))
     replaced = {}
@@ -75,6 +90,10 @@ def main():
     parser.add_argument("--one-per-file", action="store_true", help="of each file the first only")
     arguments = parser.parse_args()
 
+    stale = list(outdated(arguments.root, MUTANTS))
+    if stale:
+        print("\n".join(stale))
+        return 1
     mutants = [mutant for mutant in MUTANTS
                if arguments.only in mutant.file or arguments.only in mutant.test]
     if arguments.one_per_file:
