@@ -35,7 +35,8 @@ elseif(STEADYSTEP_COMPILER STREQUAL "clang")
   execute_process(COMMAND arm-none-eabi-gcc -print-file-name=libc.a
     OUTPUT_VARIABLE libc OUTPUT_STRIP_TRAILING_WHITESPACE)
   cmake_path(GET libc PARENT_PATH libraries)
-  string(APPEND CMAKE_C_FLAGS_INIT " -isystem ${libraries}/../include")
+  # The library is gcc's and has its short enumerations: one layout of the drive for both compilers.
+  string(APPEND CMAKE_C_FLAGS_INIT " -fshort-enums -isystem ${libraries}/../include")
   set(CMAKE_C_LINK_EXECUTABLE
     "arm-none-eabi-gcc ${core_flags} <LINK_FLAGS> <CMAKE_C_LINK_FLAGS> <OBJECTS> -o <TARGET> <LINK_LIBRARIES>")
 else()
