@@ -23,7 +23,7 @@ namespace
 using namespace virtual_board;
 
 constexpr Ticks us = ticks_per_s / 1000000, ms = 1000 * us;
-constexpr Ticks start_time = 800 * ms; /* 0.6 s, and its text */
+constexpr Ticks start_time = 800 * ms;          /* 0.6 s, and its text */
 constexpr std::size_t settings_at = 124 * 1024; /* third page of the store */
 constexpr unsigned pend_sv = 14;
 
