@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """What tools/pack_image packs, hal/cortex_m/unpack.c makes again: the regions of an image, and bytes
-that no image has.
+that no image has. And its .bin, made by objcopy, is what the ELF file's segments load.
 
 usage: unpacking.py CC ROOT IMAGE.elf     CC: a compiler of the host; IMAGE.elf: packed
 """
@@ -16,6 +16,7 @@ from elftools.elf.elffile import ELFFile
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
 
+from arm_image import memory  # noqa: E402
 from arm_image.packing import pack  # noqa: E402
 
 BEYOND = b"\xa5" * 16  # behind each region: it must stay
@@ -75,7 +76,12 @@ def main():
             wrong += not right
             size = sum(map(len, regions))
             print(f"{'same' if right else 'DIFFERS'}: {name}, {size} B, packed {len(packed)}")
-    return 1 if wrong else 0
+    (start, _), *_ = loaded = memory.loaded(image)
+    binary = Path(image).with_suffix(".bin").read_bytes()
+    same = all(binary[at - start :][: len(data)] == data for at, data in loaded)
+    same &= len(binary) == loaded[-1][0] + len(loaded[-1][1]) - start
+    print(f"{'same' if same else 'DIFFERS'}: .bin, {len(binary)} B")
+    return 1 if wrong or not same else 0
 
 
 if __name__ == "__main__":
