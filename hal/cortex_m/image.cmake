@@ -144,6 +144,15 @@ function(board_program target path)
     -T ${CMAKE_CURRENT_SOURCE_DIR}/memory.ld -Wl,--build-id=none)
 endfunction()
 
+# pack_image(<target>): packs what the program unpacks to RAM.
+function(pack_image target)
+  set(tools ${PROJECT_SOURCE_DIR}/tools)
+  add_custom_command(TARGET ${target} POST_BUILD
+    COMMAND ${tools}/pack_image $<TARGET_FILE:${target}> VERBATIM)
+  set_property(TARGET ${target} APPEND PROPERTY
+    LINK_DEPENDS ${tools}/pack_image ${tools}/arm_image/packing.py)
+endfunction()
+
 # interrupt_sections(<target>... [IN_FLASH <function>...]): interrupt_sections.ld, which the linker
 # script of the targets includes: what the control interrupt reaches, but for functions that stay in
 # flash. The image with nothing of it placed, `unplaced`, shows it; its sources are the caller's.
@@ -177,9 +186,12 @@ function(board_image target)
   board_program(${target} ${pin_map})
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
   target_link_options(${target} PRIVATE -Wl,-Map=${image}.elf.map)
+  if(STEADYSTEP_PACKED)
+    pack_image(${target})
+  endif()
   add_custom_command(TARGET ${target} POST_BUILD
-    COMMAND ${CMAKE_OBJCOPY} -O ihex ${image}.elf ${image}.hex
-    COMMAND ${CMAKE_OBJCOPY} -O binary ${image}.elf ${image}.bin
+    COMMAND ${CMAKE_OBJCOPY} -O ihex -R .unpacked.* ${image}.elf ${image}.hex
+    COMMAND ${CMAKE_OBJCOPY} -O binary -R .unpacked.* ${image}.elf ${image}.bin
     COMMAND arm-none-eabi-size -A -x ${image}.elf
     COMMAND ${PROJECT_SOURCE_DIR}/tools/image_map ${image}.elf
     VERBATIM)

@@ -5,9 +5,12 @@
 #include <stdint.h>
 
 extern uint32_t stack_bottom, stack_top;
-/* Vector table, code and constants of the interrupts: copied at start to memory without wait
-   states. */
-extern uint32_t interrupt_code_load, interrupt_code_start, interrupt_code_end;
+/* In memory without wait states: vector table and handlers, copied at reset; behind them code and
+   constants of the control interrupt, unpacked later. */
+extern uint32_t handlers_load, handlers_start, handlers_end;
+extern uint32_t interrupt_code_start, interrupt_code_end;
+extern uint32_t tables_start, tables_end, texts_start, texts_end; /* of the STM32G474 */
+extern const uint8_t packed[];
 extern uint32_t data_load, data_start, data_end;
 extern uint32_t bss_start, bss_end;
 extern uint32_t dma_buffers_start, dma_buffers_end; /* of the STM32G474 */

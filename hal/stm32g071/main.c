@@ -6,7 +6,9 @@
 #include "hal/cortex_m/crash.h"
 #include "hal/cortex_m/image.h"
 #include "hal/cortex_m/interrupts.h"
+#include "hal/cortex_m/linker.h"
 #include "hal/cortex_m/serial_line.h"
+#include "hal/cortex_m/unpack.h"
 #include "hal/stm32g071/bridge.h"
 #include "hal/stm32g071/clock.h"
 #include "hal/stm32g071/control_interrupt.h"
@@ -15,6 +17,16 @@
 #include "hal/stm32g071/watchdog.h"
 
 struct application application;
+
+/* No control interrupt may come before. */
+static void unpack_memory(void)
+{
+    static const struct unpacked_region region = {&interrupt_code_start, &interrupt_code_end};
+
+    unpack(packed, &region, 1);
+    __DSB();
+    __ISB();
+}
 
 static _Noreturn void stay_off(void)
 {
@@ -36,6 +48,7 @@ int main(void)
         board_fault(BOARD_FAULT_CLOCK);
     }
     clock_of_blocks();
+    unpack_memory();
     cycle_counter_start();
     bridge_start();
     pins_connect();

@@ -45,7 +45,7 @@ static void copy(const volatile uint32_t *from, volatile uint32_t *to, const uin
 
 void reset_handler(void)
 {
-    copy(&interrupt_code_load, &interrupt_code_start, &interrupt_code_end);
+    copy(&handlers_load, &handlers_start, &handlers_end);
     copy(&data_load, &data_start, &data_end);
     for (volatile uint32_t *word = &bss_start; word < &bss_end; word++) {
         *word = 0;

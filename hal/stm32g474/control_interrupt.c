@@ -17,7 +17,7 @@ static struct {
     volatile uint16_t bridge_temperature; /* code of the last S(k) */
 } control = {.period = PORT_NOT_STARTED};
 
-IN_CCM(port_control_period)
+IN_FAULT_MEMORY(port_control_period)
 uint32_t port_control_period(void)
 {
     return control.period;

@@ -41,7 +41,7 @@ enum {
 
 /* Code that runs from CCM SRAM: no wait states, whatever the flash is doing. */
 #define IN_CCM(name) __attribute__((section(".ccm.text." #name), noinline))
-/* What the control interrupt calls when a peripheral fails. */
-#define IN_FAULT_MEMORY(name) IN_CCM(name)
+/* What a crash calls: there from reset on, before memory is unpacked. */
+#define IN_FAULT_MEMORY(name) __attribute__((section(".ccm.fault." #name), noinline))
 
 #endif

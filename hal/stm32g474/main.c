@@ -3,7 +3,9 @@
 #include "hal/cortex_m/board_hal.h"
 #include "hal/cortex_m/crash.h"
 #include "hal/cortex_m/image.h"
+#include "hal/cortex_m/linker.h"
 #include "hal/cortex_m/serial_line.h"
+#include "hal/cortex_m/unpack.h"
 #include "hal/stm32g474/clock.h"
 #include "hal/stm32g474/control_interrupt.h"
 #include "hal/stm32g474/current_sampling.h"
@@ -20,6 +22,21 @@
 struct application application;
 static struct link fieldbus;
 
+/* Before, nothing of firmware/ may run that has constants, which design/text.c has not, and no
+   control interrupt. */
+static void unpack_memory(void)
+{
+    static const struct unpacked_region regions[] = {
+        {&interrupt_code_start, &interrupt_code_end},
+        {&tables_start, &tables_end},
+        {&texts_start, &texts_end},
+    };
+
+    unpack(packed, regions, sizeof regions / sizeof regions[0]);
+    __DSB();
+    __ISB();
+}
+
 /* The gates are held low, by pull-downs until the timer drives them, from reset on. */
 static void start_board(void)
 {
@@ -31,6 +48,7 @@ static void start_board(void)
     pins_connect();
     encoder_configure();
     serial_line_configure();
+    unpack_memory();
 }
 
 /*

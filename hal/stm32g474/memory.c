@@ -15,7 +15,7 @@ void *memcpy(void *restrict to, const void *restrict from, size_t count)
 }
 
 /* Beside the handlers of a crash: flash may be what has failed. */
-__attribute__((section(".ccm.text.memset"))) void *memset(void *to, int value, size_t count)
+__attribute__((section(".ccm.fault.memset"))) void *memset(void *to, int value, size_t count)
 {
     uint8_t *written = to;
 

@@ -77,7 +77,7 @@ void port_watchdog_feed(void)
 }
 
 /* TIM1's registers answer only with its clock; without, its outputs are off as after a reset. */
-IN_CCM(port_open_bridge)
+IN_FAULT_MEMORY(port_open_bridge)
 __attribute__((used)) void port_open_bridge(void)
 {
     if (RCC->apb2enr & RCC_APB2ENR_TIM1EN) {
@@ -87,7 +87,7 @@ __attribute__((used)) void port_open_bridge(void)
 
 enum { NMI_OTHER, NMI_CRYSTAL, NMI_FLASH, NMI_MEMORY };
 
-IN_CCM(port_nmi_cause)
+IN_FAULT_MEMORY(port_nmi_cause)
 uint32_t port_nmi_cause(void)
 {
     if (RCC->cifr & RCC_CIFR_CSSF) {

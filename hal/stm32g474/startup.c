@@ -1,6 +1,6 @@
 /*
- * From reset to main: memory, FPU, vector table. Vector table and reset: ARMv7-M Architecture
- * Reference Manual, B1.5. All of this runs from flash, at 16 MHz.
+ * From reset to main: memory but for what main unpacks, FPU, vector table. Vector table and reset:
+ * ARMv7-M Architecture Reference Manual, B1.5. All of this runs from flash, at 16 MHz.
  */
 #include "hal/cortex_m/crash.h"
 #include "hal/cortex_m/linker.h"
@@ -73,7 +73,7 @@ void reset_handler(void)
 
     /* What of the stack has been used can be read afterwards: below this frame it is painted. */
     fill(&stack_bottom, (const uint32_t *)__builtin_frame_address(0) - 16, (uint32_t)STACK_PAINT);
-    copy(&interrupt_code_start, &interrupt_code_end, &interrupt_code_load);
+    copy(&handlers_start, &handlers_end, &handlers_load);
     copy(&data_start, &data_end, &data_load);
     fill(&bss_start, &bss_end, 0);
     fill(&dma_buffers_start, &dma_buffers_end, 0);

@@ -22,6 +22,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+TOOLS = Path(__file__).resolve().parents[2] / "tools"
 PORT = ("hal/stm32g474", "hal/cortex_m")
 # What is run: a shorted leg; an interrupt held up; motion; `store` in motion.
 SHORT_CIRCUIT = ["board-overcurrent"]
@@ -298,6 +299,7 @@ def relink(build, folder, recompiled):
     words[words.index("-o") + 1] = str(image)
     words = [f"-Wl,-Map={image}.map" if word.startswith("-Wl,-Map=") else word for word in words]
     output_of(*words, folder=build)
+    output_of(TOOLS / "pack_image", image)
     return image
 
 

@@ -23,6 +23,7 @@ namespace
 using namespace virtual_board;
 
 constexpr Ticks us = ticks_per_s / 1000000, ms = 1000 * us;
+constexpr Ticks start_time = 800 * ms;          /* 0.6 s, and its text */
 constexpr std::size_t settings_at = 124 * 1024; /* third page of the store */
 constexpr unsigned pend_sv = 14;
 
@@ -97,7 +98,7 @@ class Powered
 void converter_stops(const ElfImage &image)
 {
     Powered run(image);
-    run.run_for(600 * ms);
+    run.run_for(start_time);
     const std::string ready = run.type("enable\n", 600 * ms);
     expect(count(ready, "ready:") == 1 && run.board.bridge_on(), "the drive holds the motor");
 
@@ -165,7 +166,7 @@ void beginning_lost(const ElfImage &image)
 void flash_is_written(const ElfImage &image)
 {
     Powered run(image);
-    run.run_for(600 * ms);
+    run.run_for(start_time);
     expect(count(run.type("store\n", 300 * ms), "ok store") == 1, "store is obeyed, bridge open");
     expect(count(run.type("enable\n", 600 * ms), "ready:") == 1 && run.board.bridge_on(),
            "the bridge closes behind it");
@@ -182,7 +183,7 @@ void flash_is_written(const ElfImage &image)
 void supply_fails_in_store(const ElfImage &image)
 {
     Powered run(image);
-    run.run_for(600 * ms);
+    run.run_for(start_time);
     (void)run.type("set hold_current_A 0.8\n", 20 * ms);
     expect(count(run.type("store\n", 300 * ms), "ok store") == 1, "a record is stored");
     (void)run.type("set hold_current_A 0.9\n", 20 * ms);
@@ -207,7 +208,7 @@ void supply_fails_in_store(const ElfImage &image)
 void flash_never_ends(const ElfImage &image)
 {
     Powered run(image);
-    run.run_for(600 * ms);
+    run.run_for(start_time);
     run.board.flash().wear_out();
     const std::string text = run.type("store\n", 900 * ms);
     expect(count(text, "refused to write") == 1 && run.machine.resets().empty(),
@@ -218,7 +219,7 @@ void flash_never_ends(const ElfImage &image)
 void debugger_halts(const ElfImage &image)
 {
     Powered run(image);
-    run.run_for(600 * ms);
+    run.run_for(start_time);
     RegisterBlock &debug = run.board.debug_support();
     expect(
         debug.read(0x08, 4, Master::core) == (1u << 1 | 1u << 12) &&
@@ -230,7 +231,7 @@ void debugger_halts(const ElfImage &image)
 void settings_act(const ElfImage &image)
 {
     Powered run(image);
-    run.run_for(600 * ms);
+    run.run_for(start_time);
     expect(count(run.type("set hold_current_A 0.8\n", 20 * ms), "acts at the next enable") == 1,
            "a setting waits for the enable");
     expect(count(run.type("enable\n", 1250 * ms), "ready:") == 1 && run.board.bridge_on(),
@@ -277,9 +278,9 @@ void settings_with_encoder(const ElfImage &image)
 void program_leaves_memory(const ElfImage &image)
 {
     Powered run(image);
-    run.run_for(600 * ms);
+    run.run_for(start_time);
     (void)run.type("enable\n", 600 * ms);
-    const std::uint32_t vectors = *image.symbol("interrupt_code_start");
+    const std::uint32_t vectors = *image.symbol("handlers_start");
     const std::uint8_t nowhere[4] = {1, 0, 0, 0x30};
     std::copy(nowhere, nowhere + 4, run.machine.memory(vectors + 4 * pend_sv, 4));
     const Ticks opened = run.bridge_open_after(200 * us);
@@ -294,7 +295,7 @@ void program_leaves_memory(const ElfImage &image)
 void bus_is_braked(const ElfImage &image)
 {
     Powered run(image);
-    run.run_for(600 * ms);
+    run.run_for(start_time);
     const Gpio &port = run.board.pins().port('C');
     run.board.plant().set_bus(29.9);
     run.run_for(ms);

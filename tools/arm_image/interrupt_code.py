@@ -1,12 +1,13 @@
 """What the control interrupt of a board's image can reach, by the static call graph.
 
-Constants are the addresses in flash that the reached functions load. What the interrupt calls only
+Constants are the addresses of read-only memory that the reached functions load. What the interrupt calls only
 while the drive is being enabled may run from flash: ENABLING.
 """
 
 import re
 
 from . import call_graph
+from .image import SHF_WRITE
 
 INTERRUPTS = ["control_interrupt", "deadline_guard_interrupt"]
 # And what they alone call.
@@ -65,18 +66,28 @@ def reached(image, roots):
     return operating
 
 
+def read_only(image):
+    """Sections that nothing writes to: of the firmware's constants, in RAM."""
+    return [
+        range(start, start + size)
+        for _, start, size, flags, _ in image.sections
+        if not flags & SHF_WRITE
+    ]
+
+
 def outside(image, roots, inside=CCM):
     """(functions, constants): names of what is reached and does not lie inside."""
     nodes = reached(image, roots)
     functions = {n.name for start, n in nodes.items() if start not in inside}
     constants = set()
+    constant = [FLASH, CCM, *read_only(image)]
     for node in nodes.values():
         if VENEER.fullmatch(node.name):
             continue
         for value in loaded_constants(image, node):
             if value is None or value in inside or value & ~1 in nodes:
                 continue
-            if value in FLASH or value in CCM:
+            if any(value in memory for memory in constant):
                 constants.add(object_at(image, value))
     return functions, constants
 
