@@ -1,0 +1,288 @@
+/* The node: its channel, its states, what it says by itself, and whom it hears. */
+#include "tests/unit/link_bench.h"
+
+#include "firmware/interface/dictionary.h"
+
+enum { START = 1, STOP = 2, PRE_OPERATIONAL = 0x80, RESET_NODE = 0x81, RESET_COMMUNICATION = 0x82 };
+
+void setUp(void)
+{
+    link_bench_start();
+    link_bench_open();
+}
+
+void tearDown(void)
+{
+}
+
+static const char *nmt(unsigned command, int periods)
+{
+    char line[16];
+
+    snprintf(line, sizeof line, "t0002%02X01", command);
+    return link_bench_say(line, periods);
+}
+
+static void assert_heard(const char *part, const char *heard)
+{
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(heard, part), heard);
+}
+
+static bool is_off(void)
+{
+    return bench.application.drive.supervision.state == DRIVE_SWITCH_ON_DISABLED;
+}
+
+/* In profile velocity, at a turn in a second. */
+static void enable(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x6060, 0, 1, 3));
+    for (unsigned word = 6; word < 16u; word += word == 7u ? 8u : 1u) {
+        TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x6040, 0, 2, word));
+        bench_periods(20);
+    }
+    TEST_ASSERT_EQUAL_HEX32(0x27, link_bench_get(0x6041, 0) & 0x6fu);
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x60ff, 0, 4, 65536));
+    bench_periods(1000);
+}
+
+/* ---- the channel ---- */
+
+static void test_a_channel_opens_once(void)
+{
+    TEST_ASSERT_EQUAL_STRING("\r", link_bench_say("O", 2));
+    TEST_ASSERT_EQUAL_STRING("\r", link_bench_say("L", 2));
+    TEST_ASSERT_EQUAL_STRING("z\r", link_bench_say("t1230", 2)); /* does not listen only */
+    TEST_ASSERT_EQUAL_STRING("V1010\r", link_bench_say("V", 2));
+    TEST_ASSERT_EQUAL_STRING("N0001\r", link_bench_say("N", 2));
+    TEST_ASSERT_EQUAL_STRING("F00\r", link_bench_say("F", 2));
+    TEST_ASSERT_EQUAL_STRING("\a", link_bench_say("t12", 2));
+    TEST_ASSERT_EQUAL_STRING("", link_bench_say("", 2));
+    (void)link_bench_say("C", 2);
+    TEST_ASSERT_EQUAL_STRING("\a", link_bench_say("t1230", 2));
+    TEST_ASSERT_EQUAL_STRING("\rt701100\r", link_bench_say("L", 2));
+    TEST_ASSERT_EQUAL_STRING("\a", link_bench_say("t60184000100000000000", 2));
+}
+
+static void test_a_line_that_is_too_long_means_nothing_and_line_feeds_are_left_out(void)
+{
+    TEST_ASSERT_EQUAL_STRING("\a",
+                             link_bench_say("t6018400010000000000000000000000000000000000000", 2));
+    assert_heard("t58184300100092010400\r", link_bench_say("t60184000\n100000000000", 2));
+}
+
+/* ---- states ---- */
+
+static void test_nmt_is_two_bytes_for_this_node_or_all(void)
+{
+    (void)nmt(START, 2);
+    TEST_ASSERT_EQUAL(LINK_OPERATIONAL, bench_link.nmt);
+    (void)link_bench_say("t00010201", 2);
+    (void)link_bench_say("t000102", 2);
+    (void)link_bench_say("t0003020100", 2);
+    (void)link_bench_say("t00020203", 2);
+    (void)nmt(3, 2);
+    TEST_ASSERT_EQUAL(LINK_OPERATIONAL, bench_link.nmt);
+    (void)link_bench_say("t00020200", 2);
+    TEST_ASSERT_EQUAL(LINK_STOPPED, bench_link.nmt);
+    (void)nmt(PRE_OPERATIONAL, 2);
+    TEST_ASSERT_EQUAL(LINK_PRE_OPERATIONAL, bench_link.nmt);
+    TEST_ASSERT_EQUAL_HEX32(0x00040192, link_bench_get(0x1000, 0));
+}
+
+static void test_a_reset_of_the_node_opens_the_bridge_and_one_of_communication_does_not(void)
+{
+    enable();
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1017, 0, 2, 500));
+    assert_heard("t701100\r", nmt(RESET_COMMUNICATION, 20));
+    TEST_ASSERT_FALSE(is_off());
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(0x1017, 0));
+    TEST_ASSERT_EQUAL_HEX32(0x23, link_bench_get(0x6041, 0) & 0x6fu); /* is enabled already */
+    (void)nmt(START, 2);
+    assert_heard("t701100\r", nmt(RESET_NODE, 20));
+    TEST_ASSERT_TRUE(is_off());
+    TEST_ASSERT_EQUAL(LINK_PRE_OPERATIONAL, bench_link.nmt);
+    TEST_ASSERT_EQUAL_HEX32(0x40, link_bench_get(0x6041, 0) & 0x6fu);
+}
+
+static void test_heartbeats_come_at_their_interval(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, link_bench_count("t7011", link_bench_say("", 1000)));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1017, 0, 2, 20));
+    (void)link_bench_say("", 250);
+    TEST_ASSERT_EQUAL_INT(10, link_bench_count("t70117F\r", link_bench_say("", 2000)));
+}
+
+/* ---- errors ---- */
+
+static void fail(enum drive_fault fault)
+{
+    bench.application.drive.supervision.state = DRIVE_FAULT;
+    bench.application.drive.supervision.fault = fault;
+}
+
+static void recover(void)
+{
+    bench.application.drive.supervision.state = DRIVE_SWITCH_ON_DISABLED;
+    bench.application.drive.supervision.fault = DRIVE_FAULT_NONE;
+}
+
+static void test_every_fault_is_an_emergency_with_its_code_its_kind_and_its_place(void)
+{
+    static const uint8_t kinds[16] = {[2] = 0x03, [3] = 0x05, [4] = 0x09, [5] = 0x21,
+                                      [6] = 0x21, [7] = 0x21, [8] = 0x11, [15] = 0x81};
+
+    for (int i = 1; i < (int)DRIVE_FAULTS; i++) {
+        const unsigned code = fault_at((enum drive_fault)i)->code;
+        char expected[40];
+
+        snprintf(expected, sizeof expected, "t0818%02X%02X%02X%02X00000000\r", code & 255u,
+                 code >> 8, (unsigned)kinds[code >> 12], (unsigned)i);
+        fail((enum drive_fault)i);
+        const char *heard = link_bench_say("", 30);
+
+        TEST_ASSERT_EQUAL_STRING(expected, heard);
+        TEST_ASSERT_EQUAL_HEX32(kinds[code >> 12], link_bench_get(0x1001, 0));
+        TEST_ASSERT_EQUAL_HEX32(code | (uint32_t)i << 16, link_bench_get(0x1003, 1));
+        TEST_ASSERT_EQUAL_HEX32(code, link_bench_get(0x603f, 0));
+        recover();
+        TEST_ASSERT_EQUAL_STRING("t08180000000000000000\r", link_bench_say("", 30));
+        TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(0x1001, 0));
+    }
+}
+
+static void test_the_last_four_errors_are_kept_until_they_are_deleted(void)
+{
+    for (int i = 1; i <= 5; i++) {
+        fail((enum drive_fault)i);
+        (void)link_bench_say("", 30);
+        TEST_ASSERT_EQUAL_HEX32(i < 4 ? i : 4, link_bench_get(0x1003, 0));
+    }
+    for (unsigned sub = 1; sub <= 4u; sub++) {
+        const unsigned place = 6u - sub;
+
+        TEST_ASSERT_EQUAL_HEX32(fault_at((enum drive_fault)place)->code | (uint32_t)place << 16,
+                                link_bench_get(0x1003, sub));
+    }
+    TEST_ASSERT_EQUAL_HEX32(OBJECT_OUT_OF_RANGE, link_bench_put(0x1003, 0, 1, 1));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1003, 0, 1, 0));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(0x1003, 0));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(0x1003, 1));
+}
+
+/* ---- who commands ---- */
+
+static void beat(unsigned node, int periods)
+{
+    char line[16];
+
+    snprintf(line, sizeof line, "t%03X105", 0x700u + node);
+    (void)link_bench_say(line, periods);
+}
+
+/* 20 ms without one, looked at once in a millisecond. */
+static void test_a_heartbeat_that_was_heard_must_come_again_in_time(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1016, 1, 4, 0x00050014));
+    enable(); /* none has come: none is missed */
+    beat(6, 400);
+    TEST_ASSERT_FALSE(bench_link.unheard);
+    beat(5, 195);
+    TEST_ASSERT_FALSE(bench_link.unheard);
+    beat(5, 195);
+    TEST_ASSERT_FALSE(bench_link.unheard);
+    assert_heard("t08183081110000000000\r", link_bench_say("", 20));
+    TEST_ASSERT_TRUE(bench_link.unheard);
+    TEST_ASSERT_EQUAL_HEX32(0x11, link_bench_get(0x1001, 0));
+    TEST_ASSERT_EQUAL_HEX32(0x8130, link_bench_get(0x1003, 1));
+    bench_periods(4000);
+    TEST_ASSERT_TRUE(is_off());
+    TEST_ASSERT_EQUAL_INT(0, link_bench_count("t081", link_bench_say("", 1000))); /* said once */
+    beat(5, 10);
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(0x1001, 0));
+}
+
+static void test_heartbeats_are_watched_only_with_a_time(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1016, 1, 4, 0x00050000));
+    enable();
+    beat(5, 1000);
+    TEST_ASSERT_FALSE(bench_link.heard);
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1016, 1, 4, 0x00050014));
+    beat(5, 10);
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1016, 1, 4, 0));
+    bench_periods(1000);
+    TEST_ASSERT_FALSE(bench_link.unheard);
+}
+
+static void test_sync_may_be_late_by_half_of_its_period(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1006, 0, 4, 4000));
+    enable();
+    (void)link_bench_say("t0800", 200); /* not operational */
+    TEST_ASSERT_FALSE(bench_link.unheard);
+    (void)nmt(START, 2);
+    for (int i = 0; i < 20; i++) {
+        (void)link_bench_say("t0800", 58);
+    }
+    TEST_ASSERT_FALSE(bench_link.unheard);
+    assert_heard("t08180081110000000000\r", link_bench_say("t0800", 75));
+    bench_periods(4000);
+    TEST_ASSERT_TRUE(is_off());
+}
+
+static void test_a_sync_that_is_not_watched_may_stay_away(void)
+{
+    enable();
+    (void)nmt(START, 2);
+    (void)link_bench_say("t0800", 2000);
+    TEST_ASSERT_FALSE(bench_link.unheard);
+    (void)link_bench_say("C", 2);
+    bench_periods(8000);
+    TEST_ASSERT_FALSE(is_off()); /* nobody was to be heard */
+}
+
+static void test_a_channel_that_closes_ends_what_sync_has_driven(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1006, 0, 4, 4000));
+    enable();
+    (void)nmt(START, 2);
+    (void)link_bench_say("t0800", 2);
+    (void)link_bench_say("C", 2);
+    bench_periods(8000);
+    TEST_ASSERT_TRUE(is_off());
+}
+
+static void test_a_frame_that_finds_no_room_is_lost_whole(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1017, 0, 2, 1));
+    (void)bench_heard();
+    bench.room = 0;
+    bench_periods(2000);
+    bench.room = BENCH_STREAM;
+    const char *heard = link_bench_say("", 1);
+    const size_t length = strlen(heard);
+
+    TEST_ASSERT_EQUAL_size_t(0, length % strlen("t70117F\r"));
+    TEST_ASSERT_EQUAL_size_t(length / strlen("t70117F\r"), link_bench_count("t70117F\r", heard));
+    TEST_ASSERT_TRUE(length > strlen("t70117F\r"));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_channel_opens_once);
+    RUN_TEST(test_a_line_that_is_too_long_means_nothing_and_line_feeds_are_left_out);
+    RUN_TEST(test_nmt_is_two_bytes_for_this_node_or_all);
+    RUN_TEST(test_a_reset_of_the_node_opens_the_bridge_and_one_of_communication_does_not);
+    RUN_TEST(test_heartbeats_come_at_their_interval);
+    RUN_TEST(test_every_fault_is_an_emergency_with_its_code_its_kind_and_its_place);
+    RUN_TEST(test_the_last_four_errors_are_kept_until_they_are_deleted);
+    RUN_TEST(test_a_heartbeat_that_was_heard_must_come_again_in_time);
+    RUN_TEST(test_heartbeats_are_watched_only_with_a_time);
+    RUN_TEST(test_sync_may_be_late_by_half_of_its_period);
+    RUN_TEST(test_a_sync_that_is_not_watched_may_stay_away);
+    RUN_TEST(test_a_channel_that_closes_ends_what_sync_has_driven);
+    RUN_TEST(test_a_frame_that_finds_no_room_is_lost_whole);
+    return UNITY_END();
+}
