@@ -200,9 +200,11 @@ static void held_under(enum drive_synchronism_policy policy)
 static void test_a_policy_warns_or_looks_away_instead(void)
 {
     held_under(DRIVE_SYNCHRONISM_WARN);
+    TEST_ASSERT_EQUAL_INT(DRIVE_POSITION_UNCERTAIN, drive.axis.reference);
     TEST_ASSERT_EQUAL_STRING("stalled", drive_synchronism_name(signals().synchronism));
     held_under(DRIVE_SYNCHRONISM_OFF);
     TEST_ASSERT_EQUAL_STRING("sure", drive_synchronism_name(signals().synchronism));
+    TEST_ASSERT_EQUAL_INT(DRIVE_POSITION_ASSUMED, drive.axis.reference);
 }
 
 int main(void)

@@ -71,6 +71,37 @@ static void test_a_line_that_is_too_long_means_nothing_and_line_feeds_are_left_o
     assert_heard("t58184300100092010400\r", link_bench_say("t60184000\n100000000000", 2));
 }
 
+/* The console goes on with what happens from then on. */
+static void test_what_has_happened_while_it_was_open_is_not_announced_behind_it(void)
+{
+    struct drive *drive = &bench.application.drive;
+
+    (void)link_bench_put(0x2200, 0, 1, 1); /* enable */
+    bench_periods(20);
+    drive->planner.underruns++;
+    drive->commands.dropped += 2u;
+    drive->synchronism.shown = DRIVE_SYNCHRONISM_DOUBTFUL;
+    bench.application.unheard = true;
+    TEST_ASSERT_EQUAL_STRING("\r", link_bench_say("C", 50));
+    drive->planner.underruns++;
+    bench_periods(3);
+    TEST_ASSERT_EQUAL_STRING("warning: the reference rests: what continues it came too late\n",
+                             bench_heard());
+}
+
+/* So that none of them waits longer than a line of the console would. */
+static void test_a_pass_takes_a_frame(void)
+{
+    (void)bench_heard();
+    bench_type("t1230\rt1240\rt1250\r");
+    for (int i = 0; i < 3; i++) {
+        bench_period();
+        TEST_ASSERT_EQUAL_STRING("z\r", bench_heard());
+    }
+    bench_period();
+    TEST_ASSERT_EQUAL_STRING("", bench_heard());
+}
+
 /* ---- states ---- */
 
 static void test_nmt_is_two_bytes_for_this_node_or_all(void)
@@ -273,6 +304,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_channel_opens_once);
     RUN_TEST(test_a_line_that_is_too_long_means_nothing_and_line_feeds_are_left_out);
+    RUN_TEST(test_what_has_happened_while_it_was_open_is_not_announced_behind_it);
+    RUN_TEST(test_a_pass_takes_a_frame);
     RUN_TEST(test_nmt_is_two_bytes_for_this_node_or_all);
     RUN_TEST(test_a_reset_of_the_node_opens_the_bridge_and_one_of_communication_does_not);
     RUN_TEST(test_heartbeats_come_at_their_interval);
