@@ -168,12 +168,12 @@ static bool request_sine(const struct drive *drive, const struct drive_command *
     if (halves != (double)(uint32_t)halves) {
         return design_refuse(error, "cycles: must be a whole number or a half");
     }
-    if (!design_require_within(error, "ramp", command->ramp_s, 0.0,
-                               command->cycles > 0.0 ? command->cycles / command->frequency_Hz / 2.0
-                                                     : DURATION_MAX * T,
-                               "s", "half of the cycles") ||
-        !design_require_within(error, "ramp", command->ramp_s, 0.0, DURATION_MAX * T, "s",
-                               "2^30 control periods")) {
+    if (!design_require_within(error, "ramp", command->ramp_s, 0.0, DURATION_MAX * T, "s",
+                               "2^30 control periods") ||
+        (command->cycles > 0.0 &&
+         !design_require_within(error, "ramp", command->ramp_s, 0.0,
+                                command->cycles / command->frequency_Hz / 2.0, "s",
+                                "half of the cycles"))) {
         return false;
     }
     request->sine = sine_design(&(struct sine_task){

@@ -185,7 +185,8 @@ static void test_a_light_rotor_gets_a_wider_and_sooner_hold(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-5, 4.2 / (7.0 * 388.3), settings.hold_delay_s);
 }
 
-/* A strong magnet, a light rotor and a slow winding: a hold that swings faster than it is damped. */
+/* A strong magnet, a light rotor and a slow winding: a hold that swings faster than it is damped.
+ */
 static void test_a_hold_that_a_motor_does_not_bear_gets_less_current_in_steps(void)
 {
     struct motor_params *motor = &settings.motor;
@@ -226,17 +227,19 @@ static void test_every_law_has_its_bandwidths(void)
             drive_settings_select_law(&settings, (enum position_law)law);
             slow = settings;
             default_settings_apply(&settings, 1e-4, encoder ? 4000u : 0u);
-            TEST_ASSERT_TRUE(settings.law_bandwidth_rad_s ==
-                             (fast ? 900.0 : stiff ? 300.0 : 200.0));
+            TEST_ASSERT_TRUE(settings.law_bandwidth_rad_s == (fast    ? 900.0
+                                                              : stiff ? 300.0
+                                                                      : 200.0));
             TEST_ASSERT_TRUE(settings.current_bandwidth_rad_s == (fast ? 2000.0 : 1500.0));
             TEST_ASSERT_TRUE(settings.observer_bandwidth_rad_s == (fast ? 1400.0 : 1000.0));
             TEST_ASSERT_DOUBLE_WITHIN(1e-12,
                                       law == POSITION_LAW_MICROSTEPPING ? 0.0 : TWO_PI / 50.0,
                                       settings.following_error_rad);
             default_settings_apply(&slow, 1e-3, encoder ? 4000u : 0u);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-9, linearises   ? 150.0
-                                            : mechanical ? 37.5
-                                                         : 75.0,
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9,
+                                      linearises   ? 150.0
+                                      : mechanical ? 37.5
+                                                   : 75.0,
                                       slow.law_bandwidth_rad_s);
             TEST_ASSERT_DOUBLE_WITHIN(1e-9, 300.0, slow.current_bandwidth_rad_s);
             TEST_ASSERT_DOUBLE_WITHIN(1e-9, 500.0, slow.observer_bandwidth_rad_s);

@@ -85,6 +85,9 @@ static void is_in(enum drive_state state, bool bridge_on)
 {
     TEST_ASSERT_EQUAL_STRING(drive_state_name(state), drive_state_name(signals().state));
     TEST_ASSERT_EQUAL(bridge_on, outputs.bridge_on);
+    for (int leg = 0; !bridge_on && leg < HAL_LEGS; leg++) {
+        TEST_ASSERT_EQUAL_UINT16(0, outputs.high_counts[leg]);
+    }
 }
 
 static void has_fault(enum drive_fault fault)
