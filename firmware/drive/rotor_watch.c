@@ -7,8 +7,9 @@
 /* In looks of the following error, 1 ms each. */
 #define SWING_LOOKS 100u
 #define STAND_LOOKS 30u
+#define DENIALS     50 /* samples */
 
-#define SWINGS      3u
+#define SWINGS      4u
 #define SWING_TURNS NUM(1.0) /* electrical */
 #define COUNTS_OFF  2.0
 #define AT_LIMIT    0.99
@@ -16,13 +17,14 @@
 void rotor_watch_reset(struct rotor_watch *watch, uint32_t period)
 {
     watch->free = period;
+    watch->denied = 0u;
     rotor_watch_reset_swing(&watch->swing);
 }
 
 void rotor_watch_reset_swing(struct rotor_swing *swing)
 {
     swing->side = 0;
-    swing->turns = 0u;
+    swing->times = 0u;
 }
 
 bool rotor_watch_swings(struct rotor_swing *swing, num_t error, num_t limit, uint32_t period,
@@ -31,13 +33,15 @@ bool rotor_watch_swings(struct rotor_swing *swing, num_t error, num_t limit, uin
     const int8_t side = error > limit ? 1 : error < -limit ? -1 : 0;
 
     if (side != 0 && side != swing->side) {
-        swing->turns = swing->side != 0 && period - swing->turned < within
-                           ? (uint8_t)(swing->turns + 1u)
-                           : (uint8_t)0u;
+        swing->times = swing->times > 0u && period - swing->turned < within
+                           ? (uint8_t)(swing->times + 1u)
+                           : (uint8_t)1u;
         swing->turned = period;
         swing->side = side;
+    } else if (num_abs(error) < num_half(limit)) {
+        swing->side = 0;
     }
-    return swing->turns >= SWINGS;
+    return swing->times >= SWINGS;
 }
 
 bool rotor_watch_jumps(struct rotor_watch *watch, struct position reference, num_t limit)
@@ -46,6 +50,18 @@ bool rotor_watch_jumps(struct rotor_watch *watch, struct position reference, num
 
     watch->reference = reference;
     return num_abs(moved) > limit;
+}
+
+/* Per-unit, a back-EMF is its speed. */
+bool rotor_watch_winding_denies(const struct rotor_winding *winding, num_t margin)
+{
+    const struct phases i = winding->current;
+    const num_t off = num_abs(i.a - winding->expected.a) + num_abs(i.b - winding->expected.b);
+    const num_t of_currents =
+        num_mul(winding->resistance + num_abs(winding->reactance), num_abs(i.a) + num_abs(i.b));
+    const num_t unsure = num_half(of_currents + num_abs(winding->speed));
+
+    return off > num_mul_coef(margin + unsure, winding->rate);
 }
 
 bool rotor_watch_count_stands(struct rotor_watch *watch, int32_t count, bool pushed,
@@ -73,6 +89,31 @@ static bool is_pushed(const struct drive *drive, num_t error)
            num_abs(error) < num_from_double(turns_off);
 }
 
+static bool winding_denies(struct drive *drive, uint32_t period)
+{
+    struct rotor_watch *watch = &drive->rotor_watch;
+    const num_t speed = drive->estimator.estimate.rotor.speed;
+    const struct rotor_winding winding = {
+        .current = measurement_current(&drive->measurement, &drive->params.measurement,
+                                       drive->current_codes.a, drive->current_codes.b),
+        .expected = watch->expected,
+        .speed = speed,
+        .resistance = drive->estimator.estimate.winding.resistance,
+        .reactance = num_mul_coef(speed, drive->params.current_control.reactance),
+        .rate = drive->params.model.rate,
+    };
+
+    if (period == watch->expected_in) {
+        const bool denies =
+            rotor_watch_winding_denies(&winding, drive->phase_watch_params.voltage_error);
+
+        watch->denied = (uint8_t)(denies ? watch->denied + (watch->denied < DENIALS) : 0);
+    }
+    watch->expected = drive->expectation.current;
+    watch->expected_in = period + 1u;
+    return watch->denied == DENIALS;
+}
+
 static enum drive_fault look(struct drive *drive, uint32_t period)
 {
     const struct following_error_params *following = &drive->params.following;
@@ -92,9 +133,10 @@ static enum drive_fault look(struct drive *drive, uint32_t period)
                                       SWING_LOOKS * following->periods)) {
         return encoder ? DRIVE_FAULT_FOLLOWING_ERROR : DRIVE_FAULT_STALLED;
     }
-    return encoder && rotor_watch_count_stands(&drive->rotor_watch, drive->encoder_count,
-                                               is_pushed(drive, error), period,
-                                               STAND_LOOKS * following->periods)
+    return encoder && (winding_denies(drive, period) ||
+                       rotor_watch_count_stands(&drive->rotor_watch, drive->encoder_count,
+                                                is_pushed(drive, error), period,
+                                                STAND_LOOKS * following->periods))
                ? DRIVE_FAULT_ENCODER
                : DRIVE_FAULT_NONE;
 }
