@@ -225,6 +225,17 @@ static void test_a_store_that_takes_nothing_refuses(void)
     TEST_ASSERT_FALSE(save(1e-3));
 }
 
+static void test_each_record_has_the_next_number(void)
+{
+    for (uint32_t i = 1; i <= 8u; i++) {
+        const size_t page = i > 6u ? PAGE : 0u; /* six in the first */
+
+        TEST_ASSERT_TRUE(save(1e-3));
+        TEST_ASSERT_EQUAL_HEX32(i,
+                                (uint32_t)record_get(&flash[page + 40u * ((i - 1u) % 6u) + 4u], 4));
+    }
+}
+
 static void test_a_record_that_went_elsewhere_says_so(void)
 {
     const struct record_log log = {0, 1, 24};
@@ -267,6 +278,7 @@ int main(void)
     RUN_TEST(test_a_slot_that_stays_blank_is_passed_over);
     RUN_TEST(test_a_page_that_is_worn_out_leaves_the_other);
     RUN_TEST(test_a_store_that_takes_nothing_refuses);
+    RUN_TEST(test_each_record_has_the_next_number);
     RUN_TEST(test_a_record_that_went_elsewhere_says_so);
     RUN_TEST(test_a_flipped_bit_makes_a_record_void);
     RUN_TEST(test_a_board_without_a_store_keeps_nothing);

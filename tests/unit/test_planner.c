@@ -589,6 +589,39 @@ static void test_set_points_are_taken_up_to_their_bounds(void)
     TEST_ASSERT_EQUAL_UINT32(10, drive.planner.set_points.interval_periods);
 }
 
+/* Where it ends is known, whatever was in motion before: a move may wait for it. */
+static void test_behind_a_new_target_a_move_may_wait(void)
+{
+    must_post(velocity(2.0));
+    run(300);
+    must_refuse(move_to(0.2), "the reference follows a sine, set-points or a speed");
+    must_post(retarget(0.1));
+    must_post(move_to(0.2));
+    run_to_rest();
+    run(20);
+    run_to_rest();
+    the_reference_is_at(0.2);
+    TEST_ASSERT_EQUAL_UINT32(0, drive.commands.dropped);
+}
+
+/* Its own jerk is harder than a tenth of a second's. */
+static void test_a_fast_sine_stops_as_softly_as_it_swings(void)
+{
+    struct drive_command command = sine(0.0, 0.0);
+    const double w = TWO_PI * 20.0;
+    uint32_t periods = 0;
+
+    must_post(command);
+    run(3 + LEAD_PERIODS);
+    stop_now();
+    while (drive.planner.stop_due || signals().reference_moving) {
+        run(1);
+        periods++;
+    }
+    /* speed over acceleration, acceleration over jerk */
+    TEST_ASSERT_UINT32_WITHIN(60, (uint32_t)(2.0 / w / 1e-4), periods);
+}
+
 /* A tenth of a second from its peak speed, and as long again for the jerk. */
 static void test_a_slow_sine_stops_sooner_than_it_swings(void)
 {
@@ -697,6 +730,8 @@ int main(void)
     RUN_TEST(test_speeds_are_taken_up_to_their_bounds);
     RUN_TEST(test_sines_are_taken_up_to_their_bounds);
     RUN_TEST(test_set_points_are_taken_up_to_their_bounds);
+    RUN_TEST(test_behind_a_new_target_a_move_may_wait);
+    RUN_TEST(test_a_fast_sine_stops_as_softly_as_it_swings);
     RUN_TEST(test_a_slow_sine_stops_sooner_than_it_swings);
     RUN_TEST(test_with_a_known_encoder_zero_motion_is_refused_until_the_drive_is_ready);
     return UNITY_END();
