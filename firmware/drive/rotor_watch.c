@@ -23,6 +23,7 @@ void rotor_watch_reset(struct rotor_watch *watch, uint32_t period)
 
 void rotor_watch_reset_swing(struct rotor_swing *swing)
 {
+    swing->extreme = NUM(0.0);
     swing->side = 0;
     swing->times = 0u;
 }
@@ -31,15 +32,22 @@ bool rotor_watch_swings(struct rotor_swing *swing, num_t error, num_t limit, uin
                         uint32_t within)
 {
     const int8_t side = error > limit ? 1 : error < -limit ? -1 : 0;
+    const num_t size = num_abs(error);
+    const bool is_back = swing->side == 0;
+    const num_t on_its_way = is_back ? size - swing->extreme : swing->extreme - size;
 
-    if (side != 0 && side != swing->side) {
+    if (side != 0 && side != swing->side && (!is_back || on_its_way > num_half(limit))) {
         swing->times = swing->times > 0u && period - swing->turned < within
                            ? (uint8_t)(swing->times + 1u)
                            : (uint8_t)1u;
         swing->turned = period;
         swing->side = side;
-    } else if (num_abs(error) < num_half(limit)) {
+        swing->extreme = size;
+    } else if (on_its_way < NUM(0.0)) {
+        swing->extreme = size;
+    } else if (!is_back && on_its_way > num_half(limit)) {
         swing->side = 0;
+        swing->extreme = size;
     }
     return swing->times >= SWINGS;
 }

@@ -3,9 +3,9 @@
  *
  * A load that swings beyond the torque throws the rotor to and fro, or to one side, and no time off
  * its place lasts. The sign: the rotor is further off its reference than it may be, on the other
- * side than the last time or having been back, for the fourth time since a step, each within 0.1 s
- * of the last. It may be off by the following error, or without an encoder, where the monitor's
- * policy is to end in faults, by an electrical turn.
+ * side than the last time or having come back by half of that, for the fourth time since a step,
+ * each within 0.1 s of the last. It may be off by the following error, or without an encoder, where
+ * the monitor's policy is to end in faults, by an electrical turn.
  *
  * With an encoder, a count that stands still at rest looks like a rotor at rest, and the observer
  * takes the torque that does not move it for the load's. The law answers it, and both rise to the
@@ -32,6 +32,7 @@
 struct rotor_watch {
     struct rotor_swing {
         uint32_t turned; /* period in which the side was another one last */
+        num_t extreme;   /* the furthest since it was thrown, or the nearest since it came back */
         int8_t side;     /* of the reference; 0: not so far, or back */
         uint8_t times;   /* in a row */
     } swing;

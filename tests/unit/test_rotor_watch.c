@@ -96,6 +96,21 @@ static void test_a_rotor_that_is_thrown_to_one_side_is_said_the_fourth_time(void
     TEST_ASSERT_EQUAL_INT(3 * 80 + 72, periods_until_thrown(1.01, -0.49, 80));
 }
 
+/* It need not come back to its place, as it slips on. */
+static void test_a_rotor_that_is_thrown_further_and_further_is_said_too(void)
+{
+    setUp();
+    for (int n = 1; n < NEVER; n++) {
+        const double turns = 3.0 + 0.002 * n + (n % 80 >= 72 ? 0.56 : 0.0);
+
+        if (rotor_watch_swings(&watch.swing, num_from_double(turns), NUM(1.0), ++period, WITHIN)) {
+            TEST_ASSERT_EQUAL_INT(4 * 80 + 72, n);
+            return;
+        }
+    }
+    TEST_FAIL();
+}
+
 /* Hovering about the limit is one time; what is seldom has ended meanwhile. */
 static void test_a_rotor_that_is_not_back_or_is_thrown_seldom_does_not_swing(void)
 {
@@ -185,6 +200,7 @@ int main(void)
     RUN_TEST(test_a_rotor_that_is_off_for_long_or_slowly_or_little_does_not_swing);
     RUN_TEST(test_a_step_of_the_reference_begins_anew);
     RUN_TEST(test_a_rotor_that_is_thrown_to_one_side_is_said_the_fourth_time);
+    RUN_TEST(test_a_rotor_that_is_thrown_further_and_further_is_said_too);
     RUN_TEST(test_a_rotor_that_is_not_back_or_is_thrown_seldom_does_not_swing);
     RUN_TEST(test_a_winding_denies_a_count_that_stands_beyond_the_margin);
     RUN_TEST(test_half_of_the_counted_back_emf_may_be_wrong);
