@@ -231,6 +231,7 @@ static void test_each_record_has_the_next_number(void)
         const size_t page = i > 6u ? PAGE : 0u; /* six in the first */
 
         TEST_ASSERT_TRUE(save(1e-3));
+        TEST_ASSERT_EQUAL_HEX16(1, (uint16_t)record_get(&flash[page], 2)); /* format */
         TEST_ASSERT_EQUAL_HEX32(i,
                                 (uint32_t)record_get(&flash[page + 40u * ((i - 1u) % 6u) + 4u], 4));
     }

@@ -124,6 +124,27 @@ static void test_numbers_of_every_type_are_put_and_shown(void)
     TEST_ASSERT_EQUAL_HEX32(50, link_bench_get(0x2008, 0)); /* teeth */
 }
 
+static void test_types_are_those_of_the_standard(void)
+{
+    static const struct {
+        uint16_t index;
+        uint8_t sub, type;
+    } all[] = {{0x1000, 0, 0x07}, {0x1001, 0, 0x05}, {0x1008, 0, 0x09}, {0x1017, 0, 0x06},
+               {0x605a, 0, 0x03}, {0x6060, 0, 0x02}, {0x607a, 0, 0x04}, {0x2120, 0, 0x11},
+               {0x2302, 0, 0x01}, {0x2300, 0, 0x05}, {0x603f, 0, 0x06}, {0x2301, 0, 0x07},
+               {0x2327, 0, 0x11}, {0x2200, 0, 0x05}, {0x2201, 0, 0x11}, {0x2008, 0, 0x04}};
+    static const uint8_t bytes[] = {4, 1, 0, 2, 2, 1, 4, 8, 1, 1, 2, 4, 8, 1, 8, 4};
+
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        struct object found;
+
+        TEST_ASSERT_EQUAL_HEX32(OBJECT_DONE, objects_find(all[i].index, all[i].sub, &found));
+        TEST_ASSERT_EQUAL_HEX8(all[i].type, found.type);
+        TEST_ASSERT_EQUAL_size_t(bytes[i], object_bytes(&found));
+        TEST_ASSERT_EQUAL_HEX16(all[i].index, found.index);
+    }
+}
+
 static void test_modes_are_those_there_are(void)
 {
     for (unsigned mode = 0; mode < 256u; mode++) {
@@ -238,6 +259,7 @@ int main(void)
     RUN_TEST(test_a_text_comes_in_segments_of_seven);
     RUN_TEST(test_segments_go_the_way_that_the_transfer_does);
     RUN_TEST(test_numbers_of_every_type_are_put_and_shown);
+    RUN_TEST(test_types_are_those_of_the_standard);
     RUN_TEST(test_modes_are_those_there_are);
     RUN_TEST(test_what_would_make_no_sense_is_refused);
     RUN_TEST(test_what_was_set_is_stored_by_its_word_only);
