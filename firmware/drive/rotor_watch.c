@@ -2,12 +2,14 @@
 
 #include "firmware/drive/drive.h"
 #include "firmware/drive/interrupt_view.h"
+#include "firmware/drive/phase_watch.h"
 #include "firmware/drive/state_machine.h"
 
 /* In looks of the following error, 1 ms each. */
 #define SWING_LOOKS 100u
 #define STAND_LOOKS 30u
 #define DENIALS     50 /* samples */
+#define STANDS      3u /* looks of phase_watch */
 
 #define SWINGS      4u
 #define SWING_TURNS NUM(1.0) /* electrical */
@@ -97,6 +99,14 @@ static bool is_pushed(const struct drive *drive, num_t error)
            num_abs(error) < num_from_double(turns_off);
 }
 
+/* A current that stands is no rotor's: its phase or its sensor is another watch's. */
+static bool currents_move(const struct drive *drive)
+{
+    const uint8_t *looks = drive->phase_watch.looks;
+
+    return looks[0] < STANDS && looks[1] < STANDS && !phase_watch_chatters(drive);
+}
+
 static bool winding_denies(struct drive *drive, uint32_t period)
 {
     struct rotor_watch *watch = &drive->rotor_watch;
@@ -113,6 +123,7 @@ static bool winding_denies(struct drive *drive, uint32_t period)
 
     if (period == watch->expected_in) {
         const bool denies =
+            currents_move(drive) &&
             rotor_watch_winding_denies(&winding, drive->phase_watch_params.voltage_error);
 
         watch->denied = (uint8_t)(denies ? watch->denied + (watch->denied < DENIALS) : 0);

@@ -15,9 +15,10 @@
  *
  * A rotor that turns otherwise than its encoder counts, as the count stands still under a load or
  * its channels are exchanged, shows in the winding: the current is not the one that the voltage and
- * the counted speed's back-EMF led to. The sign: fifty samples in a row of those that the
- * background could compare are off by more than the supply's voltage, all of the currents' own
- * voltages and half of the counted back-EMF would make them.
+ * the counted speed's back-EMF led to. The sign: in fifty samples in a row, of those that the
+ * background could compare, currents that move are off by more than a share of the supply, half of
+ * the currents' own voltages and half of the counted back-EMF would make them. Not of a law whose
+ * voltage chatters: its current moves without a rotor.
  */
 #ifndef STEADYSTEP_ROTOR_WATCH_H
 #define STEADYSTEP_ROTOR_WATCH_H

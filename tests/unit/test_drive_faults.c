@@ -190,7 +190,7 @@ static void test_with_an_encoder_and_state_feedback(void)
 static void test_an_encoder_that_stands_still_under_a_load_is_said(void)
 {
     static const enum position_law laws[] = {POSITION_LAW_FEEDBACK_LINEARISATION,
-                                             POSITION_LAW_STATE_FEEDBACK, POSITION_LAW_FOC};
+                                             POSITION_LAW_STATE_FEEDBACK};
 
     for (size_t i = 0; i < sizeof laws / sizeof laws[0]; i++) {
         setUp();
