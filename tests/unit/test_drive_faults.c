@@ -207,6 +207,18 @@ static void test_an_encoder_that_stands_still_under_a_load_is_said(void)
     }
 }
 
+/* It is a machine that presses, as long as the following error allows it. */
+static void test_a_rotor_that_is_pressed_against_a_stop_is_no_fault_of_the_encoder(void)
+{
+    with_encoder(POSITION_LAW_FEEDBACK_LINEARISATION);
+    enable();
+    run(500);
+    break_it(HELD_ROTOR);
+    post((struct drive_command){.kind = DRIVE_COMMAND_STEP, .position_rad = 0.02});
+    run(1000);
+    TEST_ASSERT_TRUE(signals().i_q_ref_A > 0.99 * 3.0); /* with all that it has */
+}
+
 /* Loads that come at once and go, in motion and at rest; with an encoder to 90 % of the rated
    torque. */
 static void test_a_sound_drive_says_nothing(void)
@@ -257,6 +269,7 @@ int main(void)
     RUN_TEST(test_with_an_encoder_and_its_default_law);
     RUN_TEST(test_with_an_encoder_and_state_feedback);
     RUN_TEST(test_an_encoder_that_stands_still_under_a_load_is_said);
+    RUN_TEST(test_a_rotor_that_is_pressed_against_a_stop_is_no_fault_of_the_encoder);
     RUN_TEST(test_a_sound_drive_says_nothing);
     RUN_TEST(test_a_policy_warns_or_looks_away_instead);
     return UNITY_END();

@@ -233,6 +233,23 @@ static void test_a_heartbeat_that_was_heard_must_come_again_in_time(void)
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(0x1001, 0));
 }
 
+/* Wherever in the millisecond it came. */
+static void test_a_heartbeat_has_all_of_its_time(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1016, 1, 4, 0x00050014));
+    for (int phase = 0; phase < 10; phase++) {
+        beat(5, 1);
+        TEST_ASSERT_FALSE(bench_link.unheard);
+        while (!bench_link.unheard) {
+            bench_period();
+        }
+        const uint32_t since_us = bench_link.now_us - bench_link.heard_us;
+
+        TEST_ASSERT_TRUE(since_us > 20000u && since_us <= 21000u);
+        bench_periods(10 + (phase + 1) % 10);
+    }
+}
+
 static void test_heartbeats_are_watched_only_with_a_time(void)
 {
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1016, 1, 4, 0x00050000));
@@ -312,6 +329,7 @@ int main(void)
     RUN_TEST(test_every_fault_is_an_emergency_with_its_code_its_kind_and_its_place);
     RUN_TEST(test_the_last_four_errors_are_kept_until_they_are_deleted);
     RUN_TEST(test_a_heartbeat_that_was_heard_must_come_again_in_time);
+    RUN_TEST(test_a_heartbeat_has_all_of_its_time);
     RUN_TEST(test_heartbeats_are_watched_only_with_a_time);
     RUN_TEST(test_sync_may_be_late_by_half_of_its_period);
     RUN_TEST(test_a_sync_that_is_not_watched_may_stay_away);
