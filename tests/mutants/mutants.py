@@ -646,7 +646,7 @@ MUTANTS = [
            "side != swing->side", "true"),
     Mutant(DRIVE + "rotor_watch.c", "rotor_watch",
            "a_rotor_that_is_thrown_to_one_side_is_said_the_fourth_time",
-           "        swing->side = 0;\n    }\n    return", "    }\n    return"),
+           "        swing->side = 0;\n        swing->extreme = size;\n", ""),
     Mutant(DRIVE + "rotor_watch.c", "drive_faults",
            "an_encoder_that_stands_still_under_a_load_is_said",
            "winding_denies(drive, period) ||", "false ||"),
@@ -699,8 +699,8 @@ MUTANTS = [
            "comparator has tripped\", NO_LIMIT, UNCERTAIN,"),
     Mutant("firmware/interface/faults_table.h", "axis",
            "an_encoder_that_stands_still_is_aligned_anew",
-           'FAULT(ENCODER, 0x7305, "encoder", "it does not count what the rotor does", NO_LIMIT,\n          UNCERTAIN,',
-           'FAULT(ENCODER, 0x7305, "encoder", "it does not count what the rotor does", NO_LIMIT, STANDS,'),
+           'FAULT(ENCODER, 0x7305, "encoder", "it does not count what the rotor does", NO_LIMIT,           \\\n          UNCERTAIN,',
+           'FAULT(ENCODER, 0x7305, "encoder", "it does not count what the rotor does", NO_LIMIT,           \\\n          STANDS,'),
 
     # ---- application ----
     Mutant(APPLICATION + "console.c", "console",
