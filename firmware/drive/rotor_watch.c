@@ -91,12 +91,13 @@ static bool is_pushed(const struct drive *drive, num_t error)
     if (interrupt_view_moves(drive)) {
         return false;
     }
-    const double turns_off = COUNTS_OFF * settings->motor.rotor_teeth /
-                             (double)drive->board->facts->encoder_counts_per_turn;
-    const double limit = AT_LIMIT * settings->current_limit_A / drive->base.current_A;
+    const num_real turns_off = (num_real)COUNTS_OFF * (num_real)settings->motor.rotor_teeth /
+                               (num_real)drive->board->facts->encoder_counts_per_turn;
+    const num_real limit =
+        (num_real)AT_LIMIT * (num_real)settings->current_limit_A / (num_real)drive->base.current_A;
 
-    return num_abs(drive->current_reference.q) > num_from_double(limit) &&
-           num_abs(error) < num_from_double(turns_off);
+    return num_abs(drive->current_reference.q) > num_from_double((double)limit) &&
+           num_abs(error) < num_from_double((double)turns_off);
 }
 
 /* A current that stands is no rotor's: its phase or its sensor is another watch's. */

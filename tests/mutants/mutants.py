@@ -699,8 +699,8 @@ MUTANTS = [
            "comparator has tripped\", NO_LIMIT, UNCERTAIN,"),
     Mutant("firmware/interface/faults_table.h", "axis",
            "an_encoder_that_stands_still_is_aligned_anew",
-           'FAULT(ENCODER, 0x7305, "encoder", "it does not count what the rotor does", NO_LIMIT,           \\\n          UNCERTAIN,',
-           'FAULT(ENCODER, 0x7305, "encoder", "it does not count what the rotor does", NO_LIMIT,           \\\n          STANDS,'),
+           'FAULT(ENCODER, 0x7305, "encoder", "it miscounts", NO_LIMIT, UNCERTAIN,',
+           'FAULT(ENCODER, 0x7305, "encoder", "it miscounts", NO_LIMIT, STANDS,'),
 
     # ---- application ----
     Mutant(APPLICATION + "console.c", "console",
