@@ -8,6 +8,7 @@ enum breakage {
     LEAD_B,
     SENSOR_A, /* shows what it showed last */
     SENSOR_B,
+    LEG_VOLTAGE, /* likewise, of phase a */
     FROZEN_ENCODER,
     REVERSED_ENCODER,
     HALF_OF_THE_COUNTS,
@@ -29,6 +30,8 @@ static void disturb(struct hal_samples *samples)
         samples->current_a = last.current_a;
     } else if (breakage == SENSOR_B) {
         samples->current_b = last.current_b;
+    } else if (breakage == LEG_VOLTAGE) {
+        samples->phase_voltage_a = last.phase_voltage_a;
     } else if (breakage == FROZEN_ENCODER) {
         samples->encoder_count = last.encoder_count;
     } else if (breakage == REVERSED_ENCODER) {
@@ -128,6 +131,8 @@ static void test_without_an_encoder(void)
         {LEAD_B, true, "open-phase-b", 150, 260, 0},
         {SENSOR_B, true, "current-sensor-b", 200, 350, 0},
         {SENSOR_A, true, "current-sensor-a", 200, 350, 11},
+        {LEG_VOLTAGE, true, "lost-synchronism", 25, 55, 0},
+        {LEG_VOLTAGE, true, "lost-synchronism", 70, 110, 11},
         {HELD_ROTOR, false, "stalled", 205, 245, 0},
         {HELD_ROTOR, true, "stalled", 25, 55, 0},
         {OVERLOAD, false, "stalled", 1000, 1110, 0},

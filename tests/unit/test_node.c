@@ -233,6 +233,22 @@ static void test_a_heartbeat_that_was_heard_must_come_again_in_time(void)
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(0x1001, 0));
 }
 
+/* Nothing moves that would have to be stopped. */
+static void test_a_drive_that_is_only_switched_on_is_off_at_once_when_nobody_is_heard(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1016, 1, 4, 0x00050014));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x6040, 0, 2, 6));
+    bench_periods(20);
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x6040, 0, 2, 7));
+    bench_periods(20);
+    TEST_ASSERT_EQUAL_HEX32(0x23, link_bench_get(0x6041, 0) & 0x6fu);
+    beat(5, 190);
+    TEST_ASSERT_FALSE(is_off());
+    bench_periods(40);
+    TEST_ASSERT_TRUE(is_off());
+    TEST_ASSERT_EQUAL_HEX32(0x40, link_bench_get(0x6041, 0) & 0x6fu);
+}
+
 /* Wherever in the millisecond it came. */
 static void test_a_heartbeat_has_all_of_its_time(void)
 {
@@ -329,6 +345,7 @@ int main(void)
     RUN_TEST(test_every_fault_is_an_emergency_with_its_code_its_kind_and_its_place);
     RUN_TEST(test_the_last_four_errors_are_kept_until_they_are_deleted);
     RUN_TEST(test_a_heartbeat_that_was_heard_must_come_again_in_time);
+    RUN_TEST(test_a_drive_that_is_only_switched_on_is_off_at_once_when_nobody_is_heard);
     RUN_TEST(test_a_heartbeat_has_all_of_its_time);
     RUN_TEST(test_heartbeats_are_watched_only_with_a_time);
     RUN_TEST(test_sync_may_be_late_by_half_of_its_period);
