@@ -74,6 +74,17 @@ bool rotor_watch_winding_denies(const struct rotor_winding *winding, num_t margi
     return off > num_mul_coef(margin + unsure, winding->rate);
 }
 
+bool rotor_watch_denies(struct rotor_watch *watch, bool denies, struct phases expected,
+                        uint32_t period)
+{
+    if (period == watch->expected_in) {
+        watch->denied = (uint8_t)(denies ? watch->denied + (watch->denied < DENIALS) : 0);
+    }
+    watch->expected = expected;
+    watch->expected_in = period + 1u;
+    return watch->denied == DENIALS;
+}
+
 bool rotor_watch_count_stands(struct rotor_watch *watch, int32_t count, bool pushed,
                               uint32_t period, uint32_t longer)
 {
@@ -110,28 +121,21 @@ static bool currents_move(const struct drive *drive)
 
 static bool winding_denies(struct drive *drive, uint32_t period)
 {
-    struct rotor_watch *watch = &drive->rotor_watch;
     const num_t speed = drive->estimator.estimate.rotor.speed;
     const struct rotor_winding winding = {
         .current = measurement_current(&drive->measurement, &drive->params.measurement,
                                        drive->current_codes.a, drive->current_codes.b),
-        .expected = watch->expected,
+        .expected = drive->rotor_watch.expected,
         .speed = speed,
         .resistance = drive->estimator.estimate.winding.resistance,
         .reactance = num_mul_coef(speed, drive->params.current_control.reactance),
         .rate = drive->params.model.rate,
     };
+    const bool denies =
+        currents_move(drive) &&
+        rotor_watch_winding_denies(&winding, drive->phase_watch_params.voltage_error);
 
-    if (period == watch->expected_in) {
-        const bool denies =
-            currents_move(drive) &&
-            rotor_watch_winding_denies(&winding, drive->phase_watch_params.voltage_error);
-
-        watch->denied = (uint8_t)(denies ? watch->denied + (watch->denied < DENIALS) : 0);
-    }
-    watch->expected = drive->expectation.current;
-    watch->expected_in = period + 1u;
-    return watch->denied == DENIALS;
+    return rotor_watch_denies(&drive->rotor_watch, denies, drive->expectation.current, period);
 }
 
 static enum drive_fault look(struct drive *drive, uint32_t period)

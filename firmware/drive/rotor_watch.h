@@ -69,6 +69,11 @@ struct rotor_winding {
    that may be wrong. */
 bool rotor_watch_winding_denies(const struct rotor_winding *winding, num_t margin);
 
+/* A look: whether the winding denies the count, and what is expected of the next period. What was
+   not looked at one behind the other says nothing. true: fifty in a row have denied it. */
+bool rotor_watch_denies(struct rotor_watch *watch, bool denies, struct phases expected,
+                        uint32_t period);
+
 /* Whether no count has come for longer; pushed: the torque is at its limit, at rest and in place.
  */
 bool rotor_watch_count_stands(struct rotor_watch *watch, int32_t count, bool pushed,

@@ -317,7 +317,7 @@ static void test_a_channel_that_closes_ends_what_sync_has_driven(void)
     TEST_ASSERT_TRUE(is_off());
 }
 
-static void test_a_frame_that_finds_no_room_is_lost_whole(void)
+static void test_a_frame_that_does_not_fit_is_lost_whole(void)
 {
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1017, 0, 2, 1));
     (void)bench_heard();
@@ -351,6 +351,6 @@ int main(void)
     RUN_TEST(test_sync_may_be_late_by_half_of_its_period);
     RUN_TEST(test_a_sync_that_is_not_watched_may_stay_away);
     RUN_TEST(test_a_channel_that_closes_ends_what_sync_has_driven);
-    RUN_TEST(test_a_frame_that_finds_no_room_is_lost_whole);
+    RUN_TEST(test_a_frame_that_does_not_fit_is_lost_whole);
     return UNITY_END();
 }

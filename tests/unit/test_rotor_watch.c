@@ -176,6 +176,30 @@ static void test_half_of_the_voltages_of_the_currents_may_be_wrong(void)
                 margin + 0.5 * (0.4 + (resistance + reactance_per_speed * 0.4) * 0.75));
 }
 
+static bool looks(bool denying, uint32_t periods)
+{
+    period += periods;
+    return rotor_watch_denies(&watch, denying, (struct phases){NUM(0.5), NUM(0.25)}, period);
+}
+
+/* The first has nothing to be compared with, nor has one behind a pause. */
+static void test_fifty_denials_in_a_row_are_an_encoders_fault(void)
+{
+    for (int round = 0; round < 3; round++) {
+        TEST_ASSERT_FALSE(looks(true, 2));
+        for (int n = 1; n < 50; n++) {
+            TEST_ASSERT_FALSE(looks(true, 1));
+            if (n % 10 == 0) {
+                TEST_ASSERT_FALSE(looks(n % 20 == 0, 2));
+            }
+        }
+        TEST_ASSERT_TRUE(looks(true, 1));
+        TEST_ASSERT_TRUE(looks(true, 1));
+        TEST_ASSERT_FALSE(looks(false, 1));
+    }
+    TEST_ASSERT_TRUE(watch.expected.a == NUM(0.5) && watch.expected.b == NUM(0.25));
+}
+
 /* Each step of the reference lets its rotor swing anew. */
 static void test_a_step_of_the_reference_begins_anew(void)
 {
@@ -202,6 +226,7 @@ int main(void)
     RUN_TEST(test_a_rotor_that_is_thrown_to_one_side_is_said_the_fourth_time);
     RUN_TEST(test_a_rotor_that_is_thrown_further_and_further_is_said_too);
     RUN_TEST(test_a_rotor_that_is_not_back_or_is_thrown_seldom_does_not_swing);
+    RUN_TEST(test_fifty_denials_in_a_row_are_an_encoders_fault);
     RUN_TEST(test_a_winding_denies_a_count_that_stands_beyond_the_margin);
     RUN_TEST(test_half_of_the_counted_back_emf_may_be_wrong);
     RUN_TEST(test_half_of_the_voltages_of_the_currents_may_be_wrong);
