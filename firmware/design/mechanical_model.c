@@ -10,7 +10,6 @@ struct mechanical_model mechanical_model_of(const struct motor_params *motor, do
         period_s * period_s / motor->inertia_kgm2 * exponential_phi2(-damping);
 
     return (struct mechanical_model){
-        .a11 = exponential(-damping),
         .one_minus_a11 = damping * exponential_phi1(-damping),
         .a21 = period_s * exponential_phi1(-damping),
         .b1 = motor->torque_constant_Nm_A * speed_per_torque,

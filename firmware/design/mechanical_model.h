@@ -9,7 +9,6 @@
 #include "firmware/motor/motor_params.h"
 
 struct mechanical_model {
-    double a11;           /* e^(-Kv T / J) */
     double one_minus_a11; /* 1 - a11, without cancellation */
     double a21;           /* s */
     double b1, b2;        /* rad/s per A, rad per A */

@@ -15,6 +15,7 @@
 #define INTERVAL_MIN      3.0      /* periods: a segment each */
 #define INTERVAL_MAX      65536.0
 #define AMPLITUDE_MIN_rad 1e-6
+#define SPEED_MIN_rad_s   1e-9
 #define FREQUENCY_MIN_Hz  1e-3
 #define CYCLES_MAX        1e9
 
@@ -116,13 +117,11 @@ static bool request_retarget(struct drive *drive, const struct drive_command *co
         position_minus(position_from_rad(command->position_rad, teeth), drive->planned_end.offset);
     distance = magnitude(command->position_rad -
                          position_to_rad(position_plus(here, drive->planned_end.offset), teeth));
-    if (!design_require_within(error, "speed", command->speed_rad_s,
-                               distance / (DURATION_MAX * units.period_s), 1e9, "rad/s",
-                               "2^30 periods to go") ||
-        !design_require_within(error, "speed", command->speed_rad_s, 0.0, limit.rad_s, "rad/s",
-                               limit.reason) ||
-        !design_require_within(error, "speed", command->speed_rad_s, 1e-9, 1e9, "rad/s",
-                               "a speed above zero") ||
+    const double slowest = larger(distance / (DURATION_MAX * units.period_s), SPEED_MIN_rad_s);
+
+    if (!design_require_within(
+            error, "speed", command->speed_rad_s, slowest, larger(limit.rad_s, slowest), "rad/s",
+            command->speed_rad_s < slowest ? "2^30 periods to go" : limit.reason) ||
         !limits_of(drive, command, &request->limits, error)) {
         return false;
     }
@@ -168,12 +167,12 @@ static bool request_sine(const struct drive *drive, const struct drive_command *
     if (halves != (double)(uint32_t)halves) {
         return design_refuse(error, "cycles: must be a whole number or a half");
     }
-    if (!design_require_within(error, "ramp", command->ramp_s, 0.0,
-                               command->cycles > 0.0 ? command->cycles / command->frequency_Hz / 2.0
-                                                     : DURATION_MAX * T,
-                               "s", "half of the cycles") ||
-        !design_require_within(error, "ramp", command->ramp_s, 0.0, DURATION_MAX * T, "s",
-                               "2^30 control periods")) {
+    if (!design_require_within(error, "ramp", command->ramp_s, 0.0, DURATION_MAX * T, "s",
+                               "2^30 control periods") ||
+        (command->cycles > 0.0 &&
+         !design_require_within(error, "ramp", command->ramp_s, 0.0,
+                                command->cycles / command->frequency_Hz / 2.0, "s",
+                                "half of the cycles"))) {
         return false;
     }
     request->sine = sine_design(&(struct sine_task){

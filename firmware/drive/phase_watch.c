@@ -76,8 +76,7 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
     return fault;
 }
 
-/* Whether the law's voltage may change its sign from period to period. */
-static bool chatters(const struct drive *drive)
+bool phase_watch_chatters(const struct drive *drive)
 {
     const enum position_law law = drive->params.position_law;
 
@@ -92,7 +91,7 @@ static num_t push(const struct drive *drive, num_t current, num_t voltage, num_t
                        num_mul(RESISTANCE_ERROR, num_abs(drop));
     const num_t size = sure > NUM(0.0) ? num_mul_coef(sure, drive->params.model.rate) : NUM(0.0);
 
-    return left < NUM(0.0) && chatters(drive) ? -size : size;
+    return left < NUM(0.0) && phase_watch_chatters(drive) ? -size : size;
 }
 
 /* What is measured, in the frame of the control. */
@@ -161,7 +160,8 @@ static enum drive_fault judge_resistance(const struct drive *drive, const struct
 /* Never at the same place of a voltage that repeats itself. */
 static uint32_t interval(const struct drive *drive)
 {
-    return LOOK_PERIODS + (chatters(drive) ? drive->phase_watch.period / LOOK_PERIODS % 2u : 0u);
+    return LOOK_PERIODS +
+           (phase_watch_chatters(drive) ? drive->phase_watch.period / LOOK_PERIODS % 2u : 0u);
 }
 
 void phase_watch_background(struct drive *drive)

@@ -63,4 +63,7 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
 /* Background: looks at a drive in operation, every fourth period or so. */
 void phase_watch_background(struct drive *drive);
 
+/* Whether the law's voltage may change its sign from period to period. */
+bool phase_watch_chatters(const struct drive *drive);
+
 #endif

@@ -76,7 +76,7 @@
           "rated_current_A and motor_time_constant_s")                                             \
     FAULT(BRIDGE_OVERHEATED, 0x4210, "bridge-overheated", "it has reached", LIMIT(bridge_fault_C), \
           STANDS, "let it cool; give it more air, or the motor less current")                      \
-    FAULT(ENCODER, 0x7305, "encoder", "no count comes at full torque", NO_LIMIT, UNCERTAIN,        \
+    FAULT(ENCODER, 0x7305, "encoder", "it miscounts", NO_LIMIT, UNCERTAIN,                         \
           "check the encoder, its cable and its supply; free the axis if it is held")
 
 #endif

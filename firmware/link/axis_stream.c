@@ -94,14 +94,17 @@ void axis_stream_take(struct application *application)
 {
     struct axis_motion *motion = &application->link->axis.motion;
     struct axis_stream *stream = &application->link->axis.stream;
-    const double target_rad = axis_motion_target(application);
-    const bool moved = target_rad != stream->last_rad || stream->last_rad != stream->before_rad;
 
     motion->limited = false;
-    motion->target_rad = target_rad;
-    if (motion->halted || !moved) {
+    motion->target_rad = axis_motion_target(application);
+
+    const double target_rad = motion->target_rad;
+    const bool moved = target_rad != stream->last_rad || stream->last_rad != stream->before_rad;
+
+    if (motion->halted || (!moved && (stream->stays || !is_open(application)))) {
         return;
     }
+    stream->stays = !moved;
     if (!is_open(application) && axis_motion_rests(application)) {
         begin(application);
     }

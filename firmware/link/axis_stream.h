@@ -14,6 +14,7 @@ struct axis_stream {
     double last_rad, before_rad; /* the last two set-points */
     uint32_t fed_us;             /* when the last target came, or should have */
     uint8_t owed;                /* targets whose places were taken, one behind the other */
+    bool stays;                  /* the last three set-points are the same */
 };
 
 struct application;

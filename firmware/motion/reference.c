@@ -196,8 +196,7 @@ static inline __attribute__((always_inline)) bool begin_ramp_up(struct reference
     const enum reference_phase ended = r->phase;
     const bool smooth = profile->jerk_periods > 0u;
 
-    if (ended < REFERENCE_JERK_TO_ACCELERATE && smooth) {
-        r->at.acceleration = 0;
+    if (ended < REFERENCE_JERK_TO_ACCELERATE && smooth) { /* from rest, without acceleration */
         begin_jerk(r, REFERENCE_JERK_TO_ACCELERATE, profile->jerk, profile->jerk_sixth);
     } else if (ended < REFERENCE_ACCELERATE && profile->acceleration_periods > 0u) {
         begin(r, REFERENCE_ACCELERATE, profile->acceleration_periods, profile->acceleration);

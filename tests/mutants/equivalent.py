@@ -30,4 +30,10 @@ EQUIVALENT = [
      "is written before it is read: whole_periods() fails or writes"),
     ("firmware/motion/profile.c", "uint32_t duration = 0;", "uint32_t duration = 1;",
      "is written before it is read: whole_periods() fails or writes"),
+    ("firmware/design/servocompensator_design.c",
+     "return x * alternating_series(x * x, 2, 4);",
+     "return x * alternating_series(x * x, 2, 8);",
+     "terms more of a series that is cut below 1e-14"),
+    ("firmware/drive/parameter_store.c", "if (!(steps > -2147483647.0)) {",
+     "if (!(steps >= -2147483647.0)) {", "the bound itself becomes what is beyond it"),
 ]

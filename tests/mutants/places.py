@@ -123,6 +123,8 @@ def statement_end(source, i):
         return None
     if first.text in ("break", "continue"):
         return i + 1
+    if first.text == "atomic_signal_fence": # orders what an interrupt sees: tests have none
+        return None
     expression = first.text in ("*", "(", "++", "--") or first.kind == "word" and \
         first.text not in NO_EXPRESSION and second.kind != "word" and \
         second.text not in ("*", ":", ",", "}")

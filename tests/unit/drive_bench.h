@@ -6,7 +6,10 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "firmware/drive/idle_current.h"
 #include "firmware/drive/phase_watch.h"
+#include "firmware/drive/rotor_watch.h"
+#include "firmware/drive/thermal_watch.h"
 #include "tests/unit/fake_board.h"
 #include "tests/unit/num_assert.h"
 
@@ -121,6 +124,9 @@ static inline void period(void)
     if (bridge.background) {
         drive_background(&drive);
         phase_watch_background(&drive);
+        idle_current_background(&drive);
+        thermal_watch_background(&drive);
+        rotor_watch_background(&drive);
     }
 }
 

@@ -4,6 +4,8 @@
 
 #include <stdio.h>
 
+#include <unity.h>
+
 #include "tests/unit/console_bench.h"
 
 static struct link bench_link;
@@ -45,6 +47,55 @@ static inline const char *link_bench_sdo(const char *request)
     found = strstr(link_bench_say(line, 1), "t5818");
     snprintf(answer, sizeof answer, "%.16s", found == NULL ? "" : found + 5);
     return answer;
+}
+
+/* Writes up to four bytes; the abort code, 0: done. */
+static inline uint32_t link_bench_put(unsigned index, unsigned sub, unsigned bytes, uint32_t value)
+{
+    char request[40];
+    const char *answer;
+    unsigned byte[4] = {0};
+
+    snprintf(request, sizeof request, "%02X%02X%02X%02X%02X%02X%02X%02X", 0x23u | (4u - bytes) << 2,
+             index & 255u, index >> 8, sub, (unsigned)(value & 255u), (unsigned)(value >> 8 & 255u),
+             (unsigned)(value >> 16 & 255u), (unsigned)(value >> 24));
+    answer = link_bench_sdo(request);
+    TEST_ASSERT_EQUAL_STRING_LEN(&request[2], &answer[2], 6);
+    if (strncmp(answer, "80", 2) != 0) {
+        TEST_ASSERT_EQUAL_STRING_LEN("60", answer, 2);
+        return 0;
+    }
+    TEST_ASSERT_EQUAL(4,
+                      sscanf(&answer[8], "%2x%2x%2x%2x", &byte[0], &byte[1], &byte[2], &byte[3]));
+    return byte[0] | byte[1] << 8 | byte[2] << 16 | byte[3] << 24;
+}
+
+/* Reads up to four bytes. */
+static inline uint32_t link_bench_get(unsigned index, unsigned sub)
+{
+    char request[40];
+    unsigned byte[4] = {0};
+
+    snprintf(request, sizeof request, "40%02X%02X%02X00000000", index & 255u, index >> 8, sub);
+    const char *answer = link_bench_sdo(request);
+
+    TEST_ASSERT_EQUAL_STRING_LEN("4", answer, 1);
+    TEST_ASSERT_EQUAL_STRING_LEN(&request[2], &answer[2], 6);
+    TEST_ASSERT_EQUAL(4,
+                      sscanf(&answer[8], "%2x%2x%2x%2x", &byte[0], &byte[1], &byte[2], &byte[3]));
+    return byte[0] | byte[1] << 8 | byte[2] << 16 | byte[3] << 24;
+}
+
+/* How often a frame that begins so stands in what has come. */
+static inline int link_bench_count(const char *begin, const char *heard)
+{
+    int count = 0;
+
+    while ((heard = strstr(heard, begin)) != NULL) {
+        count++;
+        heard++;
+    }
+    return count;
 }
 
 #endif

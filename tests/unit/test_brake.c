@@ -99,6 +99,16 @@ static void test_a_design_leaves_what_is_hot(void)
     TEST_ASSERT_FALSE(step(HIGH));
 }
 
+/* An idle one would wait for the old voltage. */
+static void test_a_design_acts_at_once_on_a_brake_that_idles(void)
+{
+    (void)on(QUIET, 3);
+    TEST_ASSERT_TRUE(brake_idles(&brake, 2800));
+    settings.brake_on_ratio = 1.1;
+    brake_design(&brake, &settings, &facts);
+    TEST_ASSERT_TRUE(step(2800));
+}
+
 static void test_the_longest_pulse_of_the_shortest_period_is_counted(void)
 {
     const struct hal_facts fast = {.control_period_s = 5e-5, .bus_V_per_code = 0.01};
@@ -119,6 +129,7 @@ int main(void)
     RUN_TEST(test_in_the_long_run_it_is_on_for_its_share_of_time);
     RUN_TEST(test_what_it_may_for_good_it_never_rests_from);
     RUN_TEST(test_a_design_leaves_what_is_hot);
+    RUN_TEST(test_a_design_acts_at_once_on_a_brake_that_idles);
     RUN_TEST(test_the_longest_pulse_of_the_shortest_period_is_counted);
     return UNITY_END();
 }

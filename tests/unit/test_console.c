@@ -227,6 +227,20 @@ static void test_a_late_line_says_so(void)
     TEST_ASSERT_EQUAL_STRING("ok hold at=26 late: that period had passed\n", bench_heard());
 }
 
+/* In the period in which it is read it can no longer act; the one behind is soon enough. */
+static void test_a_line_is_late_from_its_own_period_on(void)
+{
+    enable();
+    bench_type("hold\n");
+    bench_interrupts(10);
+    application_background(&bench.application);
+    TEST_ASSERT_EQUAL_STRING("ok hold at=26 late: that period had passed\n", bench_heard());
+    bench_type("hold\n");
+    bench_interrupts(9);
+    application_background(&bench.application);
+    TEST_ASSERT_EQUAL_STRING("ok hold at=36\n", bench_heard());
+}
+
 static void test_a_move_without_times_is_one_the_motor_can_follow(void)
 {
     enable();
@@ -751,6 +765,26 @@ static void test_what_becomes_of_synchronism_is_announced_once_and_in_operation_
     TEST_ASSERT_EQUAL_STRING("", announced_with(DRIVE_SYNCHRONISM_LOST));
 }
 
+static const char *announced_hot(unsigned shown)
+{
+    drive->thermal.shown = (uint8_t)shown;
+    bench_periods(3);
+    return bench_heard();
+}
+
+static void test_what_becomes_of_heat_is_announced_once(void)
+{
+    enable();
+    TEST_ASSERT_EQUAL_STRING("warning: thermal: motor derated\n",
+                             announced_hot(THERMAL_MOTOR_DERATES));
+    TEST_ASSERT_EQUAL_STRING("", announced_hot(THERMAL_MOTOR_DERATES));
+    TEST_ASSERT_EQUAL_STRING("warning: thermal: motor derated bridge derated\n",
+                             announced_hot(THERMAL_MOTOR_DERATES | THERMAL_BRIDGE_DERATES));
+    TEST_ASSERT_EQUAL_STRING("warning: thermal: no bridge sensor\n",
+                             announced_hot(THERMAL_NO_SENSOR));
+    TEST_ASSERT_EQUAL_STRING("thermal: all well\n", announced_hot(0));
+}
+
 static void test_a_reference_that_ran_dry_is_announced(void)
 {
     enable();
@@ -817,6 +851,8 @@ int main(void)
     RUN_TEST(test_what_is_planned_acts_a_lead_later);
     RUN_TEST(test_a_later_period_can_be_asked_for_and_an_earlier_one_not);
     RUN_TEST(test_a_late_line_says_so);
+    RUN_TEST(test_a_line_is_late_from_its_own_period_on);
+    RUN_TEST(test_what_becomes_of_heat_is_announced_once);
     RUN_TEST(test_a_move_without_times_is_one_the_motor_can_follow);
     RUN_TEST(test_a_period_too_far_ahead_is_refused_with_the_range);
     RUN_TEST(test_a_line_behind_one_that_waits_answers_when_it_will_act);

@@ -8,6 +8,7 @@ enum breakage {
     LEAD_B,
     SENSOR_A, /* shows what it showed last */
     SENSOR_B,
+    LEG_VOLTAGE, /* likewise, of phase a */
     FROZEN_ENCODER,
     REVERSED_ENCODER,
     HALF_OF_THE_COUNTS,
@@ -29,6 +30,8 @@ static void disturb(struct hal_samples *samples)
         samples->current_a = last.current_a;
     } else if (breakage == SENSOR_B) {
         samples->current_b = last.current_b;
+    } else if (breakage == LEG_VOLTAGE) {
+        samples->phase_voltage_a = last.phase_voltage_a;
     } else if (breakage == FROZEN_ENCODER) {
         samples->encoder_count = last.encoder_count;
     } else if (breakage == REVERSED_ENCODER) {
@@ -128,6 +131,8 @@ static void test_without_an_encoder(void)
         {LEAD_B, true, "open-phase-b", 150, 260, 0},
         {SENSOR_B, true, "current-sensor-b", 200, 350, 0},
         {SENSOR_A, true, "current-sensor-a", 200, 350, 11},
+        {LEG_VOLTAGE, true, "lost-synchronism", 25, 55, 0},
+        {LEG_VOLTAGE, true, "lost-synchronism", 70, 110, 11},
         {HELD_ROTOR, false, "stalled", 205, 245, 0},
         {HELD_ROTOR, true, "stalled", 25, 55, 0},
         {OVERLOAD, false, "stalled", 1000, 1110, 0},
@@ -150,7 +155,7 @@ static void test_with_an_encoder_and_its_default_law(void)
         {SENSOR_B, true, "current-sensor-b", 20, 90, 0},
         {SENSOR_A, true, "current-sensor-a", 20, 90, 11},
         {FROZEN_ENCODER, false, "following-error", 365, 395, 0},
-        {FROZEN_ENCODER, true, "following-error", 125, 155, 0},
+        {FROZEN_ENCODER, true, "encoder", 50, 90, 0},
         {REVERSED_ENCODER, true, "estimate-range", 4, 16, 0},
         {HALF_OF_THE_COUNTS, false, "following-error", 385, 415, 0},
         {HALF_OF_THE_COUNTS, true, "following-error", 155, 185, 0},
@@ -186,6 +191,61 @@ static void test_with_an_encoder_and_state_feedback(void)
     }
 }
 
+/* Nothing asks for more torque: only the true rotor's back-EMF shows that the load turns it. */
+static void test_an_encoder_that_stands_still_under_a_load_is_said(void)
+{
+    static const enum position_law laws[] = {POSITION_LAW_FEEDBACK_LINEARISATION,
+                                             POSITION_LAW_STATE_FEEDBACK};
+
+    for (size_t i = 0; i < sizeof laws / sizeof laws[0]; i++) {
+        setUp();
+        with_encoder(laws[i]);
+        settings.motor.inertia_kgm2 /= 10.0; /* falls before the law winds up */
+        motor.motor.inertia_kgm2 /= 10.0;
+        enable();
+        motor.load_torque_Nm = 0.2;
+        run(1000);
+        break_it(FROZEN_ENCODER);
+        motor.load_torque_Nm = 0.25;
+        TEST_ASSERT_INT_WITHIN(60, 120, periods_until_fault());
+        TEST_ASSERT_EQUAL_STRING("encoder", drive_fault_name(drive.supervision.fault));
+    }
+}
+
+/* It is a machine that presses, as long as the following error allows it. */
+static void test_a_rotor_that_is_pressed_against_a_stop_is_no_fault_of_the_encoder(void)
+{
+    with_encoder(POSITION_LAW_FEEDBACK_LINEARISATION);
+    enable();
+    run(500);
+    break_it(HELD_ROTOR);
+    post((struct drive_command){.kind = DRIVE_COMMAND_STEP, .position_rad = 0.02});
+    run(1000);
+    TEST_ASSERT_TRUE(signals().i_q_ref_A > 0.99 * 3.0); /* with all that it has */
+}
+
+/* Loads that come at once and go, in motion and at rest; with an encoder to 90 % of the rated
+   torque. */
+static void test_a_sound_drive_says_nothing(void)
+{
+    for (int encoder = 0; encoder < 2; encoder++) {
+        setUp();
+        if (encoder == 1) {
+            with_encoder(POSITION_LAW_FEEDBACK_LINEARISATION);
+        }
+        enable();
+        run(500);
+        for (int n = 0; n < 6; n++) {
+            move(n % 2 == 0 ? 2.0 : -2.0, 0.25);
+            run(1000);
+            motor.load_torque_Nm = n % 3 == 0 ? (encoder == 1 ? 0.42 : 0.2) : -0.2;
+            run(2500);
+            motor.load_torque_Nm = n % 3 == 1 ? 0.25 : 0.0;
+            run(1000);
+        }
+    }
+}
+
 static void held_under(enum drive_synchronism_policy policy)
 {
     setUp();
@@ -200,9 +260,11 @@ static void held_under(enum drive_synchronism_policy policy)
 static void test_a_policy_warns_or_looks_away_instead(void)
 {
     held_under(DRIVE_SYNCHRONISM_WARN);
+    TEST_ASSERT_EQUAL_INT(DRIVE_POSITION_UNCERTAIN, drive.axis.reference);
     TEST_ASSERT_EQUAL_STRING("stalled", drive_synchronism_name(signals().synchronism));
     held_under(DRIVE_SYNCHRONISM_OFF);
     TEST_ASSERT_EQUAL_STRING("sure", drive_synchronism_name(signals().synchronism));
+    TEST_ASSERT_EQUAL_INT(DRIVE_POSITION_ASSUMED, drive.axis.reference);
 }
 
 int main(void)
@@ -211,6 +273,9 @@ int main(void)
     RUN_TEST(test_without_an_encoder);
     RUN_TEST(test_with_an_encoder_and_its_default_law);
     RUN_TEST(test_with_an_encoder_and_state_feedback);
+    RUN_TEST(test_an_encoder_that_stands_still_under_a_load_is_said);
+    RUN_TEST(test_a_rotor_that_is_pressed_against_a_stop_is_no_fault_of_the_encoder);
+    RUN_TEST(test_a_sound_drive_says_nothing);
     RUN_TEST(test_a_policy_warns_or_looks_away_instead);
     return UNITY_END();
 }

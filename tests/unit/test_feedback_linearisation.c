@@ -239,6 +239,12 @@ static void test_a_bandwidth_that_the_period_cannot_bear_is_refused(void)
     TEST_ASSERT_EQUAL_STRING("law_bandwidth_rad_s 1600 rad/s: must be at most 1500 rad/s, "
                              "0.15 per control period",
                              error);
+    task.bandwidth_rad_s = 1500.01;
+    TEST_ASSERT_FALSE(design());
+    for (double share = 0.15; share > 0.1499; share *= 1.0 - 1e-5) { /* however it is rounded */
+        task.bandwidth_rad_s = share / task.period_s;
+        TEST_ASSERT_TRUE_MESSAGE(design(), error);
+    }
 }
 
 int main(void)

@@ -68,6 +68,18 @@ static void test_takes_the_same_time_where_the_background_comes_seldom(void)
     TEST_ASSERT_NUM_WITHIN(6e-3, 0.25, current);
 }
 
+/* The delay is over in the midst of a look, and stays over. */
+static void test_goes_on_falling_however_the_background_comes(void)
+{
+    pass(DELAY - 8, 1);
+    pass(30, 30);
+    const double begun = num_to_double(current);
+
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, 0.5 - 30 * 0.5 / 1000, begun);
+    pass(20, 1);
+    TEST_ASSERT_NUM_WITHIN(1e-4, begun - 20 * 0.5 / 1000, current);
+}
+
 static void test_has_all_of_it_at_once_when_the_reference_moves_and_for_the_delay_from_then_on(void)
 {
     pass(2 * DELAY, 1);
@@ -115,6 +127,7 @@ int main(void)
     RUN_TEST(test_idles_after_its_delay_and_not_before);
     RUN_TEST(test_falls_to_the_idle_current_in_ten_ramps_and_no_further);
     RUN_TEST(test_takes_the_same_time_where_the_background_comes_seldom);
+    RUN_TEST(test_goes_on_falling_however_the_background_comes);
     RUN_TEST(test_has_all_of_it_at_once_when_the_reference_moves_and_for_the_delay_from_then_on);
     RUN_TEST(test_has_all_of_it_at_once_when_the_load_changes_by_more_than_a_fifth_of_the_rated);
     RUN_TEST(test_idles_again_under_a_load_that_stays);

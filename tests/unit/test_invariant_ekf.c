@@ -545,6 +545,58 @@ static void test_until_a_hold_has_been_calm_more_is_a_step(void)
     TEST_ASSERT_NUM_WITHIN(0.0, num_to_double(params.load_step), ekf.step_limit);
 }
 
+/* The load on either side of the settled one, by turns. */
+static void step_of_load(double more)
+{
+    ekf.estimate.rotor.load_torque = ekf.settled_load + num_from_double(more);
+    invariant_ekf_follow_step(&ekf, &params);
+}
+
+/* Beginning calm, the first counts one, or three on the other side than the last. */
+static void test_steps_of_the_load_to_and_fro_are_a_vibration_sooner_than_those_to_one_side(void)
+{
+    step_of_load(-0.1);
+    TEST_ASSERT_EQUAL_UINT8(1, ekf.swings);
+    TEST_ASSERT_FALSE(ekf.swung_up);
+    step_of_load(-0.1);
+    TEST_ASSERT_EQUAL_UINT8(2, ekf.swings);
+    start_at(0.0, 0.0);
+    step_of_load(0.1);
+    TEST_ASSERT_EQUAL_UINT8(3, ekf.swings);
+    TEST_ASSERT_TRUE(ekf.swung_up);
+}
+
+static void test_a_step_of_the_load_brings_the_lasting_offset_back(void)
+{
+    ekf.settled_bias = (struct phases){NUM(0.25), NUM(-0.125)};
+    ekf.bias = (struct phases){NUM(0.5), NUM(0.5)};
+    step_of_load(0.1);
+    TEST_ASSERT_TRUE(ekf.bias.a == NUM(0.25) && ekf.bias.b == NUM(-0.125));
+    TEST_ASSERT_EQUAL_UINT32(params.following_periods + params.rest_periods, ekf.following_periods);
+    invariant_ekf_forget_bias(&ekf);
+    TEST_ASSERT_TRUE(ekf.bias.a == NUM(0.0) && ekf.settled_bias.a == NUM(0.0));
+    TEST_ASSERT_TRUE(ekf.bias.b == NUM(0.0) && ekf.settled_bias.b == NUM(0.0));
+}
+
+/* While a hold has not followed a step for long. */
+static void test_the_lasting_offset_goes_to_the_offset_by_its_time_constant(void)
+{
+    const double share = coef_to_double(params.bias_settle);
+    double left = 1.0;
+
+    ekf.bias = (struct phases){NUM(0.25), NUM(-0.5)};
+    for (int n = 0; n < 20; n++) {
+        left *= 1.0 - share;
+        invariant_ekf_watch_hold(&ekf, &params, false);
+    }
+    TEST_ASSERT_NUM_WITHIN(1e-4, 0.25 * (1.0 - left), ekf.settled_bias.a);
+    TEST_ASSERT_NUM_WITHIN(1e-4, -0.5 * (1.0 - left), ekf.settled_bias.b);
+    ekf.following_periods = 1u;
+    ekf.bias = (struct phases){NUM(0.0), NUM(0.0)};
+    invariant_ekf_watch_hold(&ekf, &params, false);
+    TEST_ASSERT_NUM_WITHIN(1e-4, 0.25 * (1.0 - left), ekf.settled_bias.a);
+}
+
 static void test_a_reset_forgets_all_but_what_it_is_set_to(void)
 {
     turn(45.0, 300);
@@ -587,6 +639,9 @@ int main(void)
     RUN_TEST(test_a_rotor_that_crept_under_a_slow_load_is_no_offset_once_it_stops);
     RUN_TEST(test_a_hold_begins_with_the_load_of_the_motion);
     RUN_TEST(test_until_a_hold_has_been_calm_more_is_a_step);
+    RUN_TEST(test_steps_of_the_load_to_and_fro_are_a_vibration_sooner_than_those_to_one_side);
+    RUN_TEST(test_a_step_of_the_load_brings_the_lasting_offset_back);
+    RUN_TEST(test_the_lasting_offset_goes_to_the_offset_by_its_time_constant);
     RUN_TEST(test_a_reset_forgets_all_but_what_it_is_set_to);
     return UNITY_END();
 }

@@ -64,12 +64,15 @@ static void test_an_offset_is_taken_off_every_sample(void)
                                         .phase_voltage_a = 30,
                                         .phase_voltage_b = -40};
 
-    measurement.offset = (struct channels){
-        .current = {num_from_double(20.0 * current_per_code),
-                    num_from_double(-10.0 * current_per_code)},
-        .voltage = {num_from_double(30.0 * voltage_per_code),
-                    num_from_double(-40.0 * voltage_per_code)},
-    };
+    measurement_set_offset(&measurement, (struct channels){
+                                             .current = {num_from_double(20.0 * current_per_code),
+                                                         num_from_double(-10.0 * current_per_code)},
+                                             .voltage = {num_from_double(25.0 * voltage_per_code),
+                                                         num_from_double(-30.0 * voltage_per_code)},
+                                         });
+    measurement_add_voltage_offset(&measurement,
+                                   (struct phases){num_from_double(5.0 * voltage_per_code),
+                                                   num_from_double(-10.0 * voltage_per_code)});
     const struct sample_set now = measured(&shifted);
 
     TEST_ASSERT_NUM_WITHIN(0.01 * current_per_code, 0.0, now.winding.current.a);

@@ -447,6 +447,9 @@ static void test_a_square_root_keeps_16_bits(void)
         }
     }
     TEST_ASSERT_TRUE(num_sqrt(NUM(4.0)) == NUM(2.0));
+#if STEADYSTEP_NUM == NUM_FIXED
+    TEST_ASSERT_TRUE(num_sqrt(1) == 8192); /* the least: 2^-26 */
+#endif
     TEST_ASSERT_TRUE(num_sqrt(NUM(0.25)) == NUM(0.5));
     TEST_ASSERT_TRUE(num_sqrt(NUM(0.0)) == NUM(0.0));
     TEST_ASSERT_TRUE(num_sqrt(NUM(-1.0)) == NUM(0.0));

@@ -51,6 +51,8 @@ static void test_a_decimal_number_is_the_nearest_double(void)
     reads("00000000000000000000001.50000000000000000000000", 1.5);
     reads("0.000000000000000000001", 1e-21);
     reads("100000000000000000000000", 1e23);
+    reads("900719925474099e23", 900719925474099e23);
+    reads("9999999999e27", 9999999999e27);
 }
 
 static void test_a_hexadecimal_number_is_exact(void)
@@ -64,6 +66,9 @@ static void test_a_hexadecimal_number_is_exact(void)
     reads("0x10", 16.0);
     reads("0x20000000000000p0", 0x1p+53);
     reads("0x1.921fb54442d18p+1", 0x1.921fb54442d18p+1);
+    reads("0xabcdefp0", 11259375.0);
+    reads("0xABCDEFp0", 11259375.0);
+    reads("0x9.9p0", 9.5625);
 }
 
 static void test_what_one_rounding_cannot_give_is_refused(void)
@@ -75,6 +80,20 @@ static void test_what_one_rounding_cannot_give_is_refused(void)
     refuses("1e99999999999", NUMBER_TEXT_OUT_OF_RANGE);
     refuses("0x1p1024", NUMBER_TEXT_OUT_OF_RANGE);
     refuses("0x1p-1023", NUMBER_TEXT_OUT_OF_RANGE);
+}
+
+/* What is behind it belongs to something else. */
+static void test_a_number_ends_with_its_length(void)
+{
+    double value = 42.0;
+
+    TEST_ASSERT_EQUAL_INT(NUMBER_TEXT_READ, number_from_text("0x12", 1, &value));
+    TEST_ASSERT_TRUE(value == 0.0);
+    TEST_ASSERT_EQUAL_INT(NUMBER_TEXT_MALFORMED, number_from_text("0x12", 2, &value));
+    TEST_ASSERT_EQUAL_INT(NUMBER_TEXT_READ, number_from_text("0x12", 3, &value));
+    TEST_ASSERT_TRUE(value == 1.0);
+    TEST_ASSERT_EQUAL_INT(NUMBER_TEXT_READ, number_from_text("1.25e7", 3, &value));
+    TEST_ASSERT_TRUE(value == 1.2);
 }
 
 static void test_what_is_no_number_is_refused(void)
@@ -110,6 +129,7 @@ int main(void)
     RUN_TEST(test_a_decimal_number_is_the_nearest_double);
     RUN_TEST(test_a_hexadecimal_number_is_exact);
     RUN_TEST(test_what_one_rounding_cannot_give_is_refused);
+    RUN_TEST(test_a_number_ends_with_its_length);
     RUN_TEST(test_what_is_no_number_is_refused);
     RUN_TEST(test_whole_numbers_have_32_bits);
     return UNITY_END();

@@ -12,6 +12,8 @@ static uint8_t flash[PAGE * PAGES];
 static int bytes_until_power_fails; /* while programming; < 0: never */
 static int erased_pages;
 static size_t worn_from, worn_to; /* bytes that refuse to be programmed, and hold nothing */
+static bool worn_stays_blank;
+static int refused; /* to program what is not blank, which no flash does */
 static struct hal_facts facts;
 static struct hal board;
 
@@ -33,11 +35,12 @@ static bool program(void *context, uint32_t offset, const void *data, size_t cou
     }
     for (size_t i = 0; i < count; i++) {
         if (flash[offset + i] != 0xff) {
+            refused++;
             return false;
         }
     }
     if (offset < worn_to && offset + count > worn_from) {
-        memset(&flash[offset], 0, count);
+        memset(&flash[offset], worn_stays_blank ? 0xff : 0, count);
         return false;
     }
     for (size_t i = 0; i < count && bytes_until_power_fails != 0; i++) {
@@ -63,6 +66,8 @@ void setUp(void)
     bytes_until_power_fails = -1;
     erased_pages = 0;
     worn_from = worn_to = 0;
+    worn_stays_blank = false;
+    refused = 0;
     facts = (struct hal_facts){.parameter_page_bytes = PAGE, .parameter_word_bytes = WORD};
     board = (struct hal){.facts = &facts,
                          .parameters_erase = erase,
@@ -116,10 +121,12 @@ static void test_the_check_of_a_record_is_the_standard_one(void)
 /* In steps of 1e-7 N m, to nearest, up to 2^31 - 1 of them on either side. */
 static void test_a_torque_is_kept_to_nearest_and_within_its_range(void)
 {
-    static const double given_Nm[] = {0.6e-7, 0.4e-7, -0.6e-7, -0.4e-7, 1.4e-7, 1e3, -1e3};
-    static const double kept_Nm[] = {1e-7, 0.0, -1e-7, 0.0, 1e-7, 214.7483647, -214.7483647};
+    static const double given_Nm[] = {0.6e-7, 0.4e-7, -0.6e-7, -0.4e-7, 1.4e-7,
+                                      1e3,    -1e3,   300.0,   -300.0};
+    static const double kept_Nm[] = {1e-7,        0.0,          -1e-7,       0.0,         1e-7,
+                                     214.7483647, -214.7483647, 214.7483647, -214.7483647};
 
-    for (int i = 0; i < 7; i++) {
+    for (int i = 0; i < 9; i++) {
         TEST_ASSERT_TRUE(save(given_Nm[i]));
         TEST_ASSERT_DOUBLE_WITHIN(1e-10, kept_Nm[i], kept());
     }
@@ -166,6 +173,7 @@ static void test_the_supply_may_fail_at_any_byte_of_any_saving(void)
             TEST_ASSERT_DOUBLE_WITHIN(1e-7, 1e-3 * savings, kept());
             TEST_ASSERT_TRUE(save(2.0)); /* and the store goes on */
             TEST_ASSERT_DOUBLE_WITHIN(1e-7, 2.0, kept());
+            TEST_ASSERT_EQUAL_INT(0, refused);
         }
     }
 }
@@ -188,6 +196,19 @@ static void test_a_page_whose_first_word_is_worn_out_is_used_behind_it(void)
     TEST_ASSERT_EQUAL_INT(8, erased_pages); /* six records, and five */
 }
 
+/* One that looks as if it had never been tried. */
+static void test_a_slot_that_stays_blank_is_passed_over(void)
+{
+    worn_stays_blank = true;
+    worn_to = WORD;
+    for (int i = 1; i <= 40; i++) {
+        TEST_ASSERT_TRUE(save(1e-3 * i));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-7, 1e-3 * i, kept());
+    }
+    TEST_ASSERT_EQUAL_INT(8, erased_pages);
+    TEST_ASSERT_EQUAL_INT(0, refused);
+}
+
 static void test_a_page_that_is_worn_out_leaves_the_other(void)
 {
     goes_on_with_worn_cells_from(0, PAGE);
@@ -202,6 +223,18 @@ static void test_a_store_that_takes_nothing_refuses(void)
     setUp();
     board.parameters_erase = refuse_to_erase;
     TEST_ASSERT_FALSE(save(1e-3));
+}
+
+static void test_each_record_has_the_next_number(void)
+{
+    for (uint32_t i = 1; i <= 8u; i++) {
+        const size_t page = i > 6u ? PAGE : 0u; /* six in the first */
+
+        TEST_ASSERT_TRUE(save(1e-3));
+        TEST_ASSERT_EQUAL_HEX16(1, (uint16_t)record_get(&flash[page], 2)); /* format */
+        TEST_ASSERT_EQUAL_HEX32(i,
+                                (uint32_t)record_get(&flash[page + 40u * ((i - 1u) % 6u) + 4u], 4));
+    }
 }
 
 static void test_a_record_that_went_elsewhere_says_so(void)
@@ -243,8 +276,10 @@ int main(void)
     RUN_TEST(test_the_last_of_many_savings_counts);
     RUN_TEST(test_the_supply_may_fail_at_any_byte_of_any_saving);
     RUN_TEST(test_a_page_whose_first_word_is_worn_out_is_used_behind_it);
+    RUN_TEST(test_a_slot_that_stays_blank_is_passed_over);
     RUN_TEST(test_a_page_that_is_worn_out_leaves_the_other);
     RUN_TEST(test_a_store_that_takes_nothing_refuses);
+    RUN_TEST(test_each_record_has_the_next_number);
     RUN_TEST(test_a_record_that_went_elsewhere_says_so);
     RUN_TEST(test_a_flipped_bit_makes_a_record_void);
     RUN_TEST(test_a_board_without_a_store_keeps_nothing);

@@ -1,4 +1,5 @@
 /* The ratio of the two phases, found by a hold between them. */
+#include "firmware/estimator/estimate.h"
 #include "firmware/drive/phase_balance.h"
 
 #include <string.h>
@@ -234,9 +235,23 @@ static void test_it_takes_no_longer_than_it_says(void)
     TEST_ASSERT_LESS_THAN_UINT32(2500u, phase_balance_periods(&params)); /* 0.25 s */
 }
 
+/* Those of the sample and of the next one alike. */
+static void test_estimated_currents_follow_the_balanced_sensors(void)
+{
+    struct estimate estimate = {.current = {NUM(0.5), NUM(0.25)},
+                                .next = {.current = {NUM(-0.25), NUM(0.5)}}};
+
+    estimate_balance_currents(&estimate, NUM(0.125));
+    TEST_ASSERT_NUM_WITHIN(1e-6, 0.5 * 1.125, estimate.current.a);
+    TEST_ASSERT_NUM_WITHIN(1e-6, 0.25 * 0.875, estimate.current.b);
+    TEST_ASSERT_NUM_WITHIN(1e-6, -0.25 * 1.125, estimate.next.current.a);
+    TEST_ASSERT_NUM_WITHIN(1e-6, 0.5 * 0.875, estimate.next.current.b);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_estimated_currents_follow_the_balanced_sensors);
     RUN_TEST(test_phases_that_are_alike_have_no_imbalance);
     RUN_TEST(test_a_difference_of_resistances_or_of_gains_is_found);
     RUN_TEST(test_it_is_found_from_wherever_the_rotor_is_held);

@@ -498,6 +498,148 @@ static void test_what_is_out_of_range_is_refused_with_its_bound(void)
     TEST_ASSERT_FALSE(signals().reference_moving);
 }
 
+/* What is taken at its bound, and what is beyond it by this share of it not. */
+static void holds_to(struct drive_command *command, double *quantity, double bound, double beyond,
+                     const char *refusal)
+{
+    const double before = *quantity;
+    struct drive_command stop = {.kind = DRIVE_COMMAND_STOP};
+
+    *quantity = bound * (1.0 + beyond);
+    must_refuse(*command, refusal);
+    *quantity = bound * (1.0 - 1e-3 * beyond);
+    TEST_ASSERT_TRUE_MESSAGE(post(*command), error);
+    *quantity = before;
+    must_post(stop);
+    run(2500);
+    TEST_ASSERT_FALSE(signals().reference_moving);
+}
+
+static const double more = 1e-4, less = -1e-4;
+
+static void test_speeds_are_taken_up_to_their_bounds(void)
+{
+    const double acceleration = 3.0 * 0.157 / 15.62e-5;
+    const double slowest = 2.0 * 140.0 / (1073741824.0 * 1e-4);
+    struct drive_command command = velocity(1.0);
+
+    holds_to(&command, &command.acceleration_rad_s2, acceleration, more,
+             "acceleration 3015.666 rad/s^2: must be at most 3015.365");
+    command = retarget(1.0);
+    holds_to(&command, &command.acceleration_rad_s2, acceleration, more, "limit of the drive");
+    command.jerk_rad_s3 = 1e9;
+    holds_to(&command, &command.acceleration_rad_s2, slowest, 0.01 * less - 0.05,
+             "must be at least");
+    command = velocity(1.0);
+    holds_to(&command, &command.jerk_rad_s3, acceleration_rad_s2 / (131072.0 * 1e-4), less,
+             "2^17 control periods to the acceleration");
+    command = retarget(1.0);
+    for (double sign = -1.0; sign < 2.0; sign += 2.0) {
+        command.position_rad = sign * 1e9 * TWO_PI / 50.0;
+        must_refuse(command, "2^30 periods to go");
+        command.position_rad *= 1.0001;
+        must_refuse(command, "range of positions");
+    }
+    command.position_rad = 1e7;
+    holds_to(&command, &command.speed_rad_s, 1e7 / (1073741824.0 * 1e-4), less,
+             "2^30 periods to go");
+    command.speed_rad_s = -1.0;
+    must_refuse(command, "speed -1 rad/s: must be at least");
+    command.position_rad = 0.0;
+    command.speed_rad_s = 0.0;
+    must_refuse(command, "speed 0 rad/s: must be at least 1e-09 rad/s");
+}
+
+static void test_sines_are_taken_up_to_their_bounds(void)
+{
+    const double acceleration = 3.0 * 0.157 / 15.62e-5;
+    struct drive_command command = sine(0.0, 0.0);
+
+    holds_to(&command, &command.amplitude_rad, 1e-6, less, "range of amplitudes");
+    holds_to(&command, &command.amplitude_rad, -1e-6, less, "range of amplitudes");
+    command.frequency_Hz = 1.0;
+    holds_to(&command, &command.amplitude_rad, 139.9 / TWO_PI, 0.01, "where the back-EMF");
+    command.frequency_Hz = 100.0;
+    holds_to(&command, &command.amplitude_rad, acceleration / pow(TWO_PI * 100.0, 2.0), more,
+             "acceleration of the sine");
+    command.amplitude_rad = 1e-5;
+    holds_to(&command, &command.frequency_Hz, 500.0, more, "20 control periods to a cycle");
+    holds_to(&command, &command.frequency_Hz, 1e-3, less, "must be at least 0.001 Hz");
+    command.frequency_Hz = 500.0;
+    command.cycles = 1e9 + 1.0;
+    must_refuse(command, "range of cycles");
+    command.cycles = -1.0;
+    must_refuse(command, "range of cycles");
+    command.cycles = 4.0;
+    holds_to(&command, &command.ramp_s, 0.5 * 4.0 / 500.0, more, "half of the cycles");
+    command.cycles = 0.0;
+    holds_to(&command, &command.ramp_s, 1073741824.0 * 1e-4, more, "2^30 control periods");
+    command.ramp_s = -1e-3;
+    must_refuse(command, "ramp");
+}
+
+static void test_set_points_are_taken_up_to_their_bounds(void)
+{
+    struct drive_command command = set_point(0.0);
+
+    holds_to(&command, &command.interval_s, 2.5e-4, less, "3 to 2^16 control periods");
+    holds_to(&command, &command.interval_s, 65536.0 * 1e-4, more, "3 to 2^16 control periods");
+    command.interval_s = 1.04e-3;
+    must_post(command);
+    TEST_ASSERT_EQUAL_UINT32(10, drive.planner.set_points.interval_periods);
+}
+
+/* Where it ends is known, whatever was in motion before: a move may wait for it. */
+static void test_behind_a_new_target_a_move_may_wait(void)
+{
+    must_post(velocity(2.0));
+    run(300);
+    must_refuse(move_to(0.2), "the reference follows a sine, set-points or a speed");
+    must_post(retarget(0.1));
+    must_post(move_to(0.2));
+    run_to_rest();
+    run(20);
+    run_to_rest();
+    the_reference_is_at(0.2);
+    TEST_ASSERT_EQUAL_UINT32(0, drive.commands.dropped);
+}
+
+/* Its own jerk is harder than a tenth of a second's. */
+static void test_a_fast_sine_stops_as_softly_as_it_swings(void)
+{
+    struct drive_command command = sine(0.0, 0.0);
+    const double w = TWO_PI * 20.0;
+    uint32_t periods = 0;
+
+    must_post(command);
+    run(3 + LEAD_PERIODS);
+    stop_now();
+    while (drive.planner.stop_due || signals().reference_moving) {
+        run(1);
+        periods++;
+    }
+    /* speed over acceleration, acceleration over jerk */
+    TEST_ASSERT_UINT32_WITHIN(60, (uint32_t)(2.0 / w / 1e-4), periods);
+}
+
+/* A tenth of a second from its peak speed, and as long again for the jerk. */
+static void test_a_slow_sine_stops_sooner_than_it_swings(void)
+{
+    struct drive_command command = sine(0.0, 0.0);
+    uint32_t periods = 0;
+
+    command.frequency_Hz = 0.5;
+    must_post(command);
+    run(3 + LEAD_PERIODS); /* at its peak speed */
+    the_speed_is(0.02 * TWO_PI * 0.5);
+    stop_now();
+    while (drive.planner.stop_due || signals().reference_moving) {
+        run(1);
+        periods++;
+    }
+    TEST_ASSERT_UINT32_WITHIN(10, 2000 + LEAD_PERIODS, periods);
+}
+
 /* ---- a drive that starts where its encoder shows the rotor ---- */
 
 static void test_with_a_known_encoder_zero_motion_is_refused_until_the_drive_is_ready(void)
@@ -585,6 +727,12 @@ int main(void)
     RUN_TEST(test_set_points_posted_while_the_first_plan_is_on_offer_overwrite_none);
     RUN_TEST(test_a_stop_ends_the_stream_of_set_points);
     RUN_TEST(test_what_is_out_of_range_is_refused_with_its_bound);
+    RUN_TEST(test_speeds_are_taken_up_to_their_bounds);
+    RUN_TEST(test_sines_are_taken_up_to_their_bounds);
+    RUN_TEST(test_set_points_are_taken_up_to_their_bounds);
+    RUN_TEST(test_behind_a_new_target_a_move_may_wait);
+    RUN_TEST(test_a_fast_sine_stops_as_softly_as_it_swings);
+    RUN_TEST(test_a_slow_sine_stops_sooner_than_it_swings);
     RUN_TEST(test_with_a_known_encoder_zero_motion_is_refused_until_the_drive_is_ready);
     return UNITY_END();
 }

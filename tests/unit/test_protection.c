@@ -100,6 +100,28 @@ static void test_a_bus_out_of_range_is_a_fault(void)
     }
 }
 
+/* Codes of the bounds: both allowed, the next ones not. */
+static void test_bounds_are_allowed_to_the_code(void)
+{
+    const int bus_least = (int)(12.0 / bench_facts.bus_V_per_code);
+    const int bus_most = (int)(1.29 * 24.0 / bench_facts.bus_V_per_code);
+    const int trip = (int)(5.4 / bench_facts.current_A_per_code);
+
+    for (int code = 0; code < 4096; code++) {
+        samples = (struct hal_samples){
+            .current_a = 2048, .current_b = 2048, .bus_voltage = (uint16_t)code};
+        TEST_ASSERT_EQUAL(code >= bus_least && code <= bus_most ? DRIVE_FAULT_NONE
+                                                                : DRIVE_FAULT_BUS_VOLTAGE,
+                          of_samples());
+        samples = (struct hal_samples){.current_a = (uint16_t)code,
+                                       .current_b = (uint16_t)code,
+                                       .bus_voltage = bus_code(24.0)};
+        TEST_ASSERT_EQUAL(code >= 2048 - trip && code <= 2048 + trip ? DRIVE_FAULT_NONE
+                                                                     : DRIVE_FAULT_OVERCURRENT,
+                          of_samples());
+    }
+}
+
 /* A short pulls the bus down and may delay the interrupt: the comparator says why. */
 static void test_of_several_faults_the_cause_is_named(void)
 {
@@ -185,6 +207,7 @@ int main(void)
     RUN_TEST(test_the_boards_own_trip_is_a_fault);
     RUN_TEST(test_a_control_interrupt_that_ended_too_late_is_a_fault);
     RUN_TEST(test_a_bus_out_of_range_is_a_fault);
+    RUN_TEST(test_bounds_are_allowed_to_the_code);
     RUN_TEST(test_of_several_faults_the_cause_is_named);
     RUN_TEST(test_a_bound_beyond_the_converters_is_none);
     RUN_TEST(test_a_speed_no_supply_could_give_is_a_fault);

@@ -185,6 +185,69 @@ static void test_a_light_rotor_gets_a_wider_and_sooner_hold(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-5, 4.2 / (7.0 * 388.3), settings.hold_delay_s);
 }
 
+/* A strong magnet, a light rotor and a slow winding: a hold that swings faster than it is damped.
+ */
+static void test_a_hold_that_a_motor_does_not_bear_gets_less_current_in_steps(void)
+{
+    struct motor_params *motor = &settings.motor;
+
+    motor->inertia_kgm2 *= 0.07;
+    motor->inductance_H *= 5.0;
+    motor->resistance_ohm *= 0.76;
+    motor->torque_constant_Nm_A *= 6.0;
+    default_settings_apply(&settings, 1e-4, 0u);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3.0 * 0.7 * 0.7, settings.hold_current_A);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, settings.hold_current_A, settings.idle_current_A);
+    settings.hold_current_A = __builtin_nan("");
+    settings.overcurrent_trip_A = 2.0; /* of which a hold has 0.7 */
+    default_settings_apply(&settings, 1e-4, 0u);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.7 * 2.0, settings.hold_current_A);
+    settings.overcurrent_trip_A = __builtin_nan("");
+    motor->torque_constant_Nm_A *= 10.0; /* nor any */
+    settings.hold_current_A = __builtin_nan("");
+    default_settings_apply(&settings, 1e-4, 0u);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3.0 * pow(0.7, 8.0), settings.hold_current_A);
+}
+
+/* rad/s: what is wanted, and at a period of 1 ms what its sampling bears. */
+static void test_every_law_has_its_bandwidths(void)
+{
+    for (int law = 0; law < POSITION_LAW_COUNT; law++) {
+        for (int encoder = 0; encoder < 2; encoder++) {
+            const bool linearises = law == POSITION_LAW_FEEDBACK_LINEARISATION;
+            const bool fast = linearises && encoder == 1;
+            const bool stiff = linearises || law == POSITION_LAW_STATE_FEEDBACK;
+            const bool mechanical = law == POSITION_LAW_STMMS || law == POSITION_LAW_STMMS_PLUS ||
+                                    law == POSITION_LAW_FOC;
+            struct drive_settings slow;
+
+            setUp();
+            drive_settings_select_feedback(&settings, encoder ? DRIVE_FEEDBACK_ENCODER
+                                                              : DRIVE_FEEDBACK_SENSORLESS);
+            drive_settings_select_law(&settings, (enum position_law)law);
+            slow = settings;
+            default_settings_apply(&settings, 1e-4, encoder ? 4000u : 0u);
+            TEST_ASSERT_TRUE(settings.law_bandwidth_rad_s == (fast    ? 900.0
+                                                              : stiff ? 300.0
+                                                                      : 200.0));
+            TEST_ASSERT_TRUE(settings.current_bandwidth_rad_s == (fast ? 2000.0 : 1500.0));
+            TEST_ASSERT_TRUE(settings.observer_bandwidth_rad_s == (fast ? 1400.0 : 1000.0));
+            TEST_ASSERT_DOUBLE_WITHIN(1e-12,
+                                      law == POSITION_LAW_MICROSTEPPING ? 0.0 : TWO_PI / 50.0,
+                                      settings.following_error_rad);
+            default_settings_apply(&slow, 1e-3, encoder ? 4000u : 0u);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9,
+                                      linearises   ? 150.0
+                                      : mechanical ? 37.5
+                                                   : 75.0,
+                                      slow.law_bandwidth_rad_s);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, 300.0, slow.current_bandwidth_rad_s);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, 500.0, slow.observer_bandwidth_rad_s);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.015, slow.hold_delay_s);
+        }
+    }
+}
+
 static void test_what_is_given_stays(void)
 {
     settings.law_bandwidth_rad_s = 123.0;
@@ -407,6 +470,8 @@ int main(void)
     RUN_TEST(test_every_setting_may_take_the_bounds_of_its_range);
     RUN_TEST(test_what_is_not_given_follows_from_motor_and_period);
     RUN_TEST(test_a_light_rotor_gets_a_wider_and_sooner_hold);
+    RUN_TEST(test_a_hold_that_a_motor_does_not_bear_gets_less_current_in_steps);
+    RUN_TEST(test_every_law_has_its_bandwidths);
     RUN_TEST(test_what_is_given_stays);
     RUN_TEST(test_defaults_fit_a_longer_period);
     RUN_TEST(test_an_observer_follows_a_light_rotor);

@@ -40,8 +40,15 @@ static void test_digits_may_be_small(void)
 
 static void test_what_is_no_frame_is_refused(void)
 {
-    static const char *const lines[] = {
-        "t", "t12", "t1239AABBCCDDEEFF0011", "t1232AAB", "t1232AABBC", "t8000", "t12G0", "t1231ZZ"};
+    static const char *const lines[] = {"t",
+                                        "t12",
+                                        "t1239AABBCCDDEEFF0011",
+                                        "t1239AABBCCDDEEFF001122",
+                                        "t1232AAB",
+                                        "t1232AABBC",
+                                        "t8000",
+                                        "t12G0",
+                                        "t1231ZZ"};
     struct can_frame frame;
 
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {

@@ -85,6 +85,9 @@ static void is_in(enum drive_state state, bool bridge_on)
 {
     TEST_ASSERT_EQUAL_STRING(drive_state_name(state), drive_state_name(signals().state));
     TEST_ASSERT_EQUAL(bridge_on, outputs.bridge_on);
+    for (int leg = 0; !bridge_on && leg < HAL_LEGS; leg++) {
+        TEST_ASSERT_EQUAL_UINT16(0, outputs.high_counts[leg]);
+    }
 }
 
 static void has_fault(enum drive_fault fault)
@@ -775,6 +778,19 @@ static void test_a_stop_brings_the_reference_to_rest_short_of_its_target(void)
     is_in(DRIVE_OPERATION_ENABLED, true);
 }
 
+static void test_a_stop_acts_in_the_period_it_is_addressed_to(void)
+{
+    struct drive_command stop = {.kind = DRIVE_COMMAND_STOP};
+
+    enable();
+    must_post(move_to(0.2));
+    run(40);
+    stop.at_period = signals().period + 30u;
+    must_post(stop);
+    run(60);
+    TEST_ASSERT_EQUAL_UINT32(stop.at_period, drive.commands.stop_acted_in);
+}
+
 static void test_a_stop_overtakes_the_moves_that_wait(void)
 {
     enable();
@@ -1102,6 +1118,7 @@ int main(void)
     RUN_TEST(test_steps_and_smooth_moves_are_made_too);
     RUN_TEST(test_a_move_begins_with_the_period_it_is_addressed_to);
     RUN_TEST(test_a_stop_brings_the_reference_to_rest_short_of_its_target);
+    RUN_TEST(test_a_stop_acts_in_the_period_it_is_addressed_to);
     RUN_TEST(test_a_stop_overtakes_the_moves_that_wait);
     RUN_TEST(test_commands_posted_behind_a_stop_leave_its_ramp_alone);
     RUN_TEST(test_moves_are_refused_while_a_stop_is_under_way_and_accepted_after);

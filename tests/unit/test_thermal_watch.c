@@ -314,6 +314,22 @@ static void test_a_board_without_sensor_is_not_asked_and_watches_the_motor_all_t
     TEST_ASSERT_TRUE(seconds_until_shown(1.5 * RATED_A, 0.0) < 1.3 * TAU_S);
 }
 
+static void test_a_bridge_that_is_watched_no_more_gives_back_what_it_took(void)
+{
+    char error[DRIVE_ERROR_TEXT];
+
+    heat_bridge((num_real)90.0);
+    TEST_ASSERT_TRUE(law_limit_A() < 1.0 * RATED_A);
+    settings.bridge_fault_C = 0.0;
+    drive.supervision.state = DRIVE_SWITCH_ON_DISABLED;
+    TEST_ASSERT_TRUE_MESSAGE(drive_design(&drive, &settings, error), error);
+    drive.supervision.state = DRIVE_OPERATION_ENABLED;
+    pass(0.06, 0.0, 0.0);
+    TEST_ASSERT_EQUAL_UINT8(0, drive.thermal.bridge_derated);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, 1.5 * RATED_A, law_limit_A());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, 1.5 * RATED_A, limit_A(drive.params.hold.current_limit));
+}
+
 static void test_a_motor_that_is_warm_begins_there(void)
 {
     settings.cold_resistance_ohm = bench_params.resistance_ohm / (1.0 + 0.00393 * 60.0);
@@ -343,6 +359,7 @@ int main(void)
     RUN_TEST(test_a_derating_that_begins_too_late_leaves_the_fault_where_it_is);
     RUN_TEST(test_a_sensor_that_is_broken_is_said_and_takes_nothing);
     RUN_TEST(test_a_board_without_sensor_is_not_asked_and_watches_the_motor_all_the_same);
+    RUN_TEST(test_a_bridge_that_is_watched_no_more_gives_back_what_it_took);
     RUN_TEST(test_a_motor_that_is_warm_begins_there);
     return UNITY_END();
 }

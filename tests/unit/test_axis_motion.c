@@ -1,0 +1,518 @@
+/* What the modes of the drive profile make of a target: limits, ramps, windows, halts. */
+#include "firmware/link/axis_motion.h"
+#include "firmware/drive/board_limits.h"
+#include "tests/unit/link_bench.h"
+
+enum { TURN = 65536, REACHED = 0x0400, LIMITED = 0x0800, OF_MODE = 0x1000, OFF = 0x2000 };
+
+static const double unit_rad = TWO_PI / TURN;
+
+void setUp(void)
+{
+    link_bench_start();
+    link_bench_open();
+    (void)link_bench_say("t00020101", 1);
+}
+
+void tearDown(void)
+{
+}
+
+static void put(unsigned index, unsigned sub, unsigned bytes, uint32_t value)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(index, sub, bytes, value));
+}
+
+static uint32_t get(unsigned index)
+{
+    return link_bench_get(index, 0);
+}
+
+static void control(unsigned word)
+{
+    put(0x6040, 0, 2, word);
+}
+
+static uint32_t status(uint32_t bits)
+{
+    return get(0x6041) & bits;
+}
+
+static void enable(int mode)
+{
+    put(0x6060, 0, 1, (uint32_t)mode);
+    control(0x06);
+    bench_periods(20);
+    control(0x0f);
+    bench_periods(20);
+    TEST_ASSERT_EQUAL_HEX32(0x27, status(0x6f));
+}
+
+static double speed_rad_s(void)
+{
+    struct drive_signals now;
+
+    drive_signals_read(&bench.application.drive, &now);
+    return now.omega_ref_rad_s;
+}
+
+static double reference_rad(void)
+{
+    struct drive_signals now;
+
+    drive_signals_read(&bench.application.drive, &now);
+    return now.theta_ref_rad;
+}
+
+static bool rests(void)
+{
+    return axis_motion_rests(&bench.application);
+}
+
+/* Greatest change of the reference's speed in a period from now on, rad/s^2, until it is constant
+   for 20 ms; how long that takes in `periods`. */
+static double greatest_acceleration(int *periods)
+{
+    double before = speed_rad_s();
+    double most = 0.0;
+    int constant = 0;
+
+    *periods = 0;
+    while (constant < 200) {
+        bench_period();
+        const double change = fabs(speed_rad_s() - before) / PERIOD_S;
+
+        most = fmax(most, change);
+        constant = change == 0.0 ? constant + 1 : 0;
+        *periods += change == 0.0 ? 0 : 1;
+        before = speed_rad_s();
+    }
+    return most;
+}
+
+static double speed_limit_rad_s(void)
+{
+    const struct drive *drive = &bench.application.drive;
+
+    return 0.999 * board_limits_speed(&drive->settings, drive->board->facts).rad_s;
+}
+
+static double acceleration_limit_rad_s2(void)
+{
+    return 0.999 * bench.application.drive.settings.current_limit_A *
+           bench_params.torque_constant_Nm_A / bench_params.inertia_kgm2;
+}
+
+/* ---- units ---- */
+
+static void test_profile_quantities_come_from_the_motor(void)
+{
+    const double acceleration = acceleration_limit_rad_s2() / unit_rad;
+
+    TEST_ASSERT_DOUBLE_WITHIN(5.0, 0.25 * speed_limit_rad_s() / unit_rad, get(0x6081));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6 * acceleration, 0.25 * acceleration, get(0x6083));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6 * acceleration, 0.5 * acceleration, get(0x6085));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, speed_limit_rad_s(),
+                              axis_motion_speed_limit(&bench.application));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, acceleration_limit_rad_s2(),
+                              axis_motion_acceleration_limit(&bench.application));
+}
+
+static void test_gear_and_feed_say_what_a_unit_is(void)
+{
+    put(0x6091, 1, 4, 3);
+    put(0x6091, 2, 4, 2);
+    put(0x6092, 1, 4, 1000);
+    put(0x6092, 2, 4, 7);
+    enable(1);
+    put(0x6081, 0, 4, 50);
+    put(0x6083, 0, 4, 500);
+    put(0x607a, 0, 4, 30);
+    control(0x1f);
+    bench_periods(12000);
+    TEST_ASSERT_TRUE(rests());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 30.0 * TWO_PI * 7.0 * 3.0 / (1000.0 * 2.0), reference_rad());
+    TEST_ASSERT_EQUAL_INT(30, (int)get(0x6062));
+}
+
+static void test_quantities_are_shown_in_units_rounded(void)
+{
+    const double bus_mV = 1e3 * 3151.0 * bench_facts.bus_V_per_code;
+
+    enable(3);
+    TEST_ASSERT_DOUBLE_WITHIN(1.0, bus_mV, get(0x6079));
+    put(0x60ff, 0, 4, (uint32_t)-3000);
+    bench_periods(3000);
+    TEST_ASSERT_INT_WITHIN(1, -3000, (int32_t)get(0x606b));
+    put(0x60ff, 0, 4, 0);
+    bench_periods(3000);
+    TEST_ASSERT_INT_WITHIN(1, lround(reference_rad() / unit_rad), (int32_t)get(0x6062));
+    TEST_ASSERT_TRUE(reference_rad() < -0.05);
+
+    struct drive_signals now;
+
+    drive_signals_read(&bench.application.drive, &now);
+    TEST_ASSERT_INT_WITHIN(1, lround(now.theta_est_rad / unit_rad), (int32_t)get(0x6064));
+    TEST_ASSERT_INT_WITHIN(1, lround((now.theta_ref_rad - now.theta_est_rad) / unit_rad),
+                           (int32_t)get(0x60f4));
+    TEST_ASSERT_INT_WITHIN(1, lround(now.omega_est_rad_s / unit_rad), (int32_t)get(0x606c));
+    TEST_ASSERT_NOT_EQUAL(get(0x6062), get(0x6064));
+}
+
+/* ---- ramps ---- */
+
+/* A ramp with a quarter of it as jerk phases takes 5/4 of speed over acceleration. */
+static void test_a_speed_is_reached_by_its_acceleration_and_jerk(void)
+{
+    int periods;
+
+    enable(3);
+    put(0x6083, 0, 4, 10 * TURN);
+    put(0x60ff, 0, 4, TURN);
+    bench_periods(1); /* beside this line of the bus */
+    TEST_ASSERT_DOUBLE_WITHIN(0.7, 10.0 * TWO_PI, greatest_acceleration(&periods));
+    TEST_ASSERT_INT_WITHIN(6, 1250, periods);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, TWO_PI, speed_rad_s());
+    put(0x60ff, 0, 4, (uint32_t)-TURN);
+    TEST_ASSERT_DOUBLE_WITHIN(0.7, 10.0 * TWO_PI, greatest_acceleration(&periods));
+    TEST_ASSERT_INT_WITHIN(6, 2250, periods);
+}
+
+/* No jerk phase is shorter than 2 ms. */
+static void test_a_quick_stop_brakes_by_its_own_deceleration(void)
+{
+    int periods;
+
+    enable(3);
+    put(0x6085, 0, 4, 20 * TURN);
+    put(0x60ff, 0, 4, 2 * TURN);
+    bench_periods(8000);
+    control(0x0b);
+    TEST_ASSERT_DOUBLE_WITHIN(0.8, 20.0 * TWO_PI, greatest_acceleration(&periods));
+    TEST_ASSERT_INT_WITHIN(6, 1020, periods);
+    TEST_ASSERT_EQUAL(DRIVE_SWITCH_ON_DISABLED, bench.application.drive.supervision.state);
+}
+
+static void test_speed_and_acceleration_beyond_what_the_drive_can_are_cut_and_said(void)
+{
+    int periods;
+
+    enable(3);
+    put(0x6083, 0, 4, 0xffffffff);
+    put(0x60ff, 0, 4, 0x7fffffff);
+    const double most = greatest_acceleration(&periods);
+
+    TEST_ASSERT_DOUBLE_WITHIN(0.01 * most, acceleration_limit_rad_s2(), most);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, speed_limit_rad_s(), speed_rad_s());
+    TEST_ASSERT_EQUAL_HEX32(LIMITED | REACHED, status(LIMITED | REACHED));
+    put(0x60ff, 0, 4, 0x80000001);
+    bench_periods(4000);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, -speed_limit_rad_s(), speed_rad_s());
+    TEST_ASSERT_EQUAL_HEX32(LIMITED, status(LIMITED));
+    put(0x60ff, 0, 4, TURN);
+    bench_periods(4000);
+    TEST_ASSERT_EQUAL_HEX32(0, status(LIMITED));
+}
+
+static void test_the_speed_counts_as_reached_within_a_thousandth(void)
+{
+    enable(3);
+    TEST_ASSERT_EQUAL_HEX32(REACHED | OF_MODE, status(REACHED | OF_MODE)); /* 0, and at rest */
+    put(0x6083, 0, 4, TURN);
+    put(0x60ff, 0, 4, TURN);
+    bench_periods(200);
+    TEST_ASSERT_EQUAL_HEX32(0, status(REACHED | OF_MODE));
+    while (speed_rad_s() < 0.9985 * TWO_PI) {
+        bench_period();
+    }
+    TEST_ASSERT_EQUAL_HEX32(0, status(REACHED));
+    bench_periods(2000);
+    TEST_ASSERT_EQUAL_HEX32(REACHED, status(REACHED | OF_MODE));
+    put(0x60ff, 0, 4, (uint32_t)-TURN);
+    bench_periods(10);
+    TEST_ASSERT_EQUAL_HEX32(0, status(REACHED));
+    while (speed_rad_s() > -0.9985 * TWO_PI) {
+        bench_period();
+    }
+    TEST_ASSERT_EQUAL_HEX32(0, status(REACHED));
+    bench_periods(2000);
+    TEST_ASSERT_EQUAL_HEX32(REACHED, status(REACHED));
+}
+
+static void test_a_halt_of_a_speed_brakes_and_lets_it_go_on(void)
+{
+    enable(3);
+    put(0x60ff, 0, 4, TURN);
+    bench_periods(4000);
+    control(0x10f);
+    bench_periods(4000);
+    TEST_ASSERT_TRUE(rests());
+    put(0x60ff, 0, 4, 2 * TURN); /* waits for the end of the halt */
+    bench_periods(2000);
+    TEST_ASSERT_TRUE(rests());
+    control(0x0f);
+    bench_periods(4000);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 2.0 * TWO_PI, speed_rad_s());
+}
+
+/* ---- set-points ---- */
+
+static void test_a_move_has_the_profile_s_speed_and_acceleration(void)
+{
+    double most = 0.0;
+    double steepest = 0.0;
+    double before = 0.0;
+
+    enable(1);
+    put(0x6081, 0, 4, TURN);
+    put(0x6083, 0, 4, 10 * TURN);
+    put(0x607a, 0, 4, TURN / 2);
+    control(0x1f);
+    for (int i = 0; i < 8000; i++) {
+        bench_period();
+        most = fmax(most, speed_rad_s());
+        steepest = fmax(steepest, fabs(speed_rad_s() - before) / PERIOD_S);
+        before = speed_rad_s();
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, TWO_PI, most);
+    TEST_ASSERT_DOUBLE_WITHIN(0.7, 10.0 * TWO_PI, steepest);
+    TEST_ASSERT_INT_WITHIN(0, TURN / 2, (int)get(0x6062));
+}
+
+static void test_targets_are_cut_at_either_software_limit_and_free_of_it_in_between(void)
+{
+    enable(1);
+    put(0x607d, 1, 4, (uint32_t)(-TURN / 4));
+    put(0x607d, 2, 4, TURN / 8);
+    put(0x607a, 0, 4, TURN / 8);
+    control(0x1f);
+    TEST_ASSERT_EQUAL_HEX32(0, status(LIMITED));
+    bench_periods(4000);
+    control(0x0f);
+    put(0x607a, 0, 4, (uint32_t)-TURN);
+    control(0x1f);
+    TEST_ASSERT_EQUAL_HEX32(LIMITED, status(LIMITED));
+    bench_periods(6000);
+    TEST_ASSERT_EQUAL_INT(-TURN / 4, (int32_t)get(0x6062));
+    control(0x0f);
+    put(0x607a, 0, 4, TURN / 16);
+    control(0x5f); /* relative */
+    TEST_ASSERT_EQUAL_HEX32(0, status(LIMITED));
+    bench_periods(6000);
+    TEST_ASSERT_EQUAL_INT(-TURN / 4 + TURN / 16, (int32_t)get(0x6062));
+}
+
+static void test_a_relative_target_counts_from_the_last_one(void)
+{
+    enable(1);
+    put(0x6067, 0, 4, 0x7fffffff);
+    put(0x607a, 0, 4, TURN);
+    control(0x5f);
+    bench_periods(20);
+    control(0x4f);
+    bench_periods(20);
+    control(0x5f); /* waits */
+    bench_periods(20);
+    TEST_ASSERT_EQUAL_HEX32(OF_MODE, status(OF_MODE | REACHED));
+    control(0x4f);
+    bench_periods(12000);
+    TEST_ASSERT_EQUAL_INT(2 * TURN, (int)get(0x6062));
+    TEST_ASSERT_EQUAL_HEX32(REACHED, status(OF_MODE | REACHED));
+}
+
+static void test_a_third_target_is_not_accepted_while_the_second_waits(void)
+{
+    enable(1);
+    put(0x607a, 0, 4, TURN);
+    control(0x1f);
+    bench_periods(20);
+    control(0x0f);
+    put(0x607a, 0, 4, TURN / 2);
+    control(0x1f);
+    bench_periods(20);
+    control(0x0f);
+    put(0x607a, 0, 4, TURN / 4);
+    control(0x1f);
+    control(0x0f);
+    bench_periods(16000);
+    TEST_ASSERT_EQUAL_INT(TURN / 2, (int)get(0x6062));
+}
+
+static void test_a_target_that_is_asked_for_at_once_preempts_and_without_a_rise_none_does(void)
+{
+    enable(1);
+    put(0x607a, 0, 4, 40 * TURN);
+    control(0x1f);
+    bench_periods(500);
+    put(0x607a, 0, 4, 0);
+    control(0x3f); /* no rise of the bit */
+    bench_periods(500);
+    TEST_ASSERT_TRUE(speed_rad_s() > 1.0);
+    control(0x2f);
+    control(0x3f);
+    bench_periods(12000);
+    TEST_ASSERT_TRUE(rests());
+    TEST_ASSERT_EQUAL_INT(0, (int)get(0x6062));
+}
+
+/* The rotor of this bench stands where it was estimated. */
+static void test_a_target_is_reached_when_the_rotor_has_been_within_its_window_for_a_while(void)
+{
+    enable(1);
+    put(0x6067, 0, 4, 0x7fffffff);
+    put(0x6068, 0, 2, 100);
+    put(0x607a, 0, 4, TURN / 100);
+    control(0x1f);
+    control(0x0f);
+    while (!rests() || bench_link.axis.motion.waits) {
+        bench_period();
+    }
+    bench_periods(950);
+    TEST_ASSERT_EQUAL_HEX32(0, status(REACHED));
+    bench_periods(80);
+    TEST_ASSERT_EQUAL_HEX32(REACHED, status(REACHED));
+
+    const int32_t away = (int32_t)get(0x60f4);
+
+    put(0x6067, 0, 4, (uint32_t)(away < 0 ? -away : away) - 3u);
+    bench_periods(20);
+    TEST_ASSERT_EQUAL_HEX32(0, status(REACHED));
+    put(0x6067, 0, 4, (uint32_t)(away < 0 ? -away : away) + 3u);
+    bench_periods(900);
+    TEST_ASSERT_EQUAL_HEX32(0, status(REACHED));
+    bench_periods(150);
+    TEST_ASSERT_EQUAL_HEX32(REACHED, status(REACHED));
+}
+
+static void test_a_rotor_off_its_reference_for_a_while_is_said(void)
+{
+    enable(1);
+    put(0x6066, 0, 2, 200);
+    put(0x607a, 0, 4, TURN / 10);
+    control(0x1f);
+    bench_periods(4000);
+
+    const int32_t away = (int32_t)get(0x60f4);
+    const uint32_t size = (uint32_t)(away < 0 ? -away : away);
+
+    put(0x6065, 0, 4, size + 3u);
+    bench_periods(3000);
+    TEST_ASSERT_EQUAL_HEX32(0, status(OFF));
+    put(0x6065, 0, 4, size - 3u);
+    bench_periods(1900);
+    TEST_ASSERT_EQUAL_HEX32(0, status(OFF));
+    bench_periods(200);
+    TEST_ASSERT_EQUAL_HEX32(OFF, status(OFF));
+    put(0x6060, 0, 1, 3); /* no matter of a speed */
+    bench_periods(100);
+    TEST_ASSERT_EQUAL_HEX32(0, status(OFF));
+}
+
+static void test_a_halted_move_is_reached_at_rest_and_a_new_target_waits_for_its_end(void)
+{
+    enable(1);
+    put(0x607a, 0, 4, 4 * TURN);
+    control(0x1f);
+    bench_periods(1000);
+    control(0x10f);
+    TEST_ASSERT_EQUAL_HEX32(0, status(REACHED));
+    bench_periods(4000);
+    TEST_ASSERT_TRUE(rests());
+    TEST_ASSERT_EQUAL_HEX32(REACHED, status(REACHED));
+
+    const uint32_t here = get(0x6062);
+
+    put(0x607a, 0, 4, TURN);
+    control(0x11f);
+    bench_periods(2000);
+    TEST_ASSERT_EQUAL_UINT32(here, get(0x6062));
+    control(0x0f);
+    bench_periods(12000);
+    TEST_ASSERT_EQUAL_INT(TURN, (int)get(0x6062));
+}
+
+/* One that was reached is not gone to again. */
+static void test_a_halt_behind_a_move_moves_nothing(void)
+{
+    enable(1);
+    put(0x6067, 0, 4, 0x7fffffff);
+    put(0x607a, 0, 4, TURN / 4);
+    control(0x1f);
+    bench_periods(8000);
+    TEST_ASSERT_EQUAL_HEX32(REACHED, status(REACHED));
+    control(0x10f);
+    control(0x0f);
+    TEST_ASSERT_FALSE(bench_link.axis.motion.waits);
+    bench_periods(100);
+    TEST_ASSERT_TRUE(rests());
+}
+
+/* ---- from mode to mode ---- */
+
+static void test_a_mode_begins_at_rest(void)
+{
+    enable(3);
+    put(0x6067, 0, 4, 0x7fffffff);
+    put(0x60ff, 0, 4, TURN);
+    bench_periods(4000);
+    put(0x6060, 0, 1, 1);
+    bench_periods(20);
+    TEST_ASSERT_EQUAL_UINT32(3, get(0x6061));
+    TEST_ASSERT_FALSE(rests());
+    bench_periods(4000);
+    TEST_ASSERT_EQUAL_UINT32(1, get(0x6061));
+    TEST_ASSERT_TRUE(rests());
+    TEST_ASSERT_EQUAL_HEX32(REACHED, status(REACHED));
+
+    const uint32_t here = get(0x6062);
+
+    put(0x607a, 0, 4, 1000);
+    control(0x5f);
+    bench_periods(4000);
+    TEST_ASSERT_INT_WITHIN(1, (int)here + 1000, (int)get(0x6062));
+}
+
+static void test_homing_is_reached_at_rest_once_it_was_asked_for(void)
+{
+    enable(6);
+    put(0x607c, 0, 4, 1000);
+    TEST_ASSERT_EQUAL_HEX32(REACHED, status(REACHED | OF_MODE | OFF));
+    control(0x1f);
+    bench_periods(20);
+    TEST_ASSERT_EQUAL_HEX32(REACHED | OF_MODE, status(REACHED | OF_MODE | OFF));
+    TEST_ASSERT_EQUAL_UINT32(1000, get(0x6062));
+    put(0x607c, 0, 4, 3000);
+    control(0x1f); /* no rise */
+    bench_periods(20);
+    TEST_ASSERT_EQUAL_UINT32(1000, get(0x6062));
+    put(0x6060, 0, 1, 1);
+    control(0x0f);
+    control(0x1f);
+    bench_periods(20);
+    TEST_ASSERT_TRUE(get(0x6062) < 3000u); /* a target of 0 */
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_profile_quantities_come_from_the_motor);
+    RUN_TEST(test_gear_and_feed_say_what_a_unit_is);
+    RUN_TEST(test_quantities_are_shown_in_units_rounded);
+    RUN_TEST(test_a_speed_is_reached_by_its_acceleration_and_jerk);
+    RUN_TEST(test_a_quick_stop_brakes_by_its_own_deceleration);
+    RUN_TEST(test_speed_and_acceleration_beyond_what_the_drive_can_are_cut_and_said);
+    RUN_TEST(test_the_speed_counts_as_reached_within_a_thousandth);
+    RUN_TEST(test_a_halt_of_a_speed_brakes_and_lets_it_go_on);
+    RUN_TEST(test_a_move_has_the_profile_s_speed_and_acceleration);
+    RUN_TEST(test_targets_are_cut_at_either_software_limit_and_free_of_it_in_between);
+    RUN_TEST(test_a_relative_target_counts_from_the_last_one);
+    RUN_TEST(test_a_third_target_is_not_accepted_while_the_second_waits);
+    RUN_TEST(test_a_target_that_is_asked_for_at_once_preempts_and_without_a_rise_none_does);
+    RUN_TEST(test_a_target_is_reached_when_the_rotor_has_been_within_its_window_for_a_while);
+    RUN_TEST(test_a_rotor_off_its_reference_for_a_while_is_said);
+    RUN_TEST(test_a_halted_move_is_reached_at_rest_and_a_new_target_waits_for_its_end);
+    RUN_TEST(test_a_halt_behind_a_move_moves_nothing);
+    RUN_TEST(test_a_mode_begins_at_rest);
+    RUN_TEST(test_homing_is_reached_at_rest_once_it_was_asked_for);
+    return UNITY_END();
+}

@@ -1,0 +1,278 @@
+/* Cyclic positions: how they are followed, made up for and cut. */
+#include "firmware/link/axis_motion.h"
+#include "tests/unit/link_bench.h"
+
+enum { TURN = 65536, CYCLE = 40 /* periods: 4 ms */, LIMITED = 0x0800, OF_MODE = 0x1000 };
+
+static const double unit_rad = TWO_PI / TURN;
+
+static int32_t target; /* the last one that was sent */
+
+static void put(unsigned index, unsigned sub, unsigned bytes, uint32_t value)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(index, sub, bytes, value));
+}
+
+void setUp(void)
+{
+    link_bench_start();
+    link_bench_open();
+    (void)link_bench_say("t00020101", 1);
+    put(0x1601, 0, 1, 0);
+    put(0x1601, 1, 4, 0x607a0020);
+    put(0x1601, 0, 1, 1);
+    put(0x1401, 1, 4, 0x301);
+    put(0x6060, 0, 1, 8);
+    put(0x6040, 0, 2, 0x06);
+    bench_periods(20);
+    put(0x6040, 0, 2, 0x0f);
+    bench_periods(20);
+    TEST_ASSERT_EQUAL_HEX32(0x27, link_bench_get(0x6041, 0) & 0x6fu);
+    target = 0;
+}
+
+void tearDown(void)
+{
+}
+
+static uint32_t status(uint32_t bits)
+{
+    return link_bench_get(0x6041, 0) & bits;
+}
+
+static double reference_units(void)
+{
+    struct drive_signals now;
+
+    drive_signals_read(&bench.application.drive, &now);
+    return now.theta_ref_rad / unit_rad;
+}
+
+static double speed_rad_s(void)
+{
+    struct drive_signals now;
+
+    drive_signals_read(&bench.application.drive, &now);
+    return now.omega_ref_rad_s;
+}
+
+/* Sent in the present period. */
+static void send(int32_t position)
+{
+    char line[24];
+
+    target = position;
+    snprintf(line, sizeof line, "t3014%02X%02X%02X%02X\r", (unsigned)position & 255u,
+             (unsigned)position >> 8 & 255u, (unsigned)position >> 16 & 255u,
+             (unsigned)position >> 24);
+    bench_type(line);
+}
+
+static void pass(int periods)
+{
+    for (int i = 0; i < periods; i++) {
+        bench_period();
+        (void)bench_heard();
+    }
+}
+
+/* So many targets, each this far from the last, that come on time. */
+static void stream(int count, int32_t step)
+{
+    for (int i = 0; i < count; i++) {
+        send(target + step);
+        pass(CYCLE);
+    }
+}
+
+static bool rests(void)
+{
+    return axis_motion_rests(&bench.application);
+}
+
+static uint32_t underruns(void)
+{
+    return bench.application.drive.planner.underruns;
+}
+
+/* In intervals, an interval after the last target has come. */
+static double lag(int32_t step)
+{
+    return (target - reference_units()) / step;
+}
+
+static void test_targets_are_passed_some_intervals_later(void)
+{
+    stream(50, 400);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 2.325, lag(400));
+    stream(50, 400);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 2.325, lag(400));
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 400 * unit_rad / 4e-3, speed_rad_s());
+    TEST_ASSERT_EQUAL_UINT32(0, underruns());
+    TEST_ASSERT_EQUAL_HEX32(OF_MODE, status(OF_MODE | LIMITED));
+}
+
+static void test_an_interval_is_its_value_by_its_power_of_ten(void)
+{
+    put(0x60c2, 1, 1, 40);
+    put(0x60c2, 2, 1, 0xfc); /* 1e-4 s */
+    stream(50, 400);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 2.325, lag(400));
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 400 * unit_rad / 4e-3, speed_rad_s());
+}
+
+static void test_targets_that_stay_move_nothing_and_the_same_twice_ends_a_motion(void)
+{
+    stream(20, 0);
+    TEST_ASSERT_FALSE(bench.application.drive.planner.set_points_open);
+    stream(50, 400);
+    stream(10, 0);
+    TEST_ASSERT_DOUBLE_WITHIN(1.0, target, reference_units());
+    pass(500);
+    TEST_ASSERT_TRUE(rests());
+    TEST_ASSERT_EQUAL_UINT32(0, underruns());
+    stream(50, -400); /* and begins anew */
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 2.325, lag(-400));
+    TEST_ASSERT_EQUAL_UINT32(0, underruns());
+}
+
+/* Their places are taken by the motion's going on; they may come when the next one is due. */
+static void test_three_targets_may_be_missing_and_a_fourth_not(void)
+{
+    stream(50, 400);
+    for (int missing = 1; missing <= 3; missing++) {
+        pass(CYCLE * missing);
+        TEST_ASSERT_EQUAL_UINT8(missing, bench_link.axis.stream.owed);
+        TEST_ASSERT_EQUAL_HEX32(0, status(OF_MODE)); /* follows nobody */
+        target += 400 * missing;
+        stream(1, 400);
+        TEST_ASSERT_EQUAL_UINT8(0, bench_link.axis.stream.owed);
+        TEST_ASSERT_EQUAL_HEX32(OF_MODE, status(OF_MODE));
+        stream(20, 400);
+        TEST_ASSERT_DOUBLE_WITHIN(0.2, 2.325, lag(400));
+        TEST_ASSERT_EQUAL_UINT32(0, underruns());
+    }
+    pass(CYCLE * 4);
+    TEST_ASSERT_EQUAL_UINT8(3, bench_link.axis.stream.owed);
+    pass(CYCLE * 10);
+    TEST_ASSERT_EQUAL_UINT32(1, underruns());
+    TEST_ASSERT_DOUBLE_WITHIN(1.5 * 400, target + 3 * 400, reference_units());
+}
+
+/* Half an interval behind its overdue time the target is the one that was missed. */
+static void test_a_target_that_comes_late_is_not_followed_twice(void)
+{
+    stream(50, 400);
+    pass(25);
+    TEST_ASSERT_EQUAL_UINT8(1, bench_link.axis.stream.owed);
+    send(target + 400);
+    pass(15);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_link.axis.stream.owed);
+    stream(20, 400);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 2.325, lag(400));
+    TEST_ASSERT_EQUAL_UINT32(0, underruns());
+}
+
+static void test_a_target_is_overdue_half_an_interval_behind_its_time(void)
+{
+    stream(50, 400);
+    pass(18);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_link.axis.stream.owed);
+    pass(5);
+    TEST_ASSERT_EQUAL_UINT8(1, bench_link.axis.stream.owed);
+}
+
+static void test_targets_in_a_heap_are_one(void)
+{
+    stream(50, 400);
+    for (int i = 0; i < 12; i++) {
+        send(target + 30);
+        pass(2);
+    }
+    TEST_ASSERT_TRUE(set_points_waiting(&bench.application.drive.planner.set_points) <= 6u);
+    pass(16 + 4 * CYCLE);
+    stream(20, 0);
+    TEST_ASSERT_DOUBLE_WITHIN(1.0, target, reference_units());
+}
+
+static double speed_limit_rad_s(void)
+{
+    return axis_motion_speed_limit(&bench.application);
+}
+
+static void test_a_jump_is_followed_at_the_speed_that_the_drive_can(void)
+{
+    const double acceleration = axis_motion_acceleration_limit(&bench.application);
+    double most = 0.0;
+    double steepest = 0.0; /* of three intervals */
+    double before[3] = {0.0};
+
+    send(100 * TURN);
+    pass(1);
+    TEST_ASSERT_EQUAL_HEX32(LIMITED, status(LIMITED));
+    pass(CYCLE - 2);
+    for (int i = 0; i < 100; i++) {
+        send(100 * TURN);
+        for (int k = 0; k < CYCLE; k++) {
+            pass(1);
+            most = fmax(most, speed_rad_s());
+        }
+        steepest = fmax(steepest, (speed_rad_s() - before[0]) / (3.0 * CYCLE * PERIOD_S));
+        before[0] = before[1];
+        before[1] = before[2];
+        before[2] = speed_rad_s();
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(0.02 * speed_limit_rad_s(), speed_limit_rad_s(), most);
+    TEST_ASSERT_DOUBLE_WITHIN(0.07 * acceleration, acceleration, steepest);
+    TEST_ASSERT_EQUAL_HEX32(LIMITED, status(LIMITED));
+}
+
+static void test_a_halt_takes_no_target_and_is_no_following(void)
+{
+    stream(50, 400);
+    put(0x6040, 0, 2, 0x10f);
+    pass(4000);
+    TEST_ASSERT_TRUE(rests());
+    stream(20, 400);
+    TEST_ASSERT_TRUE(rests());
+    TEST_ASSERT_EQUAL_HEX32(0, status(OF_MODE));
+    put(0x6040, 0, 2, 0x0f);
+    TEST_ASSERT_EQUAL_HEX32(OF_MODE, status(OF_MODE));
+}
+
+static void test_a_target_beyond_a_software_limit_is_cut(void)
+{
+    put(0x607d, 2, 4, 3000);
+    stream(20, 400);
+    TEST_ASSERT_EQUAL_HEX32(LIMITED, status(LIMITED));
+    stream(10, 0);
+    TEST_ASSERT_DOUBLE_WITHIN(1.0, 3000, reference_units());
+    TEST_ASSERT_TRUE(bench_link.axis.motion.target_rad < 3000.5 * unit_rad);
+}
+
+/* In another mode a target position is but a number. */
+static void test_other_modes_follow_no_stream(void)
+{
+    put(0x6060, 0, 1, 3);
+    pass(20);
+    stream(20, 400);
+    TEST_ASSERT_FALSE(bench.application.drive.planner.set_points_open);
+    TEST_ASSERT_TRUE(rests());
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_targets_are_passed_some_intervals_later);
+    RUN_TEST(test_an_interval_is_its_value_by_its_power_of_ten);
+    RUN_TEST(test_targets_that_stay_move_nothing_and_the_same_twice_ends_a_motion);
+    RUN_TEST(test_three_targets_may_be_missing_and_a_fourth_not);
+    RUN_TEST(test_a_target_that_comes_late_is_not_followed_twice);
+    RUN_TEST(test_a_target_is_overdue_half_an_interval_behind_its_time);
+    RUN_TEST(test_targets_in_a_heap_are_one);
+    RUN_TEST(test_a_jump_is_followed_at_the_speed_that_the_drive_can);
+    RUN_TEST(test_a_halt_takes_no_target_and_is_no_following);
+    RUN_TEST(test_a_target_beyond_a_software_limit_is_cut);
+    RUN_TEST(test_other_modes_follow_no_stream);
+    return UNITY_END();
+}
