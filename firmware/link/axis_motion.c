@@ -212,6 +212,7 @@ static void home(struct application *application)
                                  .position_rad = cia402_unit_rad(objects) * objects->home_offset};
 
     motion_of(application)->homed = cia402_command(application, &here);
+    motion_of(application)->not_homed = !motion_of(application)->homed;
 }
 
 /* ---- all ---- */
@@ -330,7 +331,7 @@ uint16_t axis_motion_status(struct application *application)
     } else if (axis->mode == CIA402_HOMING) {
         reached = true;
         of_mode = motion->homed && rests;
-        off = false;
+        off = motion->not_homed;
     } else if (axis->mode == CIA402_CYCLIC_POSITION) {
         of_mode = !motion->halted && axis->stream.owed == 0u; /* follows what is asked for */
     }

@@ -233,18 +233,19 @@ void cia402_lose(struct application *application)
 {
     struct cia402 *axis = &application->link->axis;
 
-    if (axis->state == CIA402_OPERATION_ENABLED) {
+    if (axis->state == CIA402_OPERATION_ENABLED || axis->state == CIA402_QUICK_STOP_ACTIVE) {
         axis->state = CIA402_QUICK_STOP_ACTIVE;
         axis_motion_brake(application);
         axis->lost = true;
         axis->controlword = ENABLE_VOLTAGE;
-    } else if (axis->state == CIA402_SWITCHED_ON) {
+    } else if (axis->state == CIA402_SWITCHED_ON || axis->asked) {
         switch_off(application, CIA402_SWITCH_ON_DISABLED);
         axis->controlword = 0;
     }
 }
 
-/* A drive that the console has enabled is switched on, and waits for "enable operation". */
+/* A drive that the console has enabled, or a client that is gone, is switched on, and waits for
+   "enable operation": what moves is brought to rest, unless the client only listens. */
 void cia402_start(struct application *application)
 {
     struct cia402 *axis = &application->link->axis;
@@ -260,4 +261,7 @@ void cia402_start(struct application *application)
     axis->controlword =
         axis->state == CIA402_SWITCHED_ON ? SWITCH_ON | ENABLE_VOLTAGE | NO_QUICK_STOP : 0u;
     axis_motion_put_defaults(application);
+    if (axis->state == CIA402_SWITCHED_ON && !application->link->listens_only) {
+        axis_motion_brake(application);
+    }
 }

@@ -45,6 +45,7 @@ struct axis_motion {
     bool limited; /* a limit has cut what was asked for */
     bool off;     /* beyond the following error window */
     bool homed;
+    bool not_homed; /* the drive has refused to be */
     bool halted;
 };
 

@@ -1,6 +1,7 @@
 /* The objects of CiA 301 that code answers for, and what may become of those that are stored. */
 #include "firmware/application/application.h"
 #include "firmware/application/setting_change.h"
+#include "firmware/link/axis_motion.h"
 #include "firmware/link/link.h"
 
 enum { SAVE = 0x65766173, LOAD = 0x64616f6c }; /* "save", "load" */
@@ -67,6 +68,9 @@ enum object_abort link_obey(struct application *application, const struct object
         }
         application->link->errors = 0;
         application->link->objects.error_1 = 0;
+        application->link->objects.error_2 = 0;
+        application->link->objects.error_3 = 0;
+        application->link->objects.error_4 = 0;
         return OBJECT_DONE;
     case 0x1010:
         return store(application, can_get(value, 4));
@@ -93,6 +97,8 @@ bool link_accepts(const struct application *application, const struct object *ob
 
     (void)application;
     switch (object->index) {
+    case 0x1005:
+        return pdo_may_have(number); /* it makes none, and has no identifiers of 29 bits */
     case 0x6060:
         return is_mode((int8_t)value[0]);
     case 0x6098:
@@ -109,5 +115,23 @@ bool link_accepts(const struct application *application, const struct object *ob
         return number != 0u;
     default:
         return true;
+    }
+}
+
+/* What is supervised anew has not come yet. */
+void link_has_put(struct application *application, const struct object *object)
+{
+    switch (object->index) {
+    case 0x1006:
+        application->link->synced = false;
+        break;
+    case 0x1016:
+        application->link->heard = false;
+        break;
+    case 0x607a:
+        axis_motion_cycle(application);
+        break;
+    default:
+        break;
     }
 }

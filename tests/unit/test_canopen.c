@@ -143,6 +143,42 @@ static void test_a_mapping_that_cannot_be_is_refused(void)
     TEST_ASSERT_EQUAL_STRING("80001A0122000008", link_bench_sdo("23001A0108000023")); /* in force */
 }
 
+/* Of NMT, of heartbeats, of another node's SDO: whoever sends them commands the bus. */
+static void test_identifiers_that_the_bus_needs_are_not_to_be_had(void)
+{
+    link_bench_open();
+    TEST_ASSERT_EQUAL_STRING("8000180130000906", link_bench_sdo("2300180100000040"));
+    TEST_ASSERT_EQUAL_STRING("8000180130000906", link_bench_sdo("2300180101070040"));
+    TEST_ASSERT_EQUAL_STRING("8000140130000906", link_bench_sdo("2300140102060000"));
+    TEST_ASSERT_EQUAL_STRING("8005100030000906", link_bench_sdo("2305100080000040")); /* makes it */
+    TEST_ASSERT_EQUAL_STRING("6000180100000000", link_bench_sdo("2300180100000080")); /* none */
+    TEST_ASSERT_EQUAL_STRING("6000180100000000", link_bench_sdo("2300180190010040"));
+}
+
+static void test_a_pdo_that_is_too_short_is_an_emergency_once(void)
+{
+    link_bench_open();
+    (void)link_bench_say("t00020101", 2);
+    assert_heard("t08181082000000000000\r", link_bench_say("t201106", 3));
+    TEST_ASSERT_NULL(strstr(link_bench_say("t201106", 3), "t081"));
+    (void)link_bench_say("t20120600", 3);
+    assert_heard("t08181082000000000000\r", link_bench_say("t2010", 3));
+    TEST_ASSERT_EQUAL_STRING("4F03100002000000", link_bench_sdo("4003100000000000"));
+    TEST_ASSERT_EQUAL_STRING("6003100000000000", link_bench_sdo("2F03100000000000"));
+    TEST_ASSERT_EQUAL_STRING("4303100200000000", link_bench_sdo("4003100200000000"));
+}
+
+static void test_a_number_of_the_node_acts_when_communication_is_reset(void)
+{
+    link_bench_open();
+    (void)link_bench_sdo("2325210005000000"); /* node_id 5 */
+    TEST_ASSERT_EQUAL(5, (int)bench.application.chosen.node_id);
+    TEST_ASSERT_EQUAL_STRING("4325210005000000", link_bench_sdo("4025210000000000"));
+    assert_heard("t705100\r", link_bench_say("t00028201", 2));
+    TEST_ASSERT_EQUAL_STRING("", link_bench_sdo("4025210000000000"));
+    assert_heard("t5858", link_bench_say("t60584025210000000000", 2));
+}
+
 static void test_pdos_wait_for_sync(void)
 {
     link_bench_open();
@@ -223,6 +259,9 @@ int main(void)
     RUN_TEST(test_a_fault_is_an_emergency_and_stays_in_the_list);
     RUN_TEST(test_a_pdo_is_mapped_at_run_time_and_sent_when_it_changes);
     RUN_TEST(test_a_mapping_that_cannot_be_is_refused);
+    RUN_TEST(test_identifiers_that_the_bus_needs_are_not_to_be_had);
+    RUN_TEST(test_a_pdo_that_is_too_short_is_an_emergency_once);
+    RUN_TEST(test_a_number_of_the_node_acts_when_communication_is_reset);
     RUN_TEST(test_pdos_wait_for_sync);
     RUN_TEST(test_whatever_comes_the_node_goes_on);
     return UNITY_END();

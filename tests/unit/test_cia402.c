@@ -297,6 +297,77 @@ static void test_a_lost_heartbeat_stops_and_switches_off(void)
     assert_state(0x40, get(0x6041));
 }
 
+/* What it had lost comes back: its emergency is over, which another one says. */
+static void test_a_heartbeat_that_comes_back_ends_its_emergency(void)
+{
+    put(0x1016, 1, 4, 0x00050014);
+    (void)link_bench_say("t705105", 1);
+    TEST_ASSERT_NOT_NULL(strstr(link_bench_say("", 300), "t08183081110000000000\r"));
+    TEST_ASSERT_EQUAL_HEX8(0x11, get(0x1001));
+    TEST_ASSERT_NOT_NULL(strstr(link_bench_say("t705105", 1), "t08180000000000000000\r"));
+    TEST_ASSERT_EQUAL_HEX8(0x00, get(0x1001));
+    put(0x1016, 1, 4, 0x00060014); /* of another node, which has not been heard yet */
+    bench_periods(400);
+    TEST_ASSERT_EQUAL_HEX8(0x00, get(0x1001));
+}
+
+static void test_a_quick_stop_that_stays_ends_when_the_heartbeat_is_lost(void)
+{
+    put(0x1016, 1, 4, 0x00050014);
+    put(0x605a, 0, 2, 6);
+    enable(1);
+    (void)link_bench_say("t705105", 1);
+    assert_state(0x07, control(0x0b));
+    bench_periods(400);
+    assert_state(0x40, get(0x6041));
+}
+
+static void turn(void)
+{
+    put(0x6085, 0, 4, 10 * TURN);
+    enable(3);
+    put(0x60ff, 0, 4, TURN);
+    bench_periods(2000);
+    TEST_ASSERT_FALSE(rests());
+}
+
+static void test_a_node_that_is_stopped_stops_and_switches_off(void)
+{
+    turn();
+    (void)link_bench_say("t00020201", 1);
+    bench_periods(3000);
+    TEST_ASSERT_EQUAL(DRIVE_SWITCH_ON_DISABLED, bench.application.drive.supervision.state);
+}
+
+static void test_communication_that_is_reset_leaves_nothing_moving(void)
+{
+    turn();
+    (void)link_bench_say("t00028201", 1);
+    bench_periods(3000);
+    TEST_ASSERT_TRUE(rests());
+    assert_state(0x23, get(0x6041));
+}
+
+static void test_a_client_that_only_listens_stops_nothing(void)
+{
+    turn();
+    (void)link_bench_say("C", 1);
+    (void)link_bench_say("L", 1);
+    bench_periods(3000);
+    TEST_ASSERT_FALSE(rests());
+}
+
+static void test_homing_that_the_drive_refuses_is_an_error(void)
+{
+    put(0x6092, 1, 4, 1); /* a turn is one unit */
+    enable(6);
+    put(0x607c, 0, 4, INT32_MAX);
+    TEST_ASSERT_EQUAL_HEX16(0x2400, control(0x1f) & 0x3400u);
+    put(0x607c, 0, 4, 0);
+    (void)control(0x0f);
+    TEST_ASSERT_EQUAL_HEX16(0x1400, control(0x1f) & 0x3400u);
+}
+
 static void test_a_channel_that_closes_is_a_heartbeat_lost(void)
 {
     put(0x1016, 1, 4, 0x00050014);
@@ -333,6 +404,12 @@ int main(void)
     RUN_TEST(test_cyclic_positions_that_end_bring_it_to_rest);
     RUN_TEST(test_homing_makes_here_the_offset);
     RUN_TEST(test_a_lost_heartbeat_stops_and_switches_off);
+    RUN_TEST(test_a_heartbeat_that_comes_back_ends_its_emergency);
+    RUN_TEST(test_a_quick_stop_that_stays_ends_when_the_heartbeat_is_lost);
+    RUN_TEST(test_a_node_that_is_stopped_stops_and_switches_off);
+    RUN_TEST(test_communication_that_is_reset_leaves_nothing_moving);
+    RUN_TEST(test_a_client_that_only_listens_stops_nothing);
+    RUN_TEST(test_homing_that_the_drive_refuses_is_an_error);
     RUN_TEST(test_a_channel_that_closes_is_a_heartbeat_lost);
     RUN_TEST(test_a_lost_sync_stops_and_switches_off);
     return UNITY_END();
