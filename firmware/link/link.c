@@ -3,6 +3,7 @@
 #include "firmware/application/application.h"
 #include "firmware/drive/interrupt_view.h"
 #include "firmware/interface/dictionary.h"
+#include "firmware/link/sdo_block.h"
 #include "firmware/link/slcan.h"
 
 /* Identifiers, without a node's number. */
@@ -207,6 +208,7 @@ static void obey_nmt(struct application *application, enum nmt_command command)
         break;
     case NMT_STOP:
         link->nmt = LINK_STOPPED;
+        link->sdo.state = SDO_IDLE;
         cia402_lose(application); /* no controlword gets through any more */
         break;
     case NMT_PRE_OPERATIONAL:
@@ -335,6 +337,7 @@ void link_background(struct application *application)
 
     link->now_us = (uint32_t)application->board.time_us(application->board.context);
     cia402_background(application);
+    sdo_block_send(application);
     if (link_since(link, link->looked_us) < MILLISECOND_us) {
         return;
     }

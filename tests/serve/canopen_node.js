@@ -101,7 +101,8 @@ async function settings(drive) {
     that(await drive.read(0x2120, 0, DataType.REAL64) === 2.5, 'and written');
     await refused(drive.write(0x2120, 0, DataType.REAL64, 100), 0x06090030);
     await refused(drive.read(0x5000, 0, DataType.UNSIGNED8), 0x06020000);
-    await drive.write(0x2120, 0, DataType.REAL64, 3);
+    await drive.write(0x2120, 0, DataType.REAL64, 3, { blockTransfer: true });
+    that(await drive.read(0x2120, 0, DataType.REAL64, { blockTransfer: true }) === 3, 'in blocks, too');
 }
 
 async function move(drive, device) {

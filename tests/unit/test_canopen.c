@@ -84,6 +84,54 @@ static void test_a_setting_is_written_in_segments(void)
     TEST_ASSERT_EQUAL_STRING("8020210010000706", link_bench_sdo("2120210004000000"));
 }
 
+/* 3.0 and a bit, in blocks of up to two segments; what is not acknowledged comes again. */
+static void test_blocks_are_sent_acknowledged_and_checked(void)
+{
+    link_bench_open();
+    TEST_ASSERT_EQUAL_STRING("C620210008000000", link_bench_sdo("A420210002000000"));
+    TEST_ASSERT_EQUAL_STRING("z\rt58180100000000000008\rt58188240000000000000\r",
+                             link_bench_say("t6018A300000000000000", 2));
+    TEST_ASSERT_EQUAL_STRING("z\rt58188140000000000000\r",
+                             link_bench_say("t6018A201020000000000", 2));
+    TEST_ASSERT_EQUAL_STRING("D96DC10000000000", link_bench_sdo("A201020000000000"));
+    TEST_ASSERT_EQUAL_STRING("z\r", link_bench_say("t6018A100000000000000", 2));
+    TEST_ASSERT_EQUAL_STRING("8020210001000405", link_bench_sdo("A100000000000000")); /* over */
+    TEST_ASSERT_EQUAL_STRING("8020210002000405", link_bench_sdo("A420210080000000")); /* 128 */
+    TEST_ASSERT_EQUAL_STRING("8000220001000106", link_bench_sdo("A400220002000000"));
+}
+
+static void test_more_than_was_sent_is_not_acknowledged(void)
+{
+    link_bench_open();
+    (void)link_bench_sdo("A420210001000000");
+    (void)link_bench_say("t6018A300000000000000", 2);
+    TEST_ASSERT_EQUAL_STRING("8020210003000405", link_bench_sdo("A202010000000000"));
+}
+
+static void begin_block_of_two(void)
+{
+    TEST_ASSERT_EQUAL_STRING("A420210002000000", link_bench_sdo("C620210008000000"));
+    TEST_ASSERT_EQUAL_STRING("z\r", link_bench_say("t60180100000000000000", 2));
+    TEST_ASSERT_EQUAL_STRING("A202020000000000", link_bench_sdo("8240000000000000"));
+}
+
+static void test_blocks_are_received_and_checked(void)
+{
+    link_bench_open();
+    begin_block_of_two();
+    TEST_ASSERT_EQUAL_STRING("8020210004000405", link_bench_sdo("D900000000000000"));
+    begin_block_of_two();
+    TEST_ASSERT_EQUAL_STRING("8020210010000706", link_bench_sdo("D5C4480000000000"));
+    begin_block_of_two();
+    TEST_ASSERT_EQUAL_STRING("A100000000000000", link_bench_sdo("D9C4480000000000"));
+    TEST_ASSERT_TRUE(bench.application.chosen.current_limit_A == 2.0);
+    TEST_ASSERT_EQUAL_STRING("A420210002000000", link_bench_sdo("C420210000000000"));
+    TEST_ASSERT_EQUAL_STRING("A200020000000000", link_bench_sdo("0200000000000000")); /* lost 1 */
+    TEST_ASSERT_EQUAL_STRING("z\r", link_bench_say("t60188000000000000000", 2));      /* abort */
+    TEST_ASSERT_EQUAL_STRING("8000100002000106", link_bench_sdo("C400100000000000"));
+    TEST_ASSERT_EQUAL_STRING("8020210010000706", link_bench_sdo("C620210004000000"));
+}
+
 static void test_a_setting_that_waits_is_refused_while_the_drive_is_ready(void)
 {
     link_bench_open();
@@ -255,6 +303,9 @@ int main(void)
     RUN_TEST(test_objects_are_read_at_once_or_in_segments);
     RUN_TEST(test_what_is_not_there_is_said_by_its_abort_code);
     RUN_TEST(test_a_setting_is_written_in_segments);
+    RUN_TEST(test_blocks_are_sent_acknowledged_and_checked);
+    RUN_TEST(test_more_than_was_sent_is_not_acknowledged);
+    RUN_TEST(test_blocks_are_received_and_checked);
     RUN_TEST(test_a_setting_that_waits_is_refused_while_the_drive_is_ready);
     RUN_TEST(test_a_fault_is_an_emergency_and_stays_in_the_list);
     RUN_TEST(test_a_pdo_is_mapped_at_run_time_and_sent_when_it_changes);
