@@ -5,6 +5,7 @@
 #include "firmware/interface/dictionary.h"
 #include "firmware/link/sdo_block.h"
 #include "firmware/link/slcan.h"
+#include "firmware/linkage.h"
 
 /* Identifiers, without a node's number. */
 enum { ID_NMT = 0x000, ID_HEARTBEAT = 0x700 };
@@ -22,6 +23,12 @@ enum { MILLISECOND_us = 1000, ERRORS_KEPT = 4 };
 void link_init(struct link *link)
 {
     *link = (struct link){.open = false};
+}
+
+CALLED_FROM_OUTSIDE void link_put_memory(struct link *link, uint32_t *memory, size_t words)
+{
+    link->capture.memory = memory;
+    link->capture.words = (uint32_t)words;
 }
 
 /* ---- frames out ---- */
@@ -343,6 +350,7 @@ void link_background(struct application *application)
     }
     link->looked_us = link->now_us;
     cia402_look(application);
+    capture_look(application);
     watch(application);
     report_faults(application);
     if (link->nmt == LINK_OPERATIONAL) {

@@ -11,6 +11,7 @@
 
 #include "firmware/interface/drive_interface.h"
 #include "firmware/link/can_frame.h"
+#include "firmware/link/capture.h"
 #include "firmware/link/cia402.h"
 #include "firmware/link/objects.h"
 #include "firmware/link/pdo.h"
@@ -45,11 +46,15 @@ struct link {
     struct sdo_server sdo;
     struct pdos pdos;
     struct cia402 axis;
+    struct capture capture;
     struct drive_command command; /* parameters put by 2201h and on, for 2200h */
 };
 
 /* Before the first pass: closed. */
 void link_init(struct link *link);
+
+/* Behind it: so much memory for the capture, of a board that follows the control (hal.h). */
+void link_put_memory(struct link *link, uint32_t *memory, size_t words);
 
 /* The console, closed: obeys the line if it is one of slcan. false: it is none. */
 bool link_obey_line(struct application *application, const char *line, size_t length);

@@ -6,6 +6,16 @@
 
 enum { SAVE = 0x65766173, LOAD = 0x64616f6c }; /* "save", "load" */
 
+static uint32_t capture_shown(const struct capture *capture, uint8_t sub)
+{
+    const enum capture_state state = capture_state_of(capture);
+
+    return sub == 1u               ? state
+           : state != CAPTURE_DONE ? 0u
+           : sub == 8u             ? capture->samples
+                                   : capture_period(capture, 0);
+}
+
 enum object_abort link_ask(struct application *application, const struct object *object,
                            uint8_t value[OBJECT_BYTES_MAX], const char **text)
 {
@@ -25,6 +35,12 @@ enum object_abort link_ask(struct application *application, const struct object 
     case 0x1010:
     case 0x1011:
         can_put(value, 1, 4); /* on command */
+        break;
+    case 0x2400:
+        can_put(value, capture_shown(&application->link->capture, object->sub),
+                object_bytes(object));
+        break;
+    case 0x2402: /* sdo.h asks for it itself */
         break;
     default:
         if (object->index < 0x2000u) {
@@ -58,6 +74,17 @@ static enum object_abort restore(struct application *application, uint32_t signa
     return settings_restore(application, refusal) ? OBJECT_DONE : OBJECT_WRONG_STATE;
 }
 
+/* 1: begins, 0: ends. */
+static enum object_abort command_capture(struct application *application, uint8_t number)
+{
+    if (number == 1u) {
+        return capture_arm(application, &application->link->objects) ? OBJECT_DONE
+                                                                     : OBJECT_WRONG_STATE;
+    }
+    capture_end(application);
+    return number == 0u ? OBJECT_DONE : OBJECT_OUT_OF_RANGE;
+}
+
 enum object_abort link_obey(struct application *application, const struct object *object,
                             const uint8_t value[OBJECT_BYTES_MAX])
 {
@@ -76,6 +103,8 @@ enum object_abort link_obey(struct application *application, const struct object
         return store(application, can_get(value, 4));
     case 0x1011:
         return restore(application, can_get(value, 4));
+    case 0x2400:
+        return command_capture(application, value[0]);
     case 0x6040:
         cia402_control(application, (uint16_t)can_get(value, 2));
         return OBJECT_DONE;
@@ -99,6 +128,8 @@ bool link_accepts(const struct application *application, const struct object *ob
     switch (object->index) {
     case 0x1005:
         return pdo_may_have(number); /* it makes none, and has no identifiers of 29 bits */
+    case 0x2400:
+        return object->sub != 2u || number > 0u;
     case 0x6060:
         return is_mode((int8_t)value[0]);
     case 0x6098:

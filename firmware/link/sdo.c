@@ -62,6 +62,10 @@ uint32_t sdo_open(struct application *application, const struct can_frame *reque
     }
     sdo->length =
         (uint32_t)(sdo->text == NULL ? object_bytes(&sdo->object) : text_length(sdo->text));
+    if (abort == OBJECT_DONE && sdo->object.type == OBJECT_DOMAIN) {
+        sdo->length = capture_bytes(&application->link->capture);
+        return sdo->length > 0u ? OBJECT_DONE : OBJECT_NO_DATA;
+    }
     return abort;
 }
 
@@ -70,7 +74,11 @@ void sdo_copy(const struct application *application, uint32_t offset, uint8_t *t
     const struct sdo_server *sdo = &application->link->sdo;
     const uint8_t *from = sdo->text == NULL ? sdo->value : (const uint8_t *)sdo->text;
 
-    memcpy(to, from + offset, count);
+    if (sdo->object.type == OBJECT_DOMAIN) {
+        capture_copy(application, offset, to, count);
+    } else {
+        memcpy(to, from + offset, count);
+    }
 }
 
 static uint32_t begin_upload(struct application *application, const struct can_frame *request,
@@ -83,7 +91,7 @@ static uint32_t begin_upload(struct application *application, const struct can_f
         return abort;
     }
     memcpy(&response->data[1], &request->data[1], 3);
-    if (sdo->text == NULL && sdo->length <= 4u) {
+    if (sdo->text == NULL && sdo->length <= 4u) { /* a domain has more */
         response->data[0] = (uint8_t)(0x43u | (4u - sdo->length) << 2);
         memcpy(&response->data[4], sdo->value, sdo->length);
     } else {

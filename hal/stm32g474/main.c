@@ -19,6 +19,7 @@
 
 struct application application;
 static struct link fieldbus;
+static uint32_t capture_memory[12 * 1024] __attribute__((section(".bss.capture")));
 
 /* The gates are held low, by pull-downs until the timer drives them, from reset on. */
 static void start_board(void)
@@ -69,6 +70,7 @@ int main(void)
         board_fault(BOARD_FAULT_SETTINGS_REFUSED);
     }
     application_put_link(&application, &fieldbus);
+    link_put_memory(&fieldbus, capture_memory, sizeof capture_memory / sizeof capture_memory[0]);
     start_control();
     watchdog_start();
     pins_led(1);

@@ -19,7 +19,7 @@ def every_object_is_served_as_the_sheet_says(node):
                                      canopen.objectdictionary.ODArray))
         for variable in entry.subindices.values() if several else [entry]:
             name = f"{variable.index:04x}sub{variable.subindex} {variable.name}"
-            if not variable.readable:
+            if not variable.readable or variable.data_type == canopen.objectdictionary.DOMAIN:
                 continue
             data = node.sdo.upload(variable.index, variable.subindex)
             if variable.data_type == canopen.objectdictionary.VISIBLE_STRING:

@@ -81,7 +81,7 @@ async function everyObject(drive, eds) {
     for (const entry of eds.values()) {
         const several = entry.subNumber ? [0, 1, 2, 3, 4, 5, 6, 7, 8].map((sub) => entry.at(sub)) : [entry];
         for (const object of several) {
-            if (!object || object.accessType === 'wo') {
+            if (!object || object.accessType === 'wo' || object.dataType === DataType.DOMAIN) {
                 continue;
             }
             const data = await drive.read(entry.index, object.subIndex || 0, null);
