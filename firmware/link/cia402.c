@@ -23,7 +23,9 @@ enum request {
     REQUEST_ENABLE_OPERATION
 };
 
-enum { STAYS_IN_QUICK_STOP = 5 }; /* option codes from here on */
+/* Option codes of a quick stop: off at once, with the profile's deceleration or its own, then off;
+   5 and 6 as 1 and 2, and stays. */
+enum { OFF_AT_ONCE = 0, AS_PROFILE = 1, STAYS_IN_QUICK_STOP = 5 };
 
 static enum request request_of(uint16_t word)
 {
@@ -114,6 +116,18 @@ static void leave_switched_on(struct application *application, enum drive_state 
     }
 }
 
+static void begin_quick_stop(struct application *application)
+{
+    const int16_t option = application->link->objects.quick_stop_option;
+
+    if (option == OFF_AT_ONCE) {
+        switch_off(application, CIA402_SWITCH_ON_DISABLED);
+        return;
+    }
+    application->link->axis.state = CIA402_QUICK_STOP_ACTIVE;
+    axis_motion_brake(application, option != AS_PROFILE && option != STAYS_IN_QUICK_STOP);
+}
+
 static void leave_operation(struct application *application, enum request request)
 {
     struct cia402 *axis = &application->link->axis;
@@ -126,12 +140,11 @@ static void leave_operation(struct application *application, enum request reques
         switch_off(application, CIA402_READY_TO_SWITCH_ON);
         break;
     case REQUEST_QUICK_STOP:
-        axis->state = CIA402_QUICK_STOP_ACTIVE;
-        axis_motion_brake(application);
+        begin_quick_stop(application);
         break;
     case REQUEST_SWITCH_ON:
         axis->state = CIA402_SWITCHED_ON;
-        axis_motion_brake(application);
+        axis_motion_brake(application, false);
         break;
     default:
         break;
@@ -235,7 +248,7 @@ void cia402_lose(struct application *application)
 
     if (axis->state == CIA402_OPERATION_ENABLED || axis->state == CIA402_QUICK_STOP_ACTIVE) {
         axis->state = CIA402_QUICK_STOP_ACTIVE;
-        axis_motion_brake(application);
+        axis_motion_brake(application, true);
         axis->lost = true;
         axis->controlword = ENABLE_VOLTAGE;
     } else if (axis->state == CIA402_SWITCHED_ON || axis->asked) {
@@ -262,6 +275,6 @@ void cia402_start(struct application *application)
         axis->state == CIA402_SWITCHED_ON ? SWITCH_ON | ENABLE_VOLTAGE | NO_QUICK_STOP : 0u;
     axis_motion_put_defaults(application);
     if (axis->state == CIA402_SWITCHED_ON && !application->link->listens_only) {
-        axis_motion_brake(application);
+        axis_motion_brake(application, true);
     }
 }

@@ -4,6 +4,8 @@
 #include "firmware/link/axis_motion.h"
 #include "firmware/link/link.h"
 
+enum { CURRENT_LIMIT = 0x2120 }; /* its setting */
+
 enum { SAVE = 0x65766173, LOAD = 0x64616f6c }; /* "save", "load" */
 
 static uint32_t capture_shown(const struct capture *capture, uint8_t sub)
@@ -74,6 +76,21 @@ static enum object_abort restore(struct application *application, uint32_t signa
     return settings_restore(application, refusal) ? OBJECT_DONE : OBJECT_WRONG_STATE;
 }
 
+/* The current limit, in thousandths of the rated current: torque goes with it. */
+static enum object_abort limit_torque(struct application *application, uint32_t thousandths)
+{
+    struct object limit;
+
+    (void)objects_find(CURRENT_LIMIT, 0, &limit);
+
+    const double limit_A =
+        1e-3 * (double)thousandths * application->drive.settings.motor.rated_current_A;
+    uint8_t value[OBJECT_BYTES_MAX];
+
+    memcpy(value, &limit_A, sizeof limit_A);
+    return object_put(application, &limit, value);
+}
+
 /* 1: begins, 0: ends. */
 static enum object_abort command_capture(struct application *application, uint8_t number)
 {
@@ -103,6 +120,8 @@ enum object_abort link_obey(struct application *application, const struct object
         return store(application, can_get(value, 4));
     case 0x1011:
         return restore(application, can_get(value, 4));
+    case 0x6072:
+        return limit_torque(application, can_get(value, 2));
     case 0x2400:
         return command_capture(application, value[0]);
     case 0x6040:
@@ -137,9 +156,12 @@ bool link_accepts(const struct application *application, const struct object *ob
     case 0x60c2:
         return object->sub == 1u ? number != 0u : (int8_t)value[0] >= -6 && (int8_t)value[0] <= 0;
     case 0x605a:
-        return number == 2u || number == 6u;
+        return number <= 2u || number == 5u || number == 6u;
+    case 0x605d:
+        return number == 1u || number == 2u;
     case 0x6081:
     case 0x6083:
+    case 0x6084:
     case 0x6085:
     case 0x6091:
     case 0x6092:

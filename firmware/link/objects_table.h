@@ -99,6 +99,7 @@
     ASKED(0x6040, 0, U16, RW_R, 0, "Controlword")                                                  \
     ASKED(0x6041, 0, U16, RO_T, 0, "Statusword")                                                   \
     STORED(0x605a, 0, I16, RW, quick_stop_option, 2, "Quick stop option code")                     \
+    STORED(0x605d, 0, I16, RW, halt_option, 1, "Halt option code")                                 \
     STORED(0x6060, 0, I8, RW_R, mode, 1, "Modes of operation")                                     \
     ASKED(0x6061, 0, I8, RO_T, 1, "Modes of operation display")                                    \
     ASKED(0x6062, 0, I32, RO_T, 0, "Position demand value")                                        \
@@ -109,6 +110,11 @@
     STORED(0x6068, 0, U16, RW, target_ms, 10, "Position window time")                              \
     ASKED(0x606b, 0, I32, RO_T, 0, "Velocity demand value")                                        \
     ASKED(0x606c, 0, I32, RO_T, 0, "Velocity actual value")                                        \
+    ASKED(0x6072, 0, U16, RW_R, 0, "Max torque")                                                   \
+    ASKED(0x6075, 0, U32, RO, 0, "Motor rated current")                                            \
+    ASKED(0x6076, 0, U32, RO, 0, "Motor rated torque")                                             \
+    ASKED(0x6077, 0, I16, RO_T, 0, "Torque actual value")                                          \
+    ASKED(0x6078, 0, I16, RO_T, 0, "Current actual value")                                         \
     ASKED(0x6079, 0, U32, RO_T, 0, "DC link circuit voltage")                                      \
     STORED(0x607a, 0, I32, RW_R, target_position, 0, "Target position")                            \
     STORED(0x607c, 0, I32, RW, home_offset, 0, "Home offset")                                      \
@@ -117,6 +123,7 @@
     STORED(0x607d, 2, I32, RW, position_most, INT32_MAX, "Max position limit")                     \
     STORED(0x6081, 0, U32, RW_R, profile_velocity, 0, "Profile velocity")                          \
     STORED(0x6083, 0, U32, RW_R, profile_acceleration, 0, "Profile acceleration")                  \
+    STORED(0x6084, 0, U32, RW_R, profile_deceleration, 0, "Profile deceleration")                  \
     STORED(0x6085, 0, U32, RW, quick_stop_deceleration, 0, "Quick stop deceleration")              \
     STORED(0x608f, 0, U8, RO, resolution_highest, 2, "Highest sub-index supported")                \
     STORED(0x608f, 1, U32, RO, increments, 65536, "Encoder increments")                            \

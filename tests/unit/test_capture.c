@@ -119,6 +119,23 @@ static void test_a_captured_move_is_what_the_drive_has_shown(void)
     TEST_ASSERT_TRUE(capture_value(&bench.application, 99, 0) > 0.1);
 }
 
+/* Nor one that is above already, from the first sample on. */
+static void test_what_does_not_cross_the_level_does_not_trigger(void)
+{
+    choose_signals();
+    objects()->capture_trigger = 0x2300;
+    objects()->capture_samples = 10;
+    command(DRIVE_COMMAND_ENABLE, 0.0);
+    arm();
+    periods(200);
+    TEST_ASSERT_EQUAL(CAPTURE_WAITS, state());
+    command(DRIVE_COMMAND_DISABLE, 0.0);
+    command(DRIVE_COMMAND_ENABLE, 0.0);
+    periods(200);
+    TEST_ASSERT_EQUAL(CAPTURE_DONE, state());
+    assert_shown();
+}
+
 static void test_without_a_trigger_it_begins_at_once_and_takes_all_memory(void)
 {
     choose_signals();
@@ -222,6 +239,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_captured_move_is_what_the_drive_has_shown);
+    RUN_TEST(test_what_does_not_cross_the_level_does_not_trigger);
     RUN_TEST(test_without_a_trigger_it_begins_at_once_and_takes_all_memory);
     RUN_TEST(test_positions_are_those_of_the_axis);
     RUN_TEST(test_what_cannot_be_captured_is_refused);
