@@ -1,4 +1,5 @@
 /* The node on the bus: channel, network management, SDO, PDO, emergencies. */
+#include <stdlib.h>
 #include <unity.h>
 
 #include "tests/unit/link_bench.h"
@@ -270,9 +271,11 @@ static void type_any_frame(void)
     bench_type("\r");
 }
 
+static long inputs = 20000;
+
 static void test_whatever_comes_the_node_goes_on(void)
 {
-    for (int i = 0; i < 20000; i++) {
+    for (long i = 0; i < inputs; i++) {
         if (draw(8) == 0u) {
             char bytes[8];
 
@@ -294,8 +297,10 @@ static void test_whatever_comes_the_node_goes_on(void)
     TEST_ASSERT_EQUAL_STRING("4300100092010400", link_bench_sdo("4000100000000000"));
 }
 
-int main(void)
+/* An argument is how many inputs there are to be of any content. */
+int main(int count, char **arguments)
 {
+    inputs = count > 1 ? strtol(arguments[1], NULL, 10) : inputs;
     UNITY_BEGIN();
     RUN_TEST(test_an_open_channel_boots_the_node_and_silences_the_console);
     RUN_TEST(test_a_client_that_listens_is_answered_nothing);
