@@ -151,13 +151,23 @@ static void leave_operation(struct application *application, enum request reques
     }
 }
 
+/* The rotor comes to rest behind its reference: a bridge that opens before lets it coast. */
+static bool has_settled(struct application *application)
+{
+    const float settling_s = 0.05f;
+    const uint32_t since =
+        interrupt_view_period(&application->drive) - application->link->axis.moved_in;
+
+    return (float)since * (float)application->facts.control_period_s > settling_s;
+}
+
 static void leave_quick_stop(struct application *application, enum request request)
 {
     struct cia402 *axis = &application->link->axis;
     const bool stays =
         !axis->lost && application->link->objects.quick_stop_option >= STAYS_IN_QUICK_STOP;
 
-    if (request == REQUEST_DISABLE_VOLTAGE || (!stays && axis_motion_rests(application))) {
+    if (request == REQUEST_DISABLE_VOLTAGE || (has_settled(application) && !stays)) {
         switch_off(application, CIA402_SWITCH_ON_DISABLED);
     } else if (stays && request == REQUEST_ENABLE_OPERATION) {
         axis->state = CIA402_OPERATION_ENABLED;
@@ -188,6 +198,9 @@ void cia402_background(struct application *application)
     const enum drive_state drive = interrupt_view_state(&application->drive);
     const enum request request = request_of(axis->controlword);
 
+    if (drive == DRIVE_OPERATION_ENABLED && !axis_motion_rests(application)) {
+        axis->moved_in = interrupt_view_period(&application->drive);
+    }
     follow(axis, drive);
     switch (axis->state) {
     case CIA402_SWITCH_ON_DISABLED:
@@ -267,6 +280,7 @@ void cia402_start(struct application *application)
     *axis = (struct cia402){
         .mode = application->link->objects.mode,
         .signals_in = interrupt_view_period(&application->drive) - 1u,
+        .moved_in = interrupt_view_period(&application->drive) + 0x80000000u,
         .state = drive == DRIVE_FAULT                ? CIA402_FAULT
                  : drive == DRIVE_SWITCH_ON_DISABLED ? CIA402_SWITCH_ON_DISABLED
                                                      : CIA402_SWITCHED_ON,

@@ -938,6 +938,8 @@ MUTANTS = [
            "above != capture->above && ", ""),
     Mutant(LINK + "cia402.c", "cia402", "a_quick_stop_brakes_and_ends_as_its_option_says",
            "option != AS_PROFILE && ", ""),
+    Mutant(LINK + "cia402.c", "cia402", "a_quick_stop_brakes_and_ends_as_its_option_says",
+           "(has_settled(application) && !stays)", "(axis_motion_rests(application) && !stays)"),
     Mutant(LINK + "axis_motion.c", "cia402", "a_speed_falls_with_the_deceleration",
            "slows(before, speed) ? objects->profile_deceleration",
            "slows(before, speed) ? objects->profile_acceleration"),
