@@ -111,6 +111,10 @@ struct hal {
        The same until the next start. < 1 us. */
     const char *(*start_cause)(void *context);
 
+    /* Whether the board calls application_follow_control behind each control interrupt, before the
+       next one; NULL: it cannot. < 1 us. */
+    void (*follow_control)(void *context, bool follows);
+
     /*
      * Bytes from the host, as they come: at most `capacity`, and none behind the first '\n'; the
      * number read. If the last one is '\n', `line_period` receives the index of the control period

@@ -189,6 +189,13 @@ bool application_command(struct application *application, struct drive_command *
            drive_command_asked_in(&application->drive, command, asked_in, error);
 }
 
+CALLED_FROM_OUTSIDE void application_follow_control(struct application *application)
+{
+    if (LINK_CARRIED && application->link != NULL) {
+        capture_follow(&application->link->capture, &application->drive);
+    }
+}
+
 CALLED_FROM_OUTSIDE void application_background(struct application *application)
 {
     drive_feed_watchdog(&application->drive);

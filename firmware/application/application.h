@@ -109,6 +109,9 @@ static inline bool application_brake(struct application *application,
     return brake_switch(&application->drive.brake, samples->bus_voltage);
 }
 
+/* What a board calls behind the control interrupt while it is asked to (hal.h, follow_control). */
+void application_follow_control(struct application *application);
+
 /*
  * The main loop calls it all the time, at least once in 3 ms. One call takes at most one typed line
  * (1 ms on a Cortex-M4F) and lets the planner plan once (1 ms); a line that writes the parameter

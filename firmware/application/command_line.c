@@ -18,6 +18,10 @@ static const struct line_form forms[] = {
     {"state", LINE_STATE, DRIVE_COMMANDS, 0, 0, false, "what it does and measures"},
     {"cycles", LINE_CYCLES, DRIVE_COMMANDS, 0, 0, false,
      "cycles of the control interrupt, mean and most; cycles reset begins anew"},
+#ifndef STEADYSTEP_WITHOUT_LINK
+    {"capture", LINE_CAPTURE, DRIVE_COMMANDS, 0, 0, false,
+     "what was captured; capture 17 shows a sample"},
+#endif
     {"signals", LINE_SIGNALS, DRIVE_COMMANDS, 0, 0, false, "all signals"},
     {"move", LINE_MOVE, DRIVE_COMMAND_MOVE_SMOOTH, WITH(position_rad),
      WITH(duration_s) | WITH(ramp_s) | WITH(jerk_s), true,
@@ -227,6 +231,9 @@ static bool read_word(struct command_line *line, struct line_word word, struct t
     case LINE_CYCLES:
         line->resets = line_word_is(word, "reset");
         return line->resets || refuse_word(answer, word, "cycles or cycles reset");
+    case LINE_CAPTURE:
+        line->at_given = unsigned_from_text(word.at, word.length, &line->at_period);
+        return line->at_given || refuse_word(answer, word, "a sample");
     default:
         return read_parameter(line, word, answer);
     }

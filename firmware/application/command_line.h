@@ -16,9 +16,10 @@ enum line_action {
     LINE_STATE,
     LINE_SIGNALS,
     LINE_CYCLES,
-    LINE_GET,   /* a setting, or those that begin alike */
-    LINE_SET,   /* a setting, to a value */
-    LINE_STORE, /* the settings, and what was learned */
+    LINE_CAPTURE, /* what was captured, or one sample of it */
+    LINE_GET,     /* a setting, or those that begin alike */
+    LINE_SET,     /* a setting, to a value */
+    LINE_STORE,   /* the settings, and what was learned */
     LINE_DEFAULTS
 };
 
@@ -59,8 +60,8 @@ struct command_line {
     struct drive_command command;  /* at_period is the console's */
     uint16_t given;                /* parameters */
     bool at_given;
-    uint32_t at_period;
-    bool resets; /* of cycles */
+    uint32_t at_period; /* of capture the sample */
+    bool resets;        /* of cycles */
 };
 
 /* false: not understood; `answer` says what was expected. An empty line has no form. */

@@ -284,6 +284,12 @@ static void report(struct application *application, const struct command_line *l
         text_put(answer, "signals");
         report_signals(answer, application);
         break;
+    case LINE_CAPTURE:
+        if (LINK_CARRIED && application->link != NULL) {
+            text_put(answer, "capture ");
+            capture_put(answer, application, line->at_given ? line->at_period : UINT32_MAX);
+        }
+        break;
     case LINE_CYCLES:
         text_put(answer, "cycles");
         control_cycles_gather(&application->cycle_statistics, &application->cycles);

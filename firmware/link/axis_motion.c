@@ -13,6 +13,8 @@ enum { NEW_SET_POINT = 0x10, START_HOMING = 0x10, AT_ONCE = 0x20, RELATIVE = 0x4
 /* Bits of the statusword. */
 enum { REACHED = 0x0400, LIMITED = 0x0800, OF_MODE = 0x1000, OFF = 0x2000 };
 
+enum { QUICKLY = 2 }; /* option code of a halt */
+
 /* A ramp's jerk phases: a quarter of it each, as the console's moves, but no shorter. */
 static const float jerk_share = 0.25f;
 static const float jerk_min_s = 2e-3f;
@@ -80,6 +82,7 @@ void axis_motion_put_defaults(struct application *application)
     put_default(&objects->profile_velocity,
                 0.25f * axis_motion_speed_limit(application) / unit_rad);
     put_default(&objects->profile_acceleration, 0.25f * acceleration);
+    put_default(&objects->profile_deceleration, 0.25f * acceleration);
     put_default(&objects->quick_stop_deceleration, 0.5f * acceleration);
 }
 
@@ -99,14 +102,16 @@ static bool post(struct application *application, struct drive_command *command,
     return cia402_command(application, command);
 }
 
-void axis_motion_brake(struct application *application)
+void axis_motion_brake(struct application *application, bool quickly)
 {
+    const struct link_objects *objects = &application->link->objects;
+    const uint32_t deceleration =
+        quickly ? objects->quick_stop_deceleration : objects->profile_deceleration;
     struct drive_command brake = {.kind = DRIVE_COMMAND_VELOCITY};
 
     motion_of(application)->waits = false;
     motion_of(application)->speed_rad_s = 0.0f;
-    if (!axis_motion_rests(application) &&
-        !post(application, &brake, 0.0f, application->link->objects.quick_stop_deceleration)) {
+    if (!axis_motion_rests(application) && !post(application, &brake, 0.0f, deceleration)) {
         brake.kind = DRIVE_COMMAND_STOP;
         (void)cia402_command(application, &brake);
     }
@@ -177,18 +182,29 @@ static void go_to_target(struct application *application)
         axis_motion_limited(application, units(application) * (float)objects->profile_velocity,
                             1e-6f, axis_motion_speed_limit(application));
 
-    motion->limited =
-        !post(application, &retarget, speed, objects->profile_acceleration) || motion->limited;
+    /* a new target has one for both ends */
+    const uint32_t lesser = objects->profile_deceleration < objects->profile_acceleration
+                                ? objects->profile_deceleration
+                                : objects->profile_acceleration;
+
+    motion->limited = !post(application, &retarget, speed, lesser) || motion->limited;
     motion->waits = false;
 }
 
 /* ---- profile velocity ---- */
+
+/* What reverses does, too. */
+static bool slows(float before, float speed)
+{
+    return before > 0.0f ? speed < before : speed > before && before < 0.0f;
+}
 
 static void go_at_speed(struct application *application)
 {
     const struct link_objects *objects = &application->link->objects;
     struct axis_motion *motion = motion_of(application);
     const float most = axis_motion_speed_limit(application);
+    const float before = motion->speed_rad_s;
     struct drive_command velocity = {.kind = DRIVE_COMMAND_VELOCITY};
     float speed = 0.0f;
 
@@ -198,7 +214,9 @@ static void go_at_speed(struct application *application)
             application, units(application) * (float)objects->target_velocity, -most, most);
     }
     if (speed != motion->speed_rad_s && !command_queue_holds_any(&application->drive.commands) &&
-        post(application, &velocity, speed, objects->profile_acceleration)) {
+        post(application, &velocity, speed,
+             slows(before, speed) ? objects->profile_deceleration
+                                  : objects->profile_acceleration)) {
         motion->speed_rad_s = speed;
     }
 }
@@ -212,6 +230,7 @@ static void home(struct application *application)
                                  .position_rad = cia402_unit_rad(objects) * objects->home_offset};
 
     motion_of(application)->homed = cia402_command(application, &here);
+    motion_of(application)->not_homed = !motion_of(application)->homed;
 }
 
 /* ---- all ---- */
@@ -223,7 +242,7 @@ void axis_motion_control(struct application *application, uint16_t risen)
     const bool halted = (axis->controlword & HALT) != 0u;
 
     if (halted && !motion->halted) {
-        axis_motion_brake(application);
+        axis_motion_brake(application, application->link->objects.halt_option == QUICKLY);
     } else if (!halted && motion->halted && axis->mode == CIA402_PROFILE_POSITION) {
         motion->waits = !motion->reached; /* goes on */
     }
@@ -246,7 +265,7 @@ static bool changes_mode(struct application *application)
     if (axis_motion_rests(application)) {
         axis_motion_start(application);
     } else if (!motion_of(application)->halted) {
-        axis_motion_brake(application);
+        axis_motion_brake(application, false);
         motion_of(application)->halted = true;
     }
     return true;
@@ -330,7 +349,7 @@ uint16_t axis_motion_status(struct application *application)
     } else if (axis->mode == CIA402_HOMING) {
         reached = true;
         of_mode = motion->homed && rests;
-        off = false;
+        off = motion->not_homed;
     } else if (axis->mode == CIA402_CYCLIC_POSITION) {
         of_mode = !motion->halted && axis->stream.owed == 0u; /* follows what is asked for */
     }

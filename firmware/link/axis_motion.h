@@ -20,8 +20,8 @@ void axis_motion_control(struct application *application, uint16_t risen);
 void axis_motion_background(struct application *application);
 void axis_motion_look(struct application *application);
 
-/* To rest, with the quick stop's deceleration. */
-void axis_motion_brake(struct application *application);
+/* To rest, with the quick stop's deceleration or the profile's. */
+void axis_motion_brake(struct application *application, bool quickly);
 
 /* A target position has come: of cyclic synchronous position. */
 void axis_motion_cycle(struct application *application);

@@ -23,7 +23,9 @@ enum request {
     REQUEST_ENABLE_OPERATION
 };
 
-enum { STAYS_IN_QUICK_STOP = 5 }; /* option codes from here on */
+/* Option codes of a quick stop: off at once, with the profile's deceleration or its own, then off;
+   5 and 6 as 1 and 2, and stays. */
+enum { OFF_AT_ONCE = 0, AS_PROFILE = 1, STAYS_IN_QUICK_STOP = 5 };
 
 static enum request request_of(uint16_t word)
 {
@@ -114,6 +116,18 @@ static void leave_switched_on(struct application *application, enum drive_state 
     }
 }
 
+static void begin_quick_stop(struct application *application)
+{
+    const int16_t option = application->link->objects.quick_stop_option;
+
+    if (option == OFF_AT_ONCE) {
+        switch_off(application, CIA402_SWITCH_ON_DISABLED);
+        return;
+    }
+    application->link->axis.state = CIA402_QUICK_STOP_ACTIVE;
+    axis_motion_brake(application, option != AS_PROFILE && option != STAYS_IN_QUICK_STOP);
+}
+
 static void leave_operation(struct application *application, enum request request)
 {
     struct cia402 *axis = &application->link->axis;
@@ -126,16 +140,25 @@ static void leave_operation(struct application *application, enum request reques
         switch_off(application, CIA402_READY_TO_SWITCH_ON);
         break;
     case REQUEST_QUICK_STOP:
-        axis->state = CIA402_QUICK_STOP_ACTIVE;
-        axis_motion_brake(application);
+        begin_quick_stop(application);
         break;
     case REQUEST_SWITCH_ON:
         axis->state = CIA402_SWITCHED_ON;
-        axis_motion_brake(application);
+        axis_motion_brake(application, false);
         break;
     default:
         break;
     }
+}
+
+/* The rotor comes to rest behind its reference: a bridge that opens before lets it coast. */
+static bool has_settled(struct application *application)
+{
+    const float settling_s = 0.05f;
+    const uint32_t since =
+        interrupt_view_period(&application->drive) - application->link->axis.moved_in;
+
+    return (float)since * (float)application->facts.control_period_s > settling_s;
 }
 
 static void leave_quick_stop(struct application *application, enum request request)
@@ -144,7 +167,7 @@ static void leave_quick_stop(struct application *application, enum request reque
     const bool stays =
         !axis->lost && application->link->objects.quick_stop_option >= STAYS_IN_QUICK_STOP;
 
-    if (request == REQUEST_DISABLE_VOLTAGE || (!stays && axis_motion_rests(application))) {
+    if (request == REQUEST_DISABLE_VOLTAGE || (has_settled(application) && !stays)) {
         switch_off(application, CIA402_SWITCH_ON_DISABLED);
     } else if (stays && request == REQUEST_ENABLE_OPERATION) {
         axis->state = CIA402_OPERATION_ENABLED;
@@ -175,6 +198,9 @@ void cia402_background(struct application *application)
     const enum drive_state drive = interrupt_view_state(&application->drive);
     const enum request request = request_of(axis->controlword);
 
+    if (drive == DRIVE_OPERATION_ENABLED && !axis_motion_rests(application)) {
+        axis->moved_in = interrupt_view_period(&application->drive);
+    }
     follow(axis, drive);
     switch (axis->state) {
     case CIA402_SWITCH_ON_DISABLED:
@@ -233,18 +259,19 @@ void cia402_lose(struct application *application)
 {
     struct cia402 *axis = &application->link->axis;
 
-    if (axis->state == CIA402_OPERATION_ENABLED) {
+    if (axis->state == CIA402_OPERATION_ENABLED || axis->state == CIA402_QUICK_STOP_ACTIVE) {
         axis->state = CIA402_QUICK_STOP_ACTIVE;
-        axis_motion_brake(application);
+        axis_motion_brake(application, true);
         axis->lost = true;
         axis->controlword = ENABLE_VOLTAGE;
-    } else if (axis->state == CIA402_SWITCHED_ON) {
+    } else if (axis->state == CIA402_SWITCHED_ON || axis->asked) {
         switch_off(application, CIA402_SWITCH_ON_DISABLED);
         axis->controlword = 0;
     }
 }
 
-/* A drive that the console has enabled is switched on, and waits for "enable operation". */
+/* A drive that the console has enabled, or a client that is gone, is switched on, and waits for
+   "enable operation": what moves is brought to rest, unless the client only listens. */
 void cia402_start(struct application *application)
 {
     struct cia402 *axis = &application->link->axis;
@@ -253,6 +280,7 @@ void cia402_start(struct application *application)
     *axis = (struct cia402){
         .mode = application->link->objects.mode,
         .signals_in = interrupt_view_period(&application->drive) - 1u,
+        .moved_in = interrupt_view_period(&application->drive) + 0x80000000u,
         .state = drive == DRIVE_FAULT                ? CIA402_FAULT
                  : drive == DRIVE_SWITCH_ON_DISABLED ? CIA402_SWITCH_ON_DISABLED
                                                      : CIA402_SWITCHED_ON,
@@ -260,4 +288,7 @@ void cia402_start(struct application *application)
     axis->controlword =
         axis->state == CIA402_SWITCHED_ON ? SWITCH_ON | ENABLE_VOLTAGE | NO_QUICK_STOP : 0u;
     axis_motion_put_defaults(application);
+    if (axis->state == CIA402_SWITCHED_ON && !application->link->listens_only) {
+        axis_motion_brake(application, true);
+    }
 }

@@ -45,6 +45,7 @@ struct axis_motion {
     bool limited; /* a limit has cut what was asked for */
     bool off;     /* beyond the following error window */
     bool homed;
+    bool not_homed; /* the drive has refused to be */
     bool halted;
 };
 
@@ -55,6 +56,7 @@ struct cia402 {
     bool asked;          /* enabling has begun on behalf of "switch on" */
     bool refused;        /* by the drive; until the controlword changes */
     bool lost;           /* the connection: off as soon as the reference rests */
+    uint32_t moved_in;   /* period in which the reference has moved last */
     uint32_t signals_in; /* period of `signals` */
     struct axis_motion motion;
     struct axis_stream stream;

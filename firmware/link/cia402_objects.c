@@ -40,6 +40,28 @@ static int32_t rounded(double value)
     return (int32_t)(value < 0.0 ? value - 0.5 : value + 0.5);
 }
 
+/* Of the motor: mA, mN m; what it makes of them, in thousandths; mV. */
+static double rated_share(struct application *application, uint16_t index)
+{
+    const struct drive_signals *now = cia402_signals(application);
+    const struct drive_settings *settings = &application->drive.settings;
+    const double rated_A = settings->motor.rated_current_A;
+
+    switch (index) {
+    case 0x6072:
+        return 1e3 * settings->current_limit_A / rated_A;
+    case 0x6075:
+        return 1e3 * rated_A;
+    case 0x6076:
+        return 1e3 * rated_A * settings->motor.torque_constant_Nm_A;
+    case 0x6077: /* the hold's is not measured */
+    case 0x6078:
+        return 1e3 * now->i_q_A / rated_A;
+    default:
+        return 1e3 * now->bus_V;
+    }
+}
+
 /* In units; of those that are measured in them. */
 static double quantity(struct application *application, uint16_t index)
 {
@@ -63,7 +85,7 @@ static double quantity(struct application *application, uint16_t index)
         value = now->theta_ref_rad - now->theta_est_rad;
         break;
     default:
-        return 1e3 * now->bus_V;
+        return rated_share(application, index);
     }
     return value / cia402_unit_rad(&application->link->objects);
 }
@@ -83,7 +105,8 @@ void cia402_ask(struct application *application, const struct object *object, ui
         can_put(value, (uint8_t)axis->mode, 1);
         break;
     default:
-        can_put(value, (uint32_t)rounded(quantity(application, object->index)), 4);
+        can_put(value, (uint32_t)rounded(quantity(application, object->index)),
+                object_bytes(object));
         break;
     }
 }

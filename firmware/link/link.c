@@ -3,7 +3,9 @@
 #include "firmware/application/application.h"
 #include "firmware/drive/interrupt_view.h"
 #include "firmware/interface/dictionary.h"
+#include "firmware/link/sdo_block.h"
 #include "firmware/link/slcan.h"
+#include "firmware/linkage.h"
 
 /* Identifiers, without a node's number. */
 enum { ID_NMT = 0x000, ID_HEARTBEAT = 0x700 };
@@ -18,14 +20,15 @@ enum nmt_command {
 
 enum { MILLISECOND_us = 1000, ERRORS_KEPT = 4 };
 
-uint8_t link_node(const struct application *application)
-{
-    return (uint8_t)application->chosen.node_id;
-}
-
 void link_init(struct link *link)
 {
     *link = (struct link){.open = false};
+}
+
+CALLED_FROM_OUTSIDE void link_put_memory(struct link *link, uint32_t *memory, size_t words)
+{
+    link->capture.memory = memory;
+    link->capture.words = (uint32_t)words;
 }
 
 /* ---- frames out ---- */
@@ -58,7 +61,7 @@ void link_send(struct application *application, const struct can_frame *frame)
 static void send_state(struct application *application, uint8_t state)
 {
     const struct can_frame heartbeat = {
-        .id = (uint16_t)(ID_HEARTBEAT + link_node(application)), .length = 1, .data = {state}};
+        .id = (uint16_t)(ID_HEARTBEAT + application->link->node), .length = 1, .data = {state}};
 
     application->link->beaten_us = application->link->now_us;
     link_send(application, &heartbeat);
@@ -97,10 +100,17 @@ static void send_emergency(struct application *application, uint16_t code, uint8
     can_put(emergency.data, code, 2);
     emergency.data[2] = link_error_register(application);
     emergency.data[3] = more;
-    link_send(application, &emergency);
+    if (application->link->nmt != LINK_STOPPED) {
+        link_send(application, &emergency);
+    }
     if (code != 0u) {
         keep_error(application->link, code | (uint32_t)more << 16);
     }
+}
+
+void link_warn(struct application *application, uint16_t code)
+{
+    send_emergency(application, code, 0);
 }
 
 static void report_faults(struct application *application)
@@ -110,7 +120,7 @@ static void report_faults(struct application *application)
                                        ? cia402_signals(application)->fault
                                        : DRIVE_FAULT_NONE;
 
-    if (fault != link->reported && link_has_room(application, 1)) {
+    if (fault != link->reported && link->nmt != LINK_STOPPED && link_has_room(application, 1)) {
         link->reported = fault;
         send_emergency(application, fault_at(fault)->code, (uint8_t)fault);
     }
@@ -131,14 +141,28 @@ static void lose(struct application *application, uint16_t code)
     cia402_lose(application);
 }
 
-static void hear(struct link *link, const struct can_frame *frame)
+/* What was lost has come back. */
+static void find_again(struct application *application)
 {
+    struct link *link = application->link;
+
+    if (link->unheard) {
+        link->unheard = false;
+        if (link->reported == DRIVE_FAULT_NONE) {
+            send_emergency(application, 0, 0);
+        }
+    }
+}
+
+static void hear(struct application *application, const struct can_frame *frame)
+{
+    struct link *link = application->link;
     const uint32_t consumer = link->objects.consumer_heartbeat;
 
     if ((consumer & 0xffffu) != 0u && frame->id == ID_HEARTBEAT + (consumer >> 16 & 0x7fu)) {
         link->heard = true;
         link->heard_us = link->now_us;
-        link->unheard = false;
+        find_again(application);
     }
 }
 
@@ -164,8 +188,9 @@ static void reset_communication(struct application *application)
 {
     struct link *link = application->link;
 
-    objects_put_presets(&link->objects, link_node(application));
-    pdo_put_presets(&link->pdos, link_node(application));
+    link->node = (uint8_t)application->chosen.node_id;
+    objects_put_presets(&link->objects, link->node);
+    pdo_put_presets(&link->pdos, link->node);
     link->sdo.state = SDO_IDLE;
     link->nmt = LINK_PRE_OPERATIONAL;
     link->reported = DRIVE_FAULT_NONE;
@@ -190,6 +215,8 @@ static void obey_nmt(struct application *application, enum nmt_command command)
         break;
     case NMT_STOP:
         link->nmt = LINK_STOPPED;
+        link->sdo.state = SDO_IDLE;
+        cia402_lose(application); /* no controlword gets through any more */
         break;
     case NMT_PRE_OPERATIONAL:
         link->nmt = LINK_PRE_OPERATIONAL;
@@ -212,10 +239,9 @@ static void receive(struct application *application, const struct can_frame *fra
     struct can_frame response;
 
     application_hear(application, interrupt_view_period(&application->drive));
-    hear(link, frame);
+    hear(application, frame);
     if (frame->id == ID_NMT) {
-        if (frame->length == 2u &&
-            (frame->data[1] == 0u || frame->data[1] == link_node(application))) {
+        if (frame->length == 2u && (frame->data[1] == 0u || frame->data[1] == link->node)) {
             obey_nmt(application, (enum nmt_command)frame->data[0]);
         }
     } else if (frame->id == link->objects.sdo_request) {
@@ -227,6 +253,7 @@ static void receive(struct application *application, const struct can_frame *fra
         if (frame->id == (link->objects.sync_cob_id & 0x7ffu)) {
             link->synced = true;
             link->synced_us = link->now_us;
+            find_again(application);
             pdo_sync(application);
         } else {
             pdo_receive(application, frame);
@@ -317,11 +344,13 @@ void link_background(struct application *application)
 
     link->now_us = (uint32_t)application->board.time_us(application->board.context);
     cia402_background(application);
+    sdo_block_send(application);
     if (link_since(link, link->looked_us) < MILLISECOND_us) {
         return;
     }
     link->looked_us = link->now_us;
     cia402_look(application);
+    capture_look(application);
     watch(application);
     report_faults(application);
     if (link->nmt == LINK_OPERATIONAL) {

@@ -11,6 +11,7 @@
 
 #include "firmware/interface/drive_interface.h"
 #include "firmware/link/can_frame.h"
+#include "firmware/link/capture.h"
 #include "firmware/link/cia402.h"
 #include "firmware/link/objects.h"
 #include "firmware/link/pdo.h"
@@ -33,6 +34,7 @@ struct link {
     bool synced;               /* SYNC has come, at least once */
     bool unheard;              /* either no more: an emergency said so */
     bool listens_only;         /* the client does: it sends nothing */
+    uint8_t node;              /* its number: the setting's when communication began */
     uint8_t nmt;               /* enum link_nmt */
     uint8_t errors;            /* in the field 1003h */
     enum drive_fault reported; /* by an emergency */
@@ -44,11 +46,15 @@ struct link {
     struct sdo_server sdo;
     struct pdos pdos;
     struct cia402 axis;
+    struct capture capture;
     struct drive_command command; /* parameters put by 2201h and on, for 2200h */
 };
 
 /* Before the first pass: closed. */
 void link_init(struct link *link);
+
+/* Behind it: so much memory for the capture, of a board that follows the control (hal.h). */
+void link_put_memory(struct link *link, uint32_t *memory, size_t words);
 
 /* The console, closed: obeys the line if it is one of slcan. false: it is none. */
 bool link_obey_line(struct application *application, const char *line, size_t length);
@@ -65,6 +71,9 @@ void link_finish(struct application *application);
 /* Whether so many more frames fit into what is being sent. */
 bool link_has_room(const struct application *application, size_t count);
 
+/* An emergency that says no fault of the drive, and passes. */
+void link_warn(struct application *application, uint16_t code);
+
 /* A frame to the bus; lost if none fits. */
 void link_send(struct application *application, const struct can_frame *frame);
 
@@ -78,11 +87,11 @@ enum object_abort link_obey(struct application *application, const struct object
 bool link_accepts(const struct application *application, const struct object *object,
                   const uint8_t value[OBJECT_BYTES_MAX]);
 
+/* A member of struct link_objects has become so. */
+void link_has_put(struct application *application, const struct object *object);
+
 /* The error register: which kinds of error there are. */
 uint8_t link_error_register(const struct application *application);
-
-/* The node's number. */
-uint8_t link_node(const struct application *application);
 
 /* Microseconds since a time that has passed, less than half an hour ago. */
 static inline uint32_t link_since(const struct link *link, uint32_t then_us)

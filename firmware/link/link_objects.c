@@ -1,9 +1,22 @@
 /* The objects of CiA 301 that code answers for, and what may become of those that are stored. */
 #include "firmware/application/application.h"
 #include "firmware/application/setting_change.h"
+#include "firmware/link/axis_motion.h"
 #include "firmware/link/link.h"
 
+enum { CURRENT_LIMIT = 0x2120 }; /* its setting */
+
 enum { SAVE = 0x65766173, LOAD = 0x64616f6c }; /* "save", "load" */
+
+static uint32_t capture_shown(const struct capture *capture, uint8_t sub)
+{
+    const enum capture_state state = capture_state_of(capture);
+
+    return sub == 1u               ? state
+           : state != CAPTURE_DONE ? 0u
+           : sub == 8u             ? capture->samples
+                                   : capture_period(capture, 0);
+}
 
 enum object_abort link_ask(struct application *application, const struct object *object,
                            uint8_t value[OBJECT_BYTES_MAX], const char **text)
@@ -24,6 +37,12 @@ enum object_abort link_ask(struct application *application, const struct object 
     case 0x1010:
     case 0x1011:
         can_put(value, 1, 4); /* on command */
+        break;
+    case 0x2400:
+        can_put(value, capture_shown(&application->link->capture, object->sub),
+                object_bytes(object));
+        break;
+    case 0x2402: /* sdo.h asks for it itself */
         break;
     default:
         if (object->index < 0x2000u) {
@@ -57,6 +76,32 @@ static enum object_abort restore(struct application *application, uint32_t signa
     return settings_restore(application, refusal) ? OBJECT_DONE : OBJECT_WRONG_STATE;
 }
 
+/* The current limit, in thousandths of the rated current: torque goes with it. */
+static enum object_abort limit_torque(struct application *application, uint32_t thousandths)
+{
+    struct object limit;
+
+    (void)objects_find(CURRENT_LIMIT, 0, &limit);
+
+    const double limit_A =
+        1e-3 * (double)thousandths * application->drive.settings.motor.rated_current_A;
+    uint8_t value[OBJECT_BYTES_MAX];
+
+    memcpy(value, &limit_A, sizeof limit_A);
+    return object_put(application, &limit, value);
+}
+
+/* 1: begins, 0: ends. */
+static enum object_abort command_capture(struct application *application, uint8_t number)
+{
+    if (number == 1u) {
+        return capture_arm(application, &application->link->objects) ? OBJECT_DONE
+                                                                     : OBJECT_WRONG_STATE;
+    }
+    capture_end(application);
+    return number == 0u ? OBJECT_DONE : OBJECT_OUT_OF_RANGE;
+}
+
 enum object_abort link_obey(struct application *application, const struct object *object,
                             const uint8_t value[OBJECT_BYTES_MAX])
 {
@@ -67,11 +112,18 @@ enum object_abort link_obey(struct application *application, const struct object
         }
         application->link->errors = 0;
         application->link->objects.error_1 = 0;
+        application->link->objects.error_2 = 0;
+        application->link->objects.error_3 = 0;
+        application->link->objects.error_4 = 0;
         return OBJECT_DONE;
     case 0x1010:
         return store(application, can_get(value, 4));
     case 0x1011:
         return restore(application, can_get(value, 4));
+    case 0x6072:
+        return limit_torque(application, can_get(value, 2));
+    case 0x2400:
+        return command_capture(application, value[0]);
     case 0x6040:
         cia402_control(application, (uint16_t)can_get(value, 2));
         return OBJECT_DONE;
@@ -93,6 +145,10 @@ bool link_accepts(const struct application *application, const struct object *ob
 
     (void)application;
     switch (object->index) {
+    case 0x1005:
+        return pdo_may_have(number); /* it makes none, and has no identifiers of 29 bits */
+    case 0x2400:
+        return object->sub != 2u || number > 0u;
     case 0x6060:
         return is_mode((int8_t)value[0]);
     case 0x6098:
@@ -100,14 +156,35 @@ bool link_accepts(const struct application *application, const struct object *ob
     case 0x60c2:
         return object->sub == 1u ? number != 0u : (int8_t)value[0] >= -6 && (int8_t)value[0] <= 0;
     case 0x605a:
-        return number == 2u || number == 6u;
+        return number <= 2u || number == 5u || number == 6u;
+    case 0x605d:
+        return number == 1u || number == 2u;
     case 0x6081:
     case 0x6083:
+    case 0x6084:
     case 0x6085:
     case 0x6091:
     case 0x6092:
         return number != 0u;
     default:
         return true;
+    }
+}
+
+/* What is supervised anew has not come yet. */
+void link_has_put(struct application *application, const struct object *object)
+{
+    switch (object->index) {
+    case 0x1006:
+        application->link->synced = false;
+        break;
+    case 0x1016:
+        application->link->heard = false;
+        break;
+    case 0x607a:
+        axis_motion_cycle(application);
+        break;
+    default:
+        break;
     }
 }

@@ -4,7 +4,6 @@
 #include "firmware/application/setting_change.h"
 #include "firmware/drive/interrupt_view.h"
 #include "firmware/interface/dictionary.h"
-#include "firmware/link/axis_motion.h"
 #include "firmware/link/link.h"
 
 struct object_row {
@@ -35,7 +34,7 @@ static const struct {
     uint16_t index, at;
 } parameters[] = {DRIVE_PARAMETERS_TABLE(PARAMETER_OBJECT)};
 
-enum { COMMAND_INDEX = 0x2200, TARGET_POSITION = 0x607a };
+enum { COMMAND_INDEX = 0x2200 };
 
 void objects_put_presets(struct link_objects *objects, uint8_t node)
 {
@@ -277,9 +276,7 @@ enum object_abort object_put(struct application *application, const struct objec
             return OBJECT_OUT_OF_RANGE;
         }
         memcpy((uint8_t *)&link->objects + object->at, value, object_bytes(object));
-        if (object->index == TARGET_POSITION) {
-            axis_motion_cycle(application);
-        }
+        link_has_put(application, object);
         return OBJECT_DONE;
     case OBJECT_SETTING:
         return put_setting(application, object, number_of(object, value));

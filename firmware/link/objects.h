@@ -22,6 +22,7 @@ enum object_type {
     OBJECT_U16 = 0x06,
     OBJECT_U32 = 0x07,
     OBJECT_TEXT = 0x09,
+    OBJECT_DOMAIN = 0x0f,
     OBJECT_REAL64 = 0x11
 };
 
@@ -53,7 +54,8 @@ enum object_abort {
     OBJECT_SUB_MISSING = 0x06090011,
     OBJECT_OUT_OF_RANGE = 0x06090030,
     OBJECT_NOT_TRANSFERRED = 0x08000020,
-    OBJECT_WRONG_STATE = 0x08000022
+    OBJECT_WRONG_STATE = 0x08000022,
+    OBJECT_NO_DATA = 0x08000024
 };
 
 #define OBJECT_TYPE_U8                                                uint8_t
@@ -62,6 +64,7 @@ enum object_abort {
 #define OBJECT_TYPE_I8                                                int8_t
 #define OBJECT_TYPE_I16                                               int16_t
 #define OBJECT_TYPE_I32                                               int32_t
+#define OBJECT_TYPE_REAL64                                            double
 #define OBJECT_MEMBER(index, sub, type, access, member, preset, name) OBJECT_TYPE_##type member;
 #define OBJECT_NONE(index, sub, type, access, preset, name)
 struct link_objects {
@@ -99,7 +102,7 @@ void objects_put_presets(struct link_objects *objects, uint8_t node);
 /* OBJECT_DONE, OBJECT_MISSING or OBJECT_SUB_MISSING. */
 enum object_abort objects_find(uint16_t index, uint8_t sub, struct object *found);
 
-/* Bytes of a value; of a text 0. */
+/* Bytes of a value; of a text or a domain 0. */
 size_t object_bytes(const struct object *object);
 
 /* The value, lowest byte first; of a text `text` instead. */

@@ -1,8 +1,8 @@
 /*
  * The objects of the dictionary that CiA 301 and 402 lay down, declared once: a row for each
- * sub-index. The drive's own, settings, commands and signals, are rows of firmware/interface. From
- * the rows follow the members of struct link_objects, their defaults, what the slave serves and the
- * sheet steadystep.eds. To add an object: a row, and what makes use of it.
+ * sub-index, and those of the capture. The drive's own, settings, commands and signals, are rows of
+ * firmware/interface. From the rows follow the members of struct link_objects, their defaults, what
+ * the slave serves and the sheet steadystep.eds. To add an object: a row, and what makes use of it.
  *
  *   GROUP(index, name)                                       of an index with several sub-indexes
  *   STORED(index, sub, type, access, member, preset, name)   a member of struct link_objects
@@ -28,6 +28,8 @@
     GROUP(0x1600, "RPDO mapping parameter")                                                        \
     GROUP(0x1800, "TPDO communication parameter")                                                  \
     GROUP(0x1a00, "TPDO mapping parameter")                                                        \
+    GROUP(0x2400, "Capture")                                                                       \
+    GROUP(0x2401, "Captured signals")                                                              \
     GROUP(0x607d, "Software position limit")                                                       \
     GROUP(0x608f, "Position encoder resolution")                                                   \
     GROUP(0x6091, "Gear ratio")                                                                    \
@@ -74,9 +76,30 @@
     ASKED(0x1800, 5, U16, RW, 0, "Event timer")                                                    \
     ASKED(0x1a00, 0, U8, RW, 1, "Number of mapped objects")                                        \
     ASKED(0x1a00, 1, U32, RW, 0, "Mapped object")                                                  \
+    STORED(0x2400, 0, U8, RO, capture_highest, 9, "Highest sub-index supported")                   \
+    ASKED(0x2400, 1, U8, RW, 0, "Capture")                                                         \
+    STORED(0x2400, 2, U16, RW, capture_divider, 1, "Periods from sample to sample")                \
+    STORED(0x2400, 3, U16, RW, capture_trigger, 0, "Trigger signal")                               \
+    STORED(0x2400, 4, REAL64, RW, capture_level, 0, "Trigger level")                               \
+    STORED(0x2400, 5, I8, RW, capture_edge, 1, "Trigger edge")                                     \
+    STORED(0x2400, 6, U32, RW, capture_before, 0, "Samples before the trigger")                    \
+    STORED(0x2400, 7, U32, RW, capture_samples, 0, "Samples in all")                               \
+    ASKED(0x2400, 8, U32, RO, 0, "Samples taken")                                                  \
+    ASKED(0x2400, 9, U32, RO, 0, "Period of the first sample")                                     \
+    STORED(0x2401, 0, U8, RO, capture_columns, 8, "Highest sub-index supported")                   \
+    STORED(0x2401, 1, U16, RW, capture_1, 0, "Captured signal 1")                                  \
+    STORED(0x2401, 2, U16, RW, capture_2, 0, "Captured signal 2")                                  \
+    STORED(0x2401, 3, U16, RW, capture_3, 0, "Captured signal 3")                                  \
+    STORED(0x2401, 4, U16, RW, capture_4, 0, "Captured signal 4")                                  \
+    STORED(0x2401, 5, U16, RW, capture_5, 0, "Captured signal 5")                                  \
+    STORED(0x2401, 6, U16, RW, capture_6, 0, "Captured signal 6")                                  \
+    STORED(0x2401, 7, U16, RW, capture_7, 0, "Captured signal 7")                                  \
+    STORED(0x2401, 8, U16, RW, capture_8, 0, "Captured signal 8")                                  \
+    ASKED(0x2402, 0, DOMAIN, RO, 0, "Captured values")                                             \
     ASKED(0x6040, 0, U16, RW_R, 0, "Controlword")                                                  \
     ASKED(0x6041, 0, U16, RO_T, 0, "Statusword")                                                   \
     STORED(0x605a, 0, I16, RW, quick_stop_option, 2, "Quick stop option code")                     \
+    STORED(0x605d, 0, I16, RW, halt_option, 1, "Halt option code")                                 \
     STORED(0x6060, 0, I8, RW_R, mode, 1, "Modes of operation")                                     \
     ASKED(0x6061, 0, I8, RO_T, 1, "Modes of operation display")                                    \
     ASKED(0x6062, 0, I32, RO_T, 0, "Position demand value")                                        \
@@ -87,6 +110,11 @@
     STORED(0x6068, 0, U16, RW, target_ms, 10, "Position window time")                              \
     ASKED(0x606b, 0, I32, RO_T, 0, "Velocity demand value")                                        \
     ASKED(0x606c, 0, I32, RO_T, 0, "Velocity actual value")                                        \
+    ASKED(0x6072, 0, U16, RW_R, 0, "Max torque")                                                   \
+    ASKED(0x6075, 0, U32, RO, 0, "Motor rated current")                                            \
+    ASKED(0x6076, 0, U32, RO, 0, "Motor rated torque")                                             \
+    ASKED(0x6077, 0, I16, RO_T, 0, "Torque actual value")                                          \
+    ASKED(0x6078, 0, I16, RO_T, 0, "Current actual value")                                         \
     ASKED(0x6079, 0, U32, RO_T, 0, "DC link circuit voltage")                                      \
     STORED(0x607a, 0, I32, RW_R, target_position, 0, "Target position")                            \
     STORED(0x607c, 0, I32, RW, home_offset, 0, "Home offset")                                      \
@@ -95,6 +123,7 @@
     STORED(0x607d, 2, I32, RW, position_most, INT32_MAX, "Max position limit")                     \
     STORED(0x6081, 0, U32, RW_R, profile_velocity, 0, "Profile velocity")                          \
     STORED(0x6083, 0, U32, RW_R, profile_acceleration, 0, "Profile acceleration")                  \
+    STORED(0x6084, 0, U32, RW_R, profile_deceleration, 0, "Profile deceleration")                  \
     STORED(0x6085, 0, U32, RW, quick_stop_deceleration, 0, "Quick stop deceleration")              \
     STORED(0x608f, 0, U8, RO, resolution_highest, 2, "Highest sub-index supported")                \
     STORED(0x608f, 1, U32, RO, increments, 65536, "Encoder increments")                            \

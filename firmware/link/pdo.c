@@ -3,7 +3,9 @@
 #include "firmware/application/application.h"
 #include "firmware/link/link.h"
 
-enum { ID_BITS = 0x7ff, NO_REMOTE = 0x40000000 };
+enum { ID_BITS = 0x7ff, NOT_PROCESSED = 0x8210 };
+
+#define NO_REMOTE 0x40000000u
 
 /* The statusword comes at least so often: python-canopen takes what has come twice for periodic,
    and gives up if it does not come for 0.2 s. */
@@ -134,6 +136,12 @@ static enum object_abort put_mapping(struct pdo *pdo, const struct object *objec
     return abort;
 }
 
+bool pdo_may_have(uint32_t id)
+{
+    return id >= 0x80u && id < 0x6e0u && (id <= 0x100u || id > 0x180u) &&
+           (id <= 0x580u || id > 0x5ffu) && (id <= 0x600u || id > 0x67fu);
+}
+
 enum object_abort pdo_obey(struct pdos *pdos, const struct object *object, const uint8_t *value)
 {
     struct pdo *pdo = pdo_of(pdos, object);
@@ -146,8 +154,8 @@ enum object_abort pdo_obey(struct pdos *pdos, const struct object *object, const
     }
     switch (object->sub) {
     case 1:
-        if ((number & ~(PDO_INVALID | NO_REMOTE)) > ID_BITS) {
-            return OBJECT_OUT_OF_RANGE; /* an identifier of 29 bits */
+        if ((number & PDO_INVALID) == 0u && !pdo_may_have(number & ~NO_REMOTE)) {
+            return OBJECT_OUT_OF_RANGE;
         }
         pdo->cob_id = number;
         break;
@@ -200,8 +208,16 @@ void pdo_receive(struct application *application, const struct can_frame *frame)
 {
     for (struct pdo *pdo = application->link->pdos.received;
          pdo != &application->link->pdos.received[PDOS]; pdo++) {
-        if ((pdo->cob_id & PDO_INVALID) != 0u || (pdo->cob_id & ID_BITS) != frame->id ||
-            frame->length < mapped_bytes(pdo)) {
+        if ((pdo->cob_id & PDO_INVALID) != 0u || (pdo->cob_id & ID_BITS) != frame->id) {
+            continue;
+        }
+        const bool was_short = pdo->short_one;
+
+        pdo->short_one = frame->length < mapped_bytes(pdo);
+        if (pdo->short_one) {
+            if (!was_short) {
+                link_warn(application, NOT_PROCESSED);
+            }
             continue;
         }
         pdo->frame = *frame;

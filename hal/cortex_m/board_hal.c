@@ -48,6 +48,14 @@ static const char *start_cause(void *context)
     return crash_start_cause();
 }
 
+#ifndef STEADYSTEP_WITHOUT_LINK
+static void follow_control(void *context, bool follows)
+{
+    (void)context;
+    port_follow_control(follows);
+}
+#endif
+
 static size_t stream_read(void *context, uint8_t *bytes, size_t capacity, uint32_t *line_period)
 {
     (void)context;
@@ -88,6 +96,9 @@ const struct hal board_hal = {
     .time_us = time_us,
     .watchdog_feed = watchdog_feed,
     .start_cause = start_cause,
+#ifndef STEADYSTEP_WITHOUT_LINK
+    .follow_control = follow_control,
+#endif
     .stream_read = stream_read,
     .stream_write = stream_write,
     .parameters_erase = parameters_erase,

@@ -10,6 +10,7 @@ struct instance {
     uint64_t hash;
 #ifndef STEADYSTEP_WITHOUT_LINK
     struct link link;
+    uint32_t capture[9 * 1024]; /* as many words as the STM32G474's */
 #endif
 };
 
@@ -17,6 +18,7 @@ static void put_link(struct instance *self)
 {
 #ifndef STEADYSTEP_WITHOUT_LINK
     application_put_link(&self->application, &self->link);
+    link_put_memory(&self->link, self->capture, sizeof self->capture / sizeof self->capture[0]);
 #else
     (void)self;
 #endif
@@ -97,6 +99,13 @@ static void image_signals(const void *drive, struct drive_signals *signals)
     drive_signals_read(&self->application.drive, signals);
 }
 
+static void image_follow_control(void *drive)
+{
+    struct instance *self = drive;
+
+    application_follow_control(&self->application);
+}
+
 static uint64_t image_hash(const void *drive)
 {
     const struct instance *self = drive;
@@ -123,4 +132,5 @@ EXPORTED const struct firmware_image IMAGE_OF(NUM_FORMAT) = {
     .background = image_background,
     .signals = image_signals,
     .hash = image_hash,
+    .follow_control = image_follow_control,
 };

@@ -48,6 +48,12 @@ static const char *start_cause(void *context)
     return sil->restarted ? "power-on after a power cycle" : "power-on";
 }
 
+static void follow_control(void *context, bool follows)
+{
+    struct hal_sil *sil = context;
+    sil->follows = follows;
+}
+
 static size_t put(struct hal_sil_stream *stream, const uint8_t *bytes, size_t count,
                   uint32_t period)
 {
@@ -156,6 +162,7 @@ void hal_sil_init(struct hal_sil *sil, const struct hal_facts *facts)
     sil->board.time_us = time_us;
     sil->board.watchdog_feed = watchdog_feed;
     sil->board.start_cause = start_cause;
+    sil->board.follow_control = follow_control;
     sil->board.stream_read = stream_read;
     sil->board.stream_write = stream_write;
     sil->board.parameters_erase = parameters_erase;
@@ -172,6 +179,7 @@ static void empty(struct hal_sil_stream *stream)
 void hal_sil_restart(struct hal_sil *sil)
 {
     sil->restarted = true;
+    sil->follows = false;
     sil->control_period = UINT32_MAX;
     sil->bridge_allowed = false;
     sil->trip_latched = false;

@@ -36,6 +36,7 @@ struct hal_sil {
     uint64_t period;         /* index k of the present S(k), since the first start */
     uint32_t control_period; /* of the last control interrupt that has begun, since the last start;
                                 UINT32_MAX: none has */
+    bool follows;            /* application_follow_control, behind the control interrupt */
     bool bridge_allowed;     /* between bridge_enable and bridge_disable */
     bool trip_latched;       /* by hal_sil_trip, until bridge_disable */
     uint16_t bridge_temperature; /* code of its sensor */

@@ -121,3 +121,10 @@ void control_interrupt(void)
     switch_brake(&control.samples);
     have_actuated(peak);
 }
+
+/* From flash: only while something is captured. */
+void control_interrupt_followed(void)
+{
+    control_interrupt();
+    application_follow_control(&application);
+}

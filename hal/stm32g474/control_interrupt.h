@@ -19,4 +19,7 @@ void control_forbid_bridge(void);
 /* TIM1's update: the peak. */
 void control_interrupt(void);
 
+/* The same, and application_follow_control behind it. */
+void control_interrupt_followed(void);
+
 #endif

@@ -5,6 +5,7 @@
 #include "hal/cortex_m/crash.h"
 #include "hal/cortex_m/linker.h"
 #include "hal/cortex_m/parameter_flash.h"
+#include "hal/cortex_m/port.h"
 #include "hal/stm32g474/control_interrupt.h"
 #include "hal/stm32g474/deadline_guard.h"
 #include "hal/stm32g474/device.h"
@@ -22,7 +23,7 @@ typedef void (*vector)(void);
 
 /* In CCM SRAM, with the code they lead to. The core begins with the table of its start, in flash.
  */
-__attribute__((section(".ccm.vectors"), used, aligned(512))) const struct {
+__attribute__((section(".ccm.vectors"), used, aligned(512))) struct {
     const uint32_t *stack;
     vector core[CORE_VECTORS - 1];
     vector interrupts[INTERRUPTS];
@@ -41,6 +42,14 @@ __attribute__((section(".ccm.vectors"), used, aligned(512))) const struct {
             [LPUART1_IRQn + 1 ... INTERRUPTS - 1] = crash_exception,
         },
 };
+
+/* One word: an interrupt takes the one or the other. */
+void port_follow_control(bool follows)
+{
+    vectors.interrupts[TIM1_UP_TIM16_IRQn] =
+        follows ? control_interrupt_followed : control_interrupt;
+    __DSB();
+}
 
 /* What the core reads at reset. A fault before the table above is in place ends here. */
 __attribute__((section(".start_vectors"), used)) static const struct {

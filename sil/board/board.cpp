@@ -206,6 +206,9 @@ void Board::control()
         board.receive();
     }
     board.outputs = board.image.control_cycle(board.drive, &board.samples);
+    if (board.hal.follows) {
+        board.image.follow_control(board.drive);
+    }
     board.brake_on = board.hal.facts.has_brake && board.image.brake(board.drive, &board.samples);
     board.image.background(board.drive);
     board.send();

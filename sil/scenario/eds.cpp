@@ -26,6 +26,7 @@ enum Type {
     unsigned16 = 0x06,
     unsigned32 = 0x07,
     text_visible = 0x09,
+    domain = 0x0f,
     real64 = 0x11
 };
 
@@ -107,7 +108,7 @@ void add_signals(Objects &objects)
 /* ---- objects_table.h ---- */
 
 constexpr Type U8 = unsigned8, U16 = unsigned16, U32 = unsigned32, I8 = integer8, I16 = integer16,
-               I32 = integer32, TEXT = text_visible;
+               I32 = integer32, TEXT = text_visible, REAL64 = real64, DOMAIN = domain;
 
 struct Access {
     const char *word;
@@ -128,10 +129,11 @@ struct Row {
 /* What objects that code answers for begin with, if that is fixed, stands in their rows. */
 std::string preset_of(const Row &row)
 {
-    const bool follows = row.index == 0x6081 || row.index == 0x6083 || row.index == 0x6085;
+    const bool follows = (row.index >= 0x6081 && row.index <= 0x6085) ||
+                         (row.index >= 0x6072 && row.index <= 0x6076);
     const bool shows = row.index >= 0x6000 && row.index != 0x6061 && row.access.word == RO_T.word &&
                        row.access.mapped;
-    if (row.type == text_visible || follows || shows) {
+    if (row.type == text_visible || row.type == domain || follows || shows) {
         return "";
     }
     return row.access.of_node ? format("$NODEID+0x%llx", row.preset) : std::to_string(row.preset);
@@ -194,9 +196,13 @@ void add_standard(Objects &objects)
 std::string section(const std::string &name, const Object &object)
 {
     std::string text = "\n[" + name + "]\nParameterName=" + object.name +
-                       "\nObjectType=0x7\nDataType=" + format("0x%04x", unsigned(object.type)) +
+                       "\nObjectType=" + (object.type == domain ? "0x2" : "0x7") +
+                       "\nDataType=" + format("0x%04x", unsigned(object.type)) +
                        "\nAccessType=" + object.access +
-                       "\nPDOMapping=" + (object.mapped ? "1" : "0") + "\n";
+                       (object.type == domain ? "\n" : "\nPDOMapping=") +
+                       (object.type == domain ? ""
+                        : object.mapped       ? "1\n"
+                                              : "0\n");
     const auto add = [&](const char *key, const std::string &value) {
         text += value.empty() ? "" : std::string(key) + "=" + value + "\n";
     };

@@ -28,8 +28,8 @@ VECTORS = 0x10000000  # aligned to more than the table takes
 def used(image):
     """Bytes by memory; of flash what is loaded into it."""
     totals = {"flash": sum(len(data) for _, data in memory.loaded(image.path))}
-    for _, start, size, _, _ in image.sections:
-        where = memory.region(start)
+    for name, start, size, _, _ in image.sections:
+        where = name if name == ".capture" else memory.region(start)
         if where in ("ccm", "ram"):
             totals[where] = totals.get(where, 0) + size
     return totals

@@ -3,6 +3,7 @@
 usage: canopen_client.py SIL
 """
 import logging
+import struct
 import time
 
 from canopen_bus import EDS, Bus, canopen, wait_for
@@ -18,7 +19,7 @@ def every_object_is_served_as_the_sheet_says(node):
                                      canopen.objectdictionary.ODArray))
         for variable in entry.subindices.values() if several else [entry]:
             name = f"{variable.index:04x}sub{variable.subindex} {variable.name}"
-            if not variable.readable:
+            if not variable.readable or variable.data_type == canopen.objectdictionary.DOMAIN:
                 continue
             data = node.sdo.upload(variable.index, variable.subindex)
             if variable.data_type == canopen.objectdictionary.VISIBLE_STRING:
@@ -50,6 +51,34 @@ def settings_are_read_and_written(node):
         except canopen.SdoAbortedError as refusal:
             CHECKS.that(refusal.code == code, f"{name}: {refusal}")
     limit.raw = 3.0
+
+
+def blocks_carry_what_segments_do(node):
+    for index in (0x1008, 0x100A, 0x2120, 0x1000):
+        variable = node.sdo[index]
+        with variable.open("rb", block_transfer=True) as stream:
+            data = stream.read(-1)
+        CHECKS.that(data == node.sdo.upload(index, 0), f"{index:04x} in blocks: {data}")
+    with node.sdo["current_limit_A"].open("wb", size=8, block_transfer=True) as stream:
+        stream.write(struct.pack("<d", 2.75))
+    CHECKS.that(node.sdo["current_limit_A"].raw == 2.75, "a setting is written in blocks")
+    node.sdo["current_limit_A"].raw = 3.0
+
+
+def pdos_are_configured(node):
+    node.tpdo.read()
+    node.rpdo.read()
+    CHECKS.that(node.tpdo[1].cob_id == 0x181 and node.rpdo[1].cob_id == 0x201, "PDOs are read")
+    node.tpdo[4].clear()
+    node.tpdo[4].add_variable(0x2301)
+    node.tpdo[4].event_timer = 20
+    node.tpdo[4].enabled = True
+    node.tpdo[4].save()
+    node.nmt.state = "OPERATIONAL"
+    CHECKS.that(node.tpdo[4].wait_for_reception(2) is not None, "a signal comes by PDO")
+    node.tpdo[4].enabled = False
+    node.tpdo[4].save()
+    node.nmt.state = "PRE-OPERATIONAL"
 
 
 def it_is_enabled_in_time(node):
@@ -126,6 +155,8 @@ with Served() as served:
     with Bus(served.link) as bus:
         every_object_is_served_as_the_sheet_says(bus.node)
         settings_are_read_and_written(bus.node)
+        blocks_carry_what_segments_do(bus.node)
+        pdos_are_configured(bus.node)
         it_is_enabled_in_time(bus.node)
         it_goes_to_positions(bus.node, KNOBS)
         it_turns_at_a_speed(bus.node)

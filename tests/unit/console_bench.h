@@ -23,6 +23,7 @@ struct console_bench {
     int watchdog_fed;
     int periods_between; /* control interrupts while the background feeds the watchdog, or reads */
     bool bridge_was_on;  /* in one of them */
+    bool follows;        /* application_follow_control, behind the control interrupt */
     bool trip_latched;   /* refuses to enable the bridge until it has been disabled */
     bool bridge_enabled;
     uint8_t store[BENCH_PAGE * BENCH_PAGES];
@@ -59,7 +60,18 @@ static inline const struct hal_outputs *bench_interrupt(void)
     bench.period++;
     samples.current_a = (uint16_t)(samples.current_a + noise);
     samples.current_b = (uint16_t)(samples.current_b + noise);
-    return application_control_interrupt(&bench.application, &samples);
+
+    const struct hal_outputs *outputs = application_control_interrupt(&bench.application, &samples);
+
+    if (bench.follows) {
+        application_follow_control(&bench.application);
+    }
+    return outputs;
+}
+
+static inline void bench_follow_control(void *context, bool follows)
+{
+    ((struct console_bench *)context)->follows = follows;
 }
 
 /* What a real background does not notice, if it takes its time. */
@@ -159,6 +171,7 @@ static inline struct hal bench_board(const struct hal_facts *facts)
         .time_us = bench_time_us,
         .watchdog_feed = bench_watchdog_feed,
         .start_cause = bench_start_cause,
+        .follow_control = bench_follow_control,
         .stream_read = bench_stream_read,
         .stream_write = bench_stream_write,
         .parameters_erase = bench_erase,

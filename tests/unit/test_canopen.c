@@ -1,4 +1,5 @@
 /* The node on the bus: channel, network management, SDO, PDO, emergencies. */
+#include <stdlib.h>
 #include <unity.h>
 
 #include "tests/unit/link_bench.h"
@@ -84,6 +85,54 @@ static void test_a_setting_is_written_in_segments(void)
     TEST_ASSERT_EQUAL_STRING("8020210010000706", link_bench_sdo("2120210004000000"));
 }
 
+/* 3.0 and a bit, in blocks of up to two segments; what is not acknowledged comes again. */
+static void test_blocks_are_sent_acknowledged_and_checked(void)
+{
+    link_bench_open();
+    TEST_ASSERT_EQUAL_STRING("C620210008000000", link_bench_sdo("A420210002000000"));
+    TEST_ASSERT_EQUAL_STRING("z\rt58180100000000000008\rt58188240000000000000\r",
+                             link_bench_say("t6018A300000000000000", 2));
+    TEST_ASSERT_EQUAL_STRING("z\rt58188140000000000000\r",
+                             link_bench_say("t6018A201020000000000", 2));
+    TEST_ASSERT_EQUAL_STRING("D96DC10000000000", link_bench_sdo("A201020000000000"));
+    TEST_ASSERT_EQUAL_STRING("z\r", link_bench_say("t6018A100000000000000", 2));
+    TEST_ASSERT_EQUAL_STRING("8020210001000405", link_bench_sdo("A100000000000000")); /* over */
+    TEST_ASSERT_EQUAL_STRING("8020210002000405", link_bench_sdo("A420210080000000")); /* 128 */
+    TEST_ASSERT_EQUAL_STRING("8000220001000106", link_bench_sdo("A400220002000000"));
+}
+
+static void test_more_than_was_sent_is_not_acknowledged(void)
+{
+    link_bench_open();
+    (void)link_bench_sdo("A420210001000000");
+    (void)link_bench_say("t6018A300000000000000", 2);
+    TEST_ASSERT_EQUAL_STRING("8020210003000405", link_bench_sdo("A202010000000000"));
+}
+
+static void begin_block_of_two(void)
+{
+    TEST_ASSERT_EQUAL_STRING("A420210002000000", link_bench_sdo("C620210008000000"));
+    TEST_ASSERT_EQUAL_STRING("z\r", link_bench_say("t60180100000000000000", 2));
+    TEST_ASSERT_EQUAL_STRING("A202020000000000", link_bench_sdo("8240000000000000"));
+}
+
+static void test_blocks_are_received_and_checked(void)
+{
+    link_bench_open();
+    begin_block_of_two();
+    TEST_ASSERT_EQUAL_STRING("8020210004000405", link_bench_sdo("D900000000000000"));
+    begin_block_of_two();
+    TEST_ASSERT_EQUAL_STRING("8020210010000706", link_bench_sdo("D5C4480000000000"));
+    begin_block_of_two();
+    TEST_ASSERT_EQUAL_STRING("A100000000000000", link_bench_sdo("D9C4480000000000"));
+    TEST_ASSERT_TRUE(bench.application.chosen.current_limit_A == 2.0);
+    TEST_ASSERT_EQUAL_STRING("A420210002000000", link_bench_sdo("C420210000000000"));
+    TEST_ASSERT_EQUAL_STRING("A200020000000000", link_bench_sdo("0200000000000000")); /* lost 1 */
+    TEST_ASSERT_EQUAL_STRING("z\r", link_bench_say("t60188000000000000000", 2));      /* abort */
+    TEST_ASSERT_EQUAL_STRING("8000100002000106", link_bench_sdo("C400100000000000"));
+    TEST_ASSERT_EQUAL_STRING("8020210010000706", link_bench_sdo("C620210004000000"));
+}
+
 static void test_a_setting_that_waits_is_refused_while_the_drive_is_ready(void)
 {
     link_bench_open();
@@ -143,6 +192,42 @@ static void test_a_mapping_that_cannot_be_is_refused(void)
     TEST_ASSERT_EQUAL_STRING("80001A0122000008", link_bench_sdo("23001A0108000023")); /* in force */
 }
 
+/* Of NMT, of heartbeats, of another node's SDO: whoever sends them commands the bus. */
+static void test_identifiers_that_the_bus_needs_are_not_to_be_had(void)
+{
+    link_bench_open();
+    TEST_ASSERT_EQUAL_STRING("8000180130000906", link_bench_sdo("2300180100000040"));
+    TEST_ASSERT_EQUAL_STRING("8000180130000906", link_bench_sdo("2300180101070040"));
+    TEST_ASSERT_EQUAL_STRING("8000140130000906", link_bench_sdo("2300140102060000"));
+    TEST_ASSERT_EQUAL_STRING("8005100030000906", link_bench_sdo("2305100080000040")); /* makes it */
+    TEST_ASSERT_EQUAL_STRING("6000180100000000", link_bench_sdo("2300180100000080")); /* none */
+    TEST_ASSERT_EQUAL_STRING("6000180100000000", link_bench_sdo("2300180190010040"));
+}
+
+static void test_a_pdo_that_is_too_short_is_an_emergency_once(void)
+{
+    link_bench_open();
+    (void)link_bench_say("t00020101", 2);
+    assert_heard("t08181082000000000000\r", link_bench_say("t201106", 3));
+    TEST_ASSERT_NULL(strstr(link_bench_say("t201106", 3), "t081"));
+    (void)link_bench_say("t20120600", 3);
+    assert_heard("t08181082000000000000\r", link_bench_say("t2010", 3));
+    TEST_ASSERT_EQUAL_STRING("4F03100002000000", link_bench_sdo("4003100000000000"));
+    TEST_ASSERT_EQUAL_STRING("6003100000000000", link_bench_sdo("2F03100000000000"));
+    TEST_ASSERT_EQUAL_STRING("4303100200000000", link_bench_sdo("4003100200000000"));
+}
+
+static void test_a_number_of_the_node_acts_when_communication_is_reset(void)
+{
+    link_bench_open();
+    (void)link_bench_sdo("2325210005000000"); /* node_id 5 */
+    TEST_ASSERT_EQUAL(5, (int)bench.application.chosen.node_id);
+    TEST_ASSERT_EQUAL_STRING("4325210005000000", link_bench_sdo("4025210000000000"));
+    assert_heard("t705100\r", link_bench_say("t00028201", 2));
+    TEST_ASSERT_EQUAL_STRING("", link_bench_sdo("4025210000000000"));
+    assert_heard("t5858", link_bench_say("t60584025210000000000", 2));
+}
+
 static void test_pdos_wait_for_sync(void)
 {
     link_bench_open();
@@ -186,9 +271,11 @@ static void type_any_frame(void)
     bench_type("\r");
 }
 
+static long inputs = 20000;
+
 static void test_whatever_comes_the_node_goes_on(void)
 {
-    for (int i = 0; i < 20000; i++) {
+    for (long i = 0; i < inputs; i++) {
         if (draw(8) == 0u) {
             char bytes[8];
 
@@ -210,8 +297,10 @@ static void test_whatever_comes_the_node_goes_on(void)
     TEST_ASSERT_EQUAL_STRING("4300100092010400", link_bench_sdo("4000100000000000"));
 }
 
-int main(void)
+/* An argument is how many inputs there are to be of any content. */
+int main(int count, char **arguments)
 {
+    inputs = count > 1 ? strtol(arguments[1], NULL, 10) : inputs;
     UNITY_BEGIN();
     RUN_TEST(test_an_open_channel_boots_the_node_and_silences_the_console);
     RUN_TEST(test_a_client_that_listens_is_answered_nothing);
@@ -219,10 +308,16 @@ int main(void)
     RUN_TEST(test_objects_are_read_at_once_or_in_segments);
     RUN_TEST(test_what_is_not_there_is_said_by_its_abort_code);
     RUN_TEST(test_a_setting_is_written_in_segments);
+    RUN_TEST(test_blocks_are_sent_acknowledged_and_checked);
+    RUN_TEST(test_more_than_was_sent_is_not_acknowledged);
+    RUN_TEST(test_blocks_are_received_and_checked);
     RUN_TEST(test_a_setting_that_waits_is_refused_while_the_drive_is_ready);
     RUN_TEST(test_a_fault_is_an_emergency_and_stays_in_the_list);
     RUN_TEST(test_a_pdo_is_mapped_at_run_time_and_sent_when_it_changes);
     RUN_TEST(test_a_mapping_that_cannot_be_is_refused);
+    RUN_TEST(test_identifiers_that_the_bus_needs_are_not_to_be_had);
+    RUN_TEST(test_a_pdo_that_is_too_short_is_an_emergency_once);
+    RUN_TEST(test_a_number_of_the_node_acts_when_communication_is_reset);
     RUN_TEST(test_pdos_wait_for_sync);
     RUN_TEST(test_whatever_comes_the_node_goes_on);
     return UNITY_END();

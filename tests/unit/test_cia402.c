@@ -273,6 +273,107 @@ static void test_cyclic_positions_that_end_bring_it_to_rest(void)
     TEST_ASSERT_EQUAL(1, bench.application.drive.planner.underruns);
 }
 
+/* Periods until the reference rests. */
+static int rests_after(void)
+{
+    int periods = 0;
+
+    while (!rests() && periods < 20000) {
+        bench_period();
+        (void)bench_heard();
+        periods++;
+    }
+    return periods;
+}
+
+static int rests_after_quick_stop(unsigned option)
+{
+    setUp();
+    put(0x6084, 0, 4, 4 * TURN);
+    put(0x6085, 0, 4, 40 * TURN);
+    put(0x605a, 0, 2, option);
+    enable(3);
+    put(0x60ff, 0, 4, TURN);
+    bench_periods(2000);
+    put(0x6040, 0, 2, 0x0b);
+    bench_period();
+    return rests_after();
+}
+
+static void test_a_quick_stop_brakes_and_ends_as_its_option_says(void)
+{
+    const int slowly = rests_after_quick_stop(1);
+
+    bench_periods(400);
+    assert_state(0x07, get(0x6041));
+    bench_periods(200); /* the rotor comes to rest */
+    assert_state(0x40, get(0x6041));
+    TEST_ASSERT_TRUE(slowly > 2400 && slowly < 4000); /* a turn a second at 4 turns/s^2, 10 kHz */
+    const int quickly = rests_after_quick_stop(2);
+
+    bench_periods(600); /* the rotor comes to rest */
+    assert_state(0x40, get(0x6041));
+    TEST_ASSERT_LESS_THAN(500, quickly);
+    TEST_ASSERT_INT_WITHIN(50, slowly, rests_after_quick_stop(5));
+    bench_periods(600);
+    assert_state(0x07, get(0x6041));
+    TEST_ASSERT_INT_WITHIN(50, quickly, rests_after_quick_stop(6));
+    assert_state(0x07, get(0x6041));
+    (void)rests_after_quick_stop(0);
+    bench_periods(20);
+    assert_state(0x40, get(0x6041));
+    TEST_ASSERT_EQUAL(DRIVE_SWITCH_ON_DISABLED, bench.application.drive.supervision.state);
+}
+
+static void test_a_speed_falls_with_the_deceleration(void)
+{
+    put(0x6083, 0, 4, 40 * TURN);
+    put(0x6084, 0, 4, 4 * TURN);
+    enable(3);
+    put(0x60ff, 0, 4, TURN);
+    bench_periods(600);
+    TEST_ASSERT_INT_WITHIN(10, TURN, (int)get(0x606b));
+    put(0x60ff, 0, 4, 0);
+    bench_period();
+    TEST_ASSERT_GREATER_THAN(2000, rests_after());
+}
+
+static void test_a_halt_brakes_as_its_option_says(void)
+{
+    int periods[2];
+
+    for (unsigned option = 1; option <= 2; option++) {
+        setUp();
+        put(0x6084, 0, 4, 4 * TURN);
+        put(0x6085, 0, 4, 40 * TURN);
+        put(0x605d, 0, 2, option);
+        enable(3);
+        put(0x60ff, 0, 4, TURN);
+        bench_periods(2000);
+        put(0x6040, 0, 2, 0x10f);
+        bench_period();
+        periods[option - 1] = rests_after();
+    }
+    TEST_ASSERT_GREATER_THAN(2400, periods[0]);
+    TEST_ASSERT_LESS_THAN(500, periods[1]);
+}
+
+/* Rated current 3 A, 0.17 Nm/A, of the bench. */
+static void test_torque_is_limited_in_thousandths_of_the_rated_one(void)
+{
+    const struct motor_params *motor = &bench.application.drive.settings.motor;
+
+    TEST_ASSERT_EQUAL((int)(1e3 * motor->rated_current_A + 0.5), get(0x6075));
+    TEST_ASSERT_EQUAL((int)(1e3 * motor->rated_current_A * motor->torque_constant_Nm_A + 0.5),
+                      get(0x6076));
+    enable(1);
+    put(0x6072, 0, 2, 500);
+    TEST_ASSERT_TRUE(bench.application.chosen.current_limit_A == 0.5 * motor->rated_current_A);
+    bench_periods(20);
+    TEST_ASSERT_EQUAL(500, get(0x6072));
+    TEST_ASSERT_EQUAL_STRING("8072600030000906", link_bench_sdo("2B726000E8FF0000"));
+}
+
 static void test_homing_makes_here_the_offset(void)
 {
     enable(6);
@@ -295,6 +396,77 @@ static void test_a_lost_heartbeat_stops_and_switches_off(void)
     assert_state(0x07, get(0x6041));
     bench_periods(3000);
     assert_state(0x40, get(0x6041));
+}
+
+/* What it had lost comes back: its emergency is over, which another one says. */
+static void test_a_heartbeat_that_comes_back_ends_its_emergency(void)
+{
+    put(0x1016, 1, 4, 0x00050014);
+    (void)link_bench_say("t705105", 1);
+    TEST_ASSERT_NOT_NULL(strstr(link_bench_say("", 300), "t08183081110000000000\r"));
+    TEST_ASSERT_EQUAL_HEX8(0x11, get(0x1001));
+    TEST_ASSERT_NOT_NULL(strstr(link_bench_say("t705105", 1), "t08180000000000000000\r"));
+    TEST_ASSERT_EQUAL_HEX8(0x00, get(0x1001));
+    put(0x1016, 1, 4, 0x00060014); /* of another node, which has not been heard yet */
+    bench_periods(400);
+    TEST_ASSERT_EQUAL_HEX8(0x00, get(0x1001));
+}
+
+static void test_a_quick_stop_that_stays_ends_when_the_heartbeat_is_lost(void)
+{
+    put(0x1016, 1, 4, 0x00050014);
+    put(0x605a, 0, 2, 6);
+    enable(1);
+    (void)link_bench_say("t705105", 1);
+    assert_state(0x07, control(0x0b));
+    bench_periods(400);
+    assert_state(0x40, get(0x6041));
+}
+
+static void turn(void)
+{
+    put(0x6085, 0, 4, 10 * TURN);
+    enable(3);
+    put(0x60ff, 0, 4, TURN);
+    bench_periods(2000);
+    TEST_ASSERT_FALSE(rests());
+}
+
+static void test_a_node_that_is_stopped_stops_and_switches_off(void)
+{
+    turn();
+    (void)link_bench_say("t00020201", 1);
+    bench_periods(3000);
+    TEST_ASSERT_EQUAL(DRIVE_SWITCH_ON_DISABLED, bench.application.drive.supervision.state);
+}
+
+static void test_communication_that_is_reset_leaves_nothing_moving(void)
+{
+    turn();
+    (void)link_bench_say("t00028201", 1);
+    bench_periods(3000);
+    TEST_ASSERT_TRUE(rests());
+    assert_state(0x23, get(0x6041));
+}
+
+static void test_a_client_that_only_listens_stops_nothing(void)
+{
+    turn();
+    (void)link_bench_say("C", 1);
+    (void)link_bench_say("L", 1);
+    bench_periods(3000);
+    TEST_ASSERT_FALSE(rests());
+}
+
+static void test_homing_that_the_drive_refuses_is_an_error(void)
+{
+    put(0x6092, 1, 4, 1); /* a turn is one unit */
+    enable(6);
+    put(0x607c, 0, 4, INT32_MAX);
+    TEST_ASSERT_EQUAL_HEX16(0x2400, control(0x1f) & 0x3400u);
+    put(0x607c, 0, 4, 0);
+    (void)control(0x0f);
+    TEST_ASSERT_EQUAL_HEX16(0x1400, control(0x1f) & 0x3400u);
 }
 
 static void test_a_channel_that_closes_is_a_heartbeat_lost(void)
@@ -331,8 +503,18 @@ int main(void)
     RUN_TEST(test_cyclic_positions_are_followed);
     RUN_TEST(test_cyclic_positions_that_do_not_come_are_made_up_for);
     RUN_TEST(test_cyclic_positions_that_end_bring_it_to_rest);
+    RUN_TEST(test_a_quick_stop_brakes_and_ends_as_its_option_says);
+    RUN_TEST(test_a_speed_falls_with_the_deceleration);
+    RUN_TEST(test_a_halt_brakes_as_its_option_says);
+    RUN_TEST(test_torque_is_limited_in_thousandths_of_the_rated_one);
     RUN_TEST(test_homing_makes_here_the_offset);
     RUN_TEST(test_a_lost_heartbeat_stops_and_switches_off);
+    RUN_TEST(test_a_heartbeat_that_comes_back_ends_its_emergency);
+    RUN_TEST(test_a_quick_stop_that_stays_ends_when_the_heartbeat_is_lost);
+    RUN_TEST(test_a_node_that_is_stopped_stops_and_switches_off);
+    RUN_TEST(test_communication_that_is_reset_leaves_nothing_moving);
+    RUN_TEST(test_a_client_that_only_listens_stops_nothing);
+    RUN_TEST(test_homing_that_the_drive_refuses_is_an_error);
     RUN_TEST(test_a_channel_that_closes_is_a_heartbeat_lost);
     RUN_TEST(test_a_lost_sync_stops_and_switches_off);
     return UNITY_END();
