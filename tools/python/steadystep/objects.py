@@ -1,0 +1,93 @@
+"""A client's access to a drive's objects over SDO: one at a time, and errors in words."""
+import contextlib
+import logging
+import threading
+from typing import Any, Iterator
+
+import canopen
+from canopen.objectdictionary import ODVariable
+from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError, SdoError
+
+from .byte_line import ByteLine
+from .dictionary import EDS
+from .errors import LostLink, Refused, WrongPort
+from .text_bus import TextBus
+
+logging.getLogger("canopen").addHandler(logging.NullHandler())  # what it says is raised here
+
+OUT_OF_RANGE, WRONG_STATE, STORE_FAILED = 0x06090030, 0x08000022, 0x06060000
+RESPONSE_S, TRIES = 0.5, 2
+
+Number = bool | int | float | str
+
+
+class OutOfRange(Refused):
+    """The value of an object."""
+
+
+class Objects:
+    """A node on a line. Threads take turns."""
+
+    def __init__(self, line: ByteLine, node: int) -> None:
+        self.number = node
+        self.bus = TextBus(line)
+        self.network = canopen.Network(self.bus)
+        self.node = canopen.RemoteNode(node, str(EDS))
+        self.network.add_node(self.node)
+        self.network.NOTIFIER_CYCLE = 0.1  # closing waits for so long
+        self.network.connect()
+        self.node.sdo.RESPONSE_TIMEOUT, self.node.sdo.MAX_RETRIES = RESPONSE_S, TRIES
+        self._lock = threading.RLock()
+        try:
+            self.read(0x1000)
+        except LostLink:
+            heard = sorted(set(self.network.scanner.nodes))
+            self.close()
+            raise WrongPort(f"{line.place}: node {node} does not answer; heard: "
+                            f"{', '.join(map(str, heard)) or 'none'}") from None
+
+    def close(self) -> None:
+        self.network.disconnect()
+
+    @property
+    def entries(self) -> Any:
+        return self.node.object_dictionary
+
+    def _variable(self, index: int, sub: int) -> Any:
+        entry = self.node.sdo[index]
+        return entry if isinstance(entry.od, ODVariable) else entry[sub]
+
+    def read(self, index: int, sub: int = 0) -> Any:
+        with self.transfer():
+            return self._variable(index, sub).raw
+
+    def write(self, index: int, value: Number, sub: int = 0) -> None:
+        with self.transfer():
+            self._variable(index, sub).raw = value
+
+    @contextlib.contextmanager
+    def transfer(self) -> Iterator[None]:
+        """Raises LostLink, OutOfRange or Refused for what python-canopen does."""
+        with self._lock:
+            try:
+                yield
+            except SdoAbortedError as error:
+                raise self._refusal(error) from None
+            except (SdoCommunicationError, SdoError) as error:
+                raise self._loss(str(error)) from None
+
+    def _refusal(self, error: SdoAbortedError) -> Refused:
+        if error.code == OUT_OF_RANGE:
+            return OutOfRange("out of range")
+        if error.code == WRONG_STATE:
+            return Refused("not in the state that the drive is in")
+        if error.code == STORE_FAILED:
+            return Refused("it could not be stored; not while a sine or set-points go on")
+        return Refused(str(error))
+
+    def _loss(self, said: str) -> LostLink:
+        if self.bus.lost:
+            return self.bus.lost
+        if self.bus.restarted:
+            return LostLink(f"{self.bus.channel_info}: the drive has restarted; connect anew")
+        return LostLink(f"{self.bus.channel_info}: the drive does not answer any more: {said}")
