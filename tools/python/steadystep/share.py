@@ -2,6 +2,7 @@
 adapter on the same bus. What one sends, the others hear. SDO has one server, so that transfers take turns,
 and an answer goes to who has asked. The drive's channel stays open when a program goes."""
 import collections
+import contextlib
 import os
 import pathlib
 import select
@@ -149,10 +150,14 @@ class Share:
         self._bus = TextBus(line)  # opens the channel; from here on its line is read here
         self._run(self._hear_drive)
         self.tcp_port = 0
-        if link:
-            self._serve(TerminalLine(link))
-        if tcp_port is not None:
-            self._listen(tcp_port)
+        try:
+            if link:
+                self._serve(TerminalLine(link))
+            if tcp_port is not None:
+                self._listen(tcp_port)
+        except WrongPort:
+            self.close()
+            raise
 
     def _run(self, work: object, *arguments: object) -> None:
         threading.Thread(target=work, args=arguments, daemon=True).start()  # type: ignore[arg-type]
@@ -188,6 +193,8 @@ class Share:
         """The drive's channel, and that of everybody."""
         self._ended = True
         if self._listener:
+            with contextlib.suppress(OSError):
+                self._listener.shutdown(socket.SHUT_RDWR)  # ends the accept() that it is in
             self._listener.close()
         with self._lock:
             for client in self._clients:

@@ -60,7 +60,8 @@ class Simulated:
         given = ["--set", f"motor={motor}"] if motor else []
         command = [find_simulator(program), "serve", "--tcp", "0", "--knobs-tcp", "0", *given, *arguments]
         try:
-            self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                            start_new_session=True)  # an interrupt is for who has started it
         except OSError as error:
             raise SteadystepError(f"{command[0]}: {error.strerror}") from None
         assert self.process.stdout

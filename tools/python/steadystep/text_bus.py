@@ -64,6 +64,7 @@ class TextBus(can.BusABC):
             self._open()
         except WrongPort:
             super().shutdown()
+            line.close()
             raise
 
     def _ask(self, command: bytes, answers: tuple[bytes, ...]) -> bool:

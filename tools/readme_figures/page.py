@@ -1,0 +1,15 @@
+"""The pictures of the page."""
+from comparison.simulator import ROOT
+from readme_figures.registry import Cost, entry
+
+STATIC = ROOT / "tools/python/steadystep/page/static"
+
+
+def what_is_drawn(_):
+    return "".join(path.read_text(encoding="utf-8") for path in sorted(STATIC.iterdir()))
+
+
+@entry("picture-page", "tools/page_pictures", Cost.CAMPAIGN, probe=(what_is_drawn,), picture="page.png")
+def page_pictures(sources):
+    sources.tool("page_pictures", sources.program)
+    return {}
