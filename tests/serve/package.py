@@ -8,8 +8,9 @@ import pathlib
 import sys
 import tempfile
 import time
+import tomllib
 
-from operated import Simulated, refusal, steadystep
+from operated import PACKAGE, Simulated, refusal, steadystep
 from served import Checks, Served
 
 CHECKS = Checks()
@@ -149,6 +150,12 @@ def a_terminal_serves_as_well():
         CHECKS.that("drive" in refusal(lambda: drive.state, steadystep.LostLink), "whose end is noticed")
 
 
+def its_version_is_that_of_the_drive():
+    project = tomllib.loads((PACKAGE / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    CHECKS.that(project["version"] == steadystep.dictionary().version, project["version"])
+
+
+its_version_is_that_of_the_drive()
 with tempfile.TemporaryDirectory() as scratch, Simulated(program=SIL) as simulated:
     FOLDER = pathlib.Path(scratch)
     what_is_no_drive_is_said(simulated.place, FOLDER)

@@ -81,15 +81,6 @@ class TcpLine(ByteLine):
             raise WrongPort(f"{place}: {_reason(error)}; no drive is served there") from None
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
-    @classmethod
-    def of(cls, connected: socket.socket) -> "TcpLine":
-        """One that is connected already."""
-        line = cls.__new__(cls)
-        ByteLine.__init__(line, "tcp://%s:%d" % connected.getpeername()[:2])
-        connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        line._socket = connected
-        return line
-
     def read(self, timeout_s: float) -> bytes:
         try:
             if not select.select([self._socket], [], [], timeout_s)[0]:

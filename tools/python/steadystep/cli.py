@@ -7,12 +7,12 @@ import sys
 import time
 from typing import Callable, Sequence
 
+from .cli_words import PORT, parser
 from .dictionary import Value, dictionary
 from .drive import Drive
 from .errors import DriveFault, LostLink, SteadystepError, TimedOut, WrongPort, WrongVersion
 from .settings_text import line_of
 
-PORT = "STEADYSTEP_PORT"
 HELD, NOT_DONE, BAD_INPUT = 0, 1, 2
 
 Arguments = argparse.Namespace
@@ -234,78 +234,6 @@ SETTINGS_COMMANDS: dict[str, Callable[[Drive, Arguments], object]] = {
 OTHER_COMMANDS: dict[str, Callable[[Arguments], int | None]] = {
     "signals": show_signals, "motors": show_motors, "simulate": simulate, "share": share, "page": page,
 }
-
-
-def parser() -> argparse.ArgumentParser:
-    top = argparse.ArgumentParser(prog="steadystep", description="Operates a steadystep drive.")
-    top.add_argument("--port", help=f"serial port, pseudo-terminal or tcp://127.0.0.1:PORT; else {PORT}, or the "
-                                    "only serial adapter there is")
-    top.add_argument("--node", type=int, default=1, help="the drive's number on a bus (1)")
-    top.add_argument("--any-version", action="store_true", help="go on with a drive of another version")
-    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
-
-    def add(name: str, about: str, into: "argparse._SubParsersAction[argparse.ArgumentParser]" = commands
-            ) -> argparse.ArgumentParser:
-        return into.add_parser(name, help=about, description=about)
-
-    add("state", "state and every signal")
-    add("faults", "the fault, and the last ones: cause, and what to do")
-    one = add("settings", "get, set, export, import, motor, defaults")
-    settings = one.add_subparsers(dest="settings_command", required=True, metavar="WHAT")
-    add("get", "these, or all", settings).add_argument("names", nargs="*")
-    one = add("set", "one; `default` takes it back", settings)
-    one.add_argument("name")
-    one.add_argument("value")
-    add("export", "all of them as text", settings).add_argument("file", nargs="?", default="-")
-    add("import", "from such a text what differs", settings).add_argument("file")
-    add("motor", "those of a motor of the library", settings).add_argument("motor")
-    add("defaults", "all but the motor's back", settings)
-    add("store", "settings and what was learned, to flash")
-    one = add("enable", "until it is ready")
-    one.add_argument("--reset", action="store_true", help="a fault, first")
-    one.add_argument("--timeout", type=float, default=10.0)
-    add("disable", "opens the bridge")
-    add("reset", "a fault; the bridge stays open")
-    add("stop", "to rest, quickly, and holds")
-    one = add("move", "to a position")
-    one.add_argument("position_rad", type=float)
-    one.add_argument("--relative", action="store_true")
-    one.add_argument("--speed", type=float, metavar="RAD_S")
-    one.add_argument("--timeout", type=float, default=60.0)
-    one.add_argument("--no-wait", action="store_true")
-    two = add("velocity", "a speed for ever")
-    two.add_argument("speed_rad_s", type=float)
-    for each in (one, two):
-        each.add_argument("--acceleration", type=float, metavar="RAD_S2")
-        each.add_argument("--enable", action="store_true", help="first")
-    add("set-position", "the axis, at rest, is here").add_argument("position_rad", type=float)
-    one = add("command", "any of the dictionary")
-    one.add_argument("name")
-    one.add_argument("parameters", nargs="*", metavar="NAME=VALUE")
-    one = add("capture", "signals over time, to .csv, .parquet or .mcap")
-    one.add_argument("signals", nargs="+")
-    one.add_argument("--duration", type=float, default=1.0, metavar="S")
-    one.add_argument("--rate", type=float, default=100.0, metavar="HZ")
-    one.add_argument("--out", required=True)
-    add("signals", "what there is to capture")
-    add("motors", "the library's")
-    one = add("simulate", "a simulated drive, until interrupted")
-    two = add("page", "the page, on loopback")
-    three = add("share", "the drive for several programs, until interrupted")
-    for each in (one, two):
-        each.add_argument("--motor", help="of the library, or a file")
-        each.add_argument("--simulator", help="steadystep-sil")
-    one.add_argument("--link", default="/tmp/steadystep", help="of the drive; its knobs: with -knobs behind it")
-    one.add_argument("more", nargs="*", help="behind --: options of steadystep-sil serve")
-    two.add_argument("--simulate", action="store_true", help="with a simulated drive of its own")
-    two.add_argument("--http", type=int, default=0, metavar="PORT", help="of the page; 0: a free one")
-    two.add_argument("--open", action="store_true", help="in the browser")
-    two.add_argument("--knobs", help="tcp://127.0.0.1:PORT of a simulated drive that is served elsewhere")
-    for each in (two, three):
-        each.add_argument("--link", help="pseudo-terminal for another program",
-                          default="/tmp/steadystep" if each is three else None)
-        each.add_argument("--tcp", type=int, default=0, help="port for any number of others; 0: a free one")
-    return top
 
 
 def run(arguments: Arguments) -> int:

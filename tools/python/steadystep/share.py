@@ -4,72 +4,20 @@ and an answer goes to who has asked. The drive's channel stays open when a progr
 import collections
 import contextlib
 import os
-import pathlib
-import select
 import socket
 import threading
 import time
 
-from .byte_line import ByteLine, PairedLine, TcpLine
+from .byte_line import ByteLine, PairedLine
 from .errors import LostLink, WrongPort
+from .program_lines import ProgramLine, TerminalLine
+from .sdo_turns import Turns
 from .text_bus import Pieces, TextBus
 
 SILENCE_S = 0.6  # behind which a transfer is over
 REQUEST, RESPONSE, HEARTBEAT, NODE_BITS = 0x600, 0x580, 0x700, 0x07F
 NMT_STATES = {1: 0x05, 2: 0x04, 0x80: 0x7F}  # by the command that brings about each
-ABORT, BLOCK_END = 0x80, 0xA1
 ANSWERS = {b"V": b"V1010\r", b"N": b"N0001\r", b"F": b"F00\r"}
-
-
-class TerminalLine(ByteLine):
-    """The inner end of a pseudo-terminal, with a link to the other. It is quiet while nobody has that open."""
-
-    def __init__(self, link: str) -> None:
-        import termios
-        import tty
-
-        super().__init__(link)
-        self._inner, outer = os.openpty()
-        tty.setraw(outer, termios.TCSANOW)
-        os.set_blocking(self._inner, False)
-        path = pathlib.Path(link)
-        try:
-            if path.is_symlink():
-                path.unlink()
-            path.symlink_to(os.ttyname(outer))
-        except OSError as error:
-            raise WrongPort(f"{link}: {error.strerror}") from None
-        finally:
-            os.close(outer)
-        self._path = path
-        self.closed = False
-
-    def read(self, timeout_s: float) -> bytes:
-        """Raises LostLink while nobody is there."""
-        waiting = select.poll()
-        waiting.register(self._inner, select.POLLIN)
-        events = waiting.poll(1000 * timeout_s)
-        if self.closed:
-            raise LostLink(f"{self.place}: closed")
-        if events and not events[0][1] & select.POLLIN:
-            time.sleep(min(timeout_s, 0.05))
-            raise LostLink(f"{self.place}: nobody has it open")
-        try:
-            return os.read(self._inner, 65536) if events else b""
-        except OSError as error:
-            raise LostLink(f"{self.place}: {error}") from None
-
-    def write(self, data: bytes) -> None:
-        try:
-            os.write(self._inner, data)
-        except OSError:
-            pass  # lost, as on a wire that nobody reads
-
-    def close(self) -> None:
-        if not self.closed:
-            self.closed = True
-            self._path.unlink(missing_ok=True)
-            os.close(self._inner)
 
 
 class Client:
@@ -86,53 +34,6 @@ class Client:
             self.open = False
 
 
-class Turns:
-    """Whose transfer a node's SDO server is in, and who waits for it."""
-
-    def __init__(self) -> None:
-        self.owner: Client | None = None
-        self.waiting: collections.deque[tuple[Client, bytes]] = collections.deque()
-        self.heard_s = 0.0
-        self._request = 0
-        self._block = False
-
-    def take(self, client: Client, request: int) -> bool:
-        """false: another's turn."""
-        if self.owner not in (None, client):
-            return False
-        self.owner, self._request, self.heard_s = client, request, time.monotonic()
-        if request >> 5 in (5, 6):
-            self._block = True
-        if request == ABORT or (self._block and request == BLOCK_END):
-            self._end()
-        return True
-
-    def hear(self, response: int) -> None:
-        self.heard_s = time.monotonic()
-        if response == ABORT or (response == BLOCK_END and self._request >> 5 == 6):
-            self._end()
-        elif not self._block and self._ends(response):
-            self._end()
-
-    def _ends(self, response: int) -> bool:
-        kind = response >> 5
-        if kind == 2:  # upload begins: all of it, or segments
-            return bool(response & 2)
-        if kind == 0:  # of an upload's segments the last
-            return bool(response & 1)
-        if kind == 3:  # download begins
-            return bool(self._request & 2)
-        return bool(self._request & 1)
-
-    def _end(self) -> None:
-        self.owner, self._block = None, False
-
-    def leave(self, client: Client) -> None:
-        if self.owner is client:
-            self._end()
-        self.waiting = collections.deque(one for one in self.waiting if one[0] is not client)
-
-
 class Share:
     """`line` is the drive's. `link`: path of a pseudo-terminal, `tcp_port`: on 127.0.0.1, for any number of
     programs, 0: a free one; None: neither."""
@@ -140,7 +41,7 @@ class Share:
     def __init__(self, line: ByteLine, link: str | None = None, tcp_port: int | None = None) -> None:
         self._line = line
         self._clients: list[Client] = []
-        self._turns: dict[int, Turns] = collections.defaultdict(Turns)
+        self._turns: dict[int, Turns[Client]] = collections.defaultdict(Turns)
         self._asks_console: Client | None = None
         self._nmt: dict[int, int] = {}  # states of the nodes that have been heard
         self._lock = threading.RLock()
@@ -173,7 +74,7 @@ class Share:
     def _accept(self, listener: socket.socket) -> None:
         while not self._ended:
             try:
-                self._serve(TcpLine.of(listener.accept()[0]))
+                self._serve(ProgramLine(listener.accept()[0]))
             except OSError:
                 return
 
@@ -273,7 +174,7 @@ class Share:
         except LostLink as error:
             self._lose(error)
 
-    def _next(self, turns: Turns) -> None:
+    def _next(self, turns: Turns[Client]) -> None:
         """The oldest of those that wait, now that it is nobody's turn."""
         if turns.owner is None and turns.waiting:
             client, text = turns.waiting.popleft()

@@ -4,9 +4,10 @@ import threading
 import time
 from typing import Any, Callable, Mapping
 
+from ..axis import state_of
 from ..byte_line import open_line
 from ..dictionary import dictionary
-from ..drive import Drive, state_of
+from ..drive import Drive
 from ..errors import LostLink, Refused, SteadystepError
 from ..share import Share
 from ..simulator import Knobs
