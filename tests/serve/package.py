@@ -25,8 +25,7 @@ def settings_go_out_and_come_back(drive):
     CHECKS.that(drive.settings["current_limit_A"] == 2.5, "it is in force")
     drive.settings.default("current_limit_A")
     CHECKS.that(drive.settings.export() == text, "taken back, all is as before")
-    drive.settings["law"] = "foc"
-    drive.settings.load("law_gains.rho_per_s = 100.0\n")
+    drive.settings.load('law_gains.rho_per_s = 100.0\nlaw = "foc"\n')
     CHECKS.that("law_gains.rho_per_s = 100.0\n" in drive.settings.export(), "gains by their names")
     drive.settings.load(text)
     drive.settings.default("law_gains")
@@ -43,10 +42,13 @@ def what_is_no_setting_is_refused(drive):
     before = drive.settings["current_limit_A"]
     for text, said in (("current_limit_A = 1.0\nlaw = best", "drive.toml:2: "),
                        ("current_limit_A = 1.0\n\nnode_id = 1000", "drive.toml:3: node_id"),
+                       ("current_limit_A = 1.0\ncurrent = 1.0", "drive.toml:2: current: no such setting"),
                        ("law_gains.nothing = 1.0", "drive.toml:1: law_gains.nothing")):
         found = refusal(lambda text=text: drive.settings.load(text, "drive.toml"))
         CHECKS.that(found.startswith(said), f"{text}: {found}")
-    drive.settings["current_limit_A"] = before
+        is_read = "node_id" in text  # it is the drive that refuses that
+        CHECKS.that((drive.settings["current_limit_A"] == before) != is_read, f"{text}: is read as a whole")
+        drive.settings["current_limit_A"] = before
 
 
 def it_moves(drive, knobs):
@@ -58,6 +60,10 @@ def it_moves(drive, knobs):
     CHECKS.that(abs(float(knobs.truth()["theta_rad"]) - 1.5) < 0.01, "the rotor goes to its target")
     drive.move(-0.5, relative=True, speed_rad_s=20, acceleration_rad_s2=2000)
     CHECKS.that(abs(drive.position_rad - 1.0) < 0.01, f"and on from there: {drive.position_rad}")
+    drive.move(1000.0, speed_rad_s=20, wait=False)
+    time.sleep(0.1)
+    drive.move(1.0, timeout_s=5)
+    CHECKS.that(abs(drive.position_rad - 1.0) < 0.01, "a newer target counts at once")
     drive.velocity(10, wait=True)
     CHECKS.that(abs(float(drive.read("omega_ref_rad_s")) - 10) < 0.1, "it turns at a speed")
     drive.stop()

@@ -15,8 +15,8 @@ TOPIC = "/drive"  # as layouts/ has it
 ROWS = 1000  # between two looks at the progress
 
 
-def _needs(package: str, suffix: str) -> SteadystepError:
-    return SteadystepError(f"{suffix} needs the package {package}: pip install {package}")
+def _needs(package: str, suffix: str, error: ImportError) -> SteadystepError:
+    return SteadystepError(f"{suffix} needs the package {package}, `pip install steadystep[{suffix[1:]}]`: {error}")
 
 
 def _cells(capture: "Capture", row: int) -> list[float]:
@@ -37,8 +37,8 @@ def _save_parquet(capture: "Capture", path: pathlib.Path, progress: Progress) ->
     try:
         import pyarrow
         import pyarrow.parquet
-    except ImportError:
-        raise _needs("pyarrow", ".parquet") from None
+    except ImportError as error:
+        raise _needs("pyarrow", ".parquet", error) from None
     fields = [pyarrow.field("time_s", pyarrow.float64(), metadata={"unit": "s"})]
     fields += [pyarrow.field(signal.name, pyarrow.float64(), metadata=_described(signal))
                for signal in capture.signals]
@@ -63,8 +63,8 @@ def _schema(capture: "Capture") -> dict[str, Any]:
 def _save_mcap(capture: "Capture", path: pathlib.Path, progress: Progress) -> None:
     try:
         from mcap.writer import Writer
-    except ImportError:
-        raise _needs("mcap", ".mcap") from None
+    except ImportError as error:
+        raise _needs("mcap", ".mcap", error) from None
     names = ["time_s", *(signal.name for signal in capture.signals)]
     with path.open("wb") as file:
         writer = Writer(file)
