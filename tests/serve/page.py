@@ -146,8 +146,11 @@ async def traces_come(client):
         await client.ask("POST", "/api/live", {"signals": ["bus_V"]})
         seen = [await live.receive_json(timeout=5) for _ in range(4)][-1]
         CHECKS.that(seen["signals"] == ["bus_V"] and abs(seen["values"][0] - 24) < 1, f"of others: {seen}")
-    status, made = await client.ask("POST", "/api/capture", {"signals": ["bus_V", "i_q_A"], "duration_s": 0.3,
-                                                             "rate_Hz": 100})
+    async with client.live() as live:
+        status, made = await client.ask("POST", "/api/capture", {"signals": ["bus_V", "i_q_A"], "duration_s": 0.3,
+                                                                 "rate_Hz": 100})
+        shown = [message.get("capturing") for message in [await live.receive_json(timeout=5) for _ in range(8)]]
+    CHECKS.that(1.0 in shown, f"how far it is is shown: {shown}")
     CHECKS.that(status == 200 and len(made["columns"]["i_q_A"]) == len(made["time_s"]) > 5, f"captured: {made}")
     _, text = await client.ask("GET", "/api/capture.csv")
     CHECKS.that(text.startswith("time_s,bus_V,i_q_A"), text[:60])

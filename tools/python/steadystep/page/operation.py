@@ -13,7 +13,7 @@ from ..share import Share
 from ..simulator import Knobs
 
 SAMPLE_S, LOOK_S, RETRY_S = 0.05, 0.2, 1.0
-TRACES = 4
+TRACES, MOST_CAPTURE_S = 4, 600
 SHOWN = ["theta_est_rad", "omega_est_rad_s", "load_torque_est_Nm", "i_q_A"]  # at first
 
 Listener = Callable[[dict[str, Any]], None]
@@ -175,10 +175,21 @@ class Operation:
             drive.settings[setting] = value
 
     def capture(self, signals: list[str], duration_s: float, rate_Hz: float) -> Any:
-        """Live traces wait meanwhile."""
+        """Live traces wait meanwhile; how far it is comes in their place."""
+        if not 0 < duration_s <= MOST_CAPTURE_S:
+            raise Refused(f"duration_s: expected a number above 0, at most {MOST_CAPTURE_S} s on the page")
+        shown_s = 0.0
+
+        def show(_: str, share: float) -> None:
+            nonlocal shown_s
+            if time.monotonic() - shown_s >= LOOK_S or share >= 1:
+                shown_s = time.monotonic()
+                for listener in list(self.listeners):
+                    listener({"capturing": share})
+
         self._capturing = True
         try:
-            return self.drive.capture(signals, duration_s, rate_Hz, progress=lambda *_: None)
+            return self.drive.capture(signals, duration_s, rate_Hz, progress=show)
         finally:
             self._capturing = False
 

@@ -108,7 +108,7 @@ function prepareCaptures(dictionary) {
         one("#capture-said").textContent = `${made.time_s.length} samples, ${made.rate_Hz.toFixed(0)} Hz`;
       } finally {
         button.disabled = false;
-        if (one("#capture-said").textContent === "capturing …") one("#capture-said").textContent = "";
+        if (one("#capture-said").textContent.startsWith("capturing")) one("#capture-said").textContent = "";
       }
     });
   };
@@ -117,6 +117,11 @@ function prepareCaptures(dictionary) {
     button.onclick = () => tried(async () =>
       download(`capture.${button.dataset.save}`, await file(`/api/capture.${button.dataset.save}`)));
   });
+}
+
+function showCapturing(share) {
+  const said = one("#capture-said");
+  if (said.textContent.startsWith("capturing")) said.textContent = `capturing … ${(100 * share).toFixed(0)} %`;
 }
 
 const turn = (line) => tried(async () => {
@@ -219,6 +224,7 @@ if (dictionary) {
   prepareGuide(dictionary);
   listen((message) => {
     if (message.status) showState(message.status);
-    page.live.take(message);
+    if ("capturing" in message) showCapturing(message.capturing);
+    else page.live.take(message);
   }, () => showState({ lost: "the server of this page does not answer", simulated: page.status?.simulated }));
 }
