@@ -9,7 +9,7 @@ import tempfile
 import threading
 
 from canopen_bus import Bus, wait_for
-from operated import CLIENTS, PACKAGE, Simulated, steadystep
+from operated import Simulated, environment, steadystep
 from served import Checks
 from steadystep.byte_line import open_line
 from steadystep.share import Share
@@ -20,9 +20,9 @@ SIL = sys.argv[1]
 
 def typed(port, *words, given=None):
     """Exit code, and what was said."""
-    environment = {**os.environ, "PYTHONPATH": f"{PACKAGE}:{CLIENTS}", "STEADYSTEP_PORT": port}
-    done = subprocess.run([sys.executable, "-m", "steadystep", *map(str, words)], env=environment, text=True,
-                          input=given, capture_output=True, timeout=60, check=False)
+    done = subprocess.run([sys.executable, "-m", "steadystep", *map(str, words)], text=True, input=given,
+                          env={**environment(), "STEADYSTEP_PORT": port}, capture_output=True, timeout=60,
+                          check=False)
     return done.returncode, done.stdout + done.stderr
 
 

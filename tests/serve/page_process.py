@@ -1,10 +1,9 @@
 """`steadystep page --simulate` as a process of a test."""
-import os
 import signal
 import subprocess
 import sys
 
-from operated import CLIENTS, PACKAGE
+from operated import environment
 
 SIL = sys.argv[1]
 
@@ -13,10 +12,9 @@ class Page:
     """Its address, its token, and where another program finds its drive."""
 
     def __init__(self, *arguments):
-        environment = {**os.environ, "PYTHONPATH": f"{PACKAGE}:{CLIENTS}"}
         self.process = subprocess.Popen(
             [sys.executable, "-m", "steadystep", "page", "--simulate", "--simulator", SIL, *arguments],
-            env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         address = self.process.stdout.readline().split()[1:]
         if not address:
             sys.exit(self.process.communicate()[1])

@@ -2,12 +2,11 @@
 
 usage: types_of_package.py SIL    (which it does not need)
 """
-import os
 import subprocess
 import sys
 
-from operated import CLIENTS, PACKAGE, ROOT
+from operated import PACKAGE, ROOT, environment
 
 done = subprocess.run([sys.executable, "-m", "mypy", "--cache-dir", str(ROOT / "build" / "mypy")], cwd=PACKAGE,
-                      env={**os.environ, "PYTHONPATH": str(CLIENTS)}, check=False)
+                      env=environment(), check=False)
 sys.exit(done.returncode)
