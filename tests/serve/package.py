@@ -7,11 +7,14 @@ import csv
 import pathlib
 import sys
 import tempfile
+import threading
 import time
 import tomllib
 
 from operated import PACKAGE, Simulated, refusal, steadystep
 from served import Checks, Served
+from steadystep import capture_in_drive
+from steadystep.capture import record
 
 CHECKS = Checks()
 SIL = sys.argv[1]
@@ -91,7 +94,7 @@ def it_captures(drive, folder):
     names = ["theta_est_rad", "load_torque_est_Nm", "i_q_A", "bus_V", "synchronism"]
     for count, least_Hz in ((3, 50), (5, 5)):  # the fourth real number comes by SDO
         drive.move(2.0, relative=True, wait=False, speed_rad_s=3)
-        made = drive.capture(names[:count], 0.4, 200)
+        made = drive.capture(names[:count], 0.4, 200, recorder=record)
         CHECKS.that(made.rate_Hz > least_Hz, f"{count} signals at {made.rate_Hz:.0f} Hz")
         CHECKS.that(made["theta_est_rad"][-1] - made["theta_est_rad"][0] > 0.3, "it shows the motion")
         drive.wait()
@@ -108,6 +111,30 @@ def it_captures(drive, folder):
     CHECKS.that(len(messages) == len(made) and messages[0][1].topic == "/drive", "and as MCAP")
     CHECKS.that("expected a name that ends with .csv" in refusal(lambda: made.save(folder / "a.xls")), "else")
     CHECKS.that("is it" in refusal(lambda: drive.capture(["theta_est"], 1)), "an unknown signal")
+
+
+def what_the_drive_records_itself(drive):
+    """Every interrupt, around the begin of a move, where the drive has that."""
+    if not capture_in_drive.is_there(drive.objects):
+        found = refusal(lambda: drive.capture(["period"], 0.1, trigger=steadystep.Trigger("reference_moving")))
+        CHECKS.that("knows no trigger" in found, found)
+        return
+    names = ["theta_ref_rad", "theta_est_rad", "reference_moving", "period", "fault"]
+    mover = threading.Timer(0.3, lambda: drive.move(1.0, relative=True, wait=False))
+    mover.start()
+    made = drive.capture(names, 0.1, 10000, trigger=steadystep.Trigger("reference_moving", before_s=0.01))
+    mover.join()
+    CHECKS.that(len(made) == 1000 and made.time_s[0] == -0.01 and abs(made.rate_Hz - 10000) < 1, f"{len(made)} samples")
+    periods = made["period"]
+    CHECKS.that(all(b - a == 1 for a, b in zip(periods, periods[1:])), "none is left out")
+    begin = made["reference_moving"].index(1.0)
+    CHECKS.that(abs(made.time_s[begin]) <= 1e-4, f"the time counts from the trigger: {made.time_s[begin]}")
+    drive.wait()
+    found = refusal(lambda: drive.capture(names, 10, 10000, trigger=steadystep.Trigger("reference_moving")))
+    CHECKS.that("memory does not hold 100000 samples" in found, found)
+    found = refusal(lambda: drive.capture(["period"], 0.1, trigger=steadystep.Trigger("reference_moving", timeout_s=0.1)),
+                    steadystep.TimedOut)
+    CHECKS.that("reference_moving has not risen above 0.5 within 0.1 s" in found, found)
 
 
 def a_fault_is_in_words(drive, knobs):
@@ -170,6 +197,7 @@ with tempfile.TemporaryDirectory() as scratch, Simulated(program=SIL) as simulat
         what_is_no_setting_is_refused(DRIVE)
         it_moves(DRIVE, simulated.knobs)
         it_captures(DRIVE, FOLDER)
+        what_the_drive_records_itself(DRIVE)
         a_fault_is_in_words(DRIVE, simulated.knobs)
         a_lost_link_is_said(DRIVE, simulated.knobs)
 a_terminal_serves_as_well()

@@ -7,9 +7,10 @@
     drive.capture(["theta_est_rad"], duration_s=1).save("move.csv")
 """
 from .capture import Capture
+from .capture_in_drive import Trigger
 from .dictionary import dictionary
 from .drive import Drive
 from .errors import DriveFault, LostLink, Refused, SteadystepError, TimedOut, WrongPort, WrongVersion
 
-__all__ = ["Capture", "Drive", "DriveFault", "LostLink", "Refused", "SteadystepError", "TimedOut",
+__all__ = ["Capture", "Drive", "DriveFault", "LostLink", "Refused", "SteadystepError", "TimedOut", "Trigger",
            "WrongPort", "WrongVersion", "dictionary"]

@@ -147,8 +147,9 @@ class Axis:
 
     def _profile(self, speed_rad_s: float | None, acceleration_rad_s2: float | None) -> None:
         for index, name, value in ((0x6081, "speed_rad_s", speed_rad_s),
-                                   (0x6083, "acceleration_rad_s2", acceleration_rad_s2)):
-            if value is not None:
+                                   (0x6083, "acceleration_rad_s2", acceleration_rad_s2),
+                                   (0x6084, "acceleration_rad_s2", acceleration_rad_s2)):
+            if value is not None and index in self.objects.entries:  # 6084h: not of every version
                 units = round(value / self._unit_rad) if math.isfinite(value) else 0
                 if not 0 < units < 2**32:
                     raise Refused(f"{name}: expected a number above 0, got {value:g}")

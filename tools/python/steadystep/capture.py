@@ -1,6 +1,6 @@
-"""Signals over time. Today a host polls: each SYNC asks for one sample, which the drive sends as process data,
-all of one period; what does not fit into that is read by SDO behind it. A recorder that uploads what the
-drive has recorded by itself has the same shape."""
+"""Signals over time, as the host polls them: each SYNC asks for one sample, which the drive sends as process data,
+all of one period; what does not fit into that is read by SDO behind it. What the drive records by itself is
+in capture_in_drive.py."""
 import dataclasses
 import pathlib
 import threading

@@ -73,7 +73,7 @@ def _save_mcap(capture: "Capture", path: pathlib.Path, progress: Progress) -> No
                                         json.dumps(_schema(capture)).encode())
         channel = writer.register_channel(TOPIC, "json", schema)
         for row in range(len(capture)):
-            at = round(1e9 * capture.time_s[row])
+            at = round(1e9 * (capture.time_s[row] - capture.time_s[0]))
             message = json.dumps(dict(zip(names, _cells(capture, row)))).encode()
             writer.add_message(channel, at, message, at)
             if row % ROWS == 0:

@@ -7,6 +7,7 @@ import sys
 import time
 from typing import Callable, Sequence
 
+from .capture_in_drive import Trigger
 from .cli_words import PORT, parser
 from .dictionary import Value, dictionary
 from .drive import Drive
@@ -157,7 +158,9 @@ def give_command(drive: Drive, arguments: Arguments) -> None:
 
 
 def capture(drive: Drive, arguments: Arguments) -> None:
-    made = drive.capture(arguments.signals, arguments.duration, arguments.rate, progress=Bar())
+    trigger = Trigger(arguments.trigger, arguments.level, not arguments.falling, arguments.before) \
+        if arguments.trigger else None
+    made = drive.capture(arguments.signals, arguments.duration, arguments.rate, trigger=trigger, progress=Bar())
     made.save(arguments.out, Bar())
     print(f"{arguments.out}: {len(made)} samples, {made.rate_Hz:.4g} Hz")
 

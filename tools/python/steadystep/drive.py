@@ -2,9 +2,11 @@
 from types import TracebackType
 from typing import Sequence
 
+from . import capture_in_drive
 from .axis import Axis
 from .byte_line import ByteLine, open_line
 from .capture import Capture, Recorder, record
+from .capture_in_drive import Trigger
 from .dictionary import dictionary
 from .errors import Refused, WrongVersion
 from .objects import Objects
@@ -59,12 +61,23 @@ class Drive(Axis):
 
     # ---- captures ----
 
-    def capture(self, signals: Sequence[str], duration_s: float, rate_Hz: float = 100.0, *,
-                recorder: Recorder | None = None, progress: Progress = unseen) -> Capture:
-        """These signals over a time. `recorder`: how; else as quickly as the link allows, up to rate_Hz."""
+    def capture(self, signals: Sequence[str], duration_s: float, rate_Hz: float = 1000.0, *,
+                trigger: Trigger | None = None, recorder: Recorder | None = None,
+                progress: Progress = unseen) -> Capture:
+        """These signals over a time. `recorder`: how; else the drive records them by itself, at rate_Hz, or, if it cannot or
+        has not the memory, they are asked for as quickly as the link allows, up to rate_Hz."""
         rows = [self.known.signal(name) for name in signals]
         if not rows or not 0 < duration_s <= 86400 or not 0 < rate_Hz <= 1e5:
             raise Refused("capture: expected signals, a duration of up to 86400 s and a rate of up to 100000 Hz")
+        if recorder is None and capture_in_drive.is_there(self.objects):
+            try:
+                return capture_in_drive.record_in_drive(self.objects, rows, duration_s, rate_Hz, CONTROL_PERIOD_S,
+                                                        progress, trigger)
+            except capture_in_drive.TooMuch:
+                if trigger:
+                    raise
+        if trigger:
+            raise Refused("capture: this drive records nothing by itself, and knows no trigger")
         return (recorder or record)(self.objects, rows, duration_s, rate_Hz, CONTROL_PERIOD_S, progress)
 
 
