@@ -121,6 +121,27 @@ async def stop_works(client):
     await client.act("disable")
 
 
+async def stop_waits_for_nobody(client):
+    """Another program is in the midst of a transfer, and does not go on."""
+    await client.act("enable")
+    await client.act("velocity", speed_rad_s=20)
+    await client.status(lambda now: now["moving"])
+    reader, writer = await asyncio.open_connection(*client.page.shared.removeprefix("tcp://").split(":"))
+    writer.write(b"O\rt60184010230000000000\r")
+    await reader.readuntil(b"t581841")
+    stopping = asyncio.create_task(client.act("stop"))
+    await asyncio.sleep(0.3)
+    _, said = await client.ask("POST", "/api/knob", {"line": "state"})
+    speed = float(said["said"].split("omega_rad_s=")[1].split()[0])
+    CHECKS.that(abs(speed) < 2, f"it is at rest by then: {speed} rad/s")
+    CHECKS.that(not stopping.done(), "while the transfer is still that program's")
+    await stopping
+    writer.close()
+    found = await client.status(lambda now: now["state"] != "OPERATION ENABLED", 2)
+    CHECKS.that(found["state"] in ("QUICK STOP ACTIVE", "SWITCH ON DISABLED"), f"it stays so: {found}")
+    await client.act("disable")
+
+
 async def settings_go_round(client):
     _, before = await client.ask("GET", "/api/settings")
     status, after = await client.ask("POST", "/api/settings", {"name": "current_limit_A", "value": 2.5})
@@ -179,6 +200,7 @@ async def main(page):
         await who_is_let_in(client)
         await it_is_operated(client)
         await stop_works(client)
+        await stop_waits_for_nobody(client)
         await settings_go_round(client)
         await traces_come(client)
         await what_breaks_is_said(client)

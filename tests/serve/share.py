@@ -39,6 +39,16 @@ def a_transfer_is_one_program_s_to_its_end():
         CHECKS.that(turns.owner is None and turns.take("second", 0x40), f"{name}: then it is its turn")
 
 
+def a_program_that_gives_up_is_not_served_later():
+    turns = Turns()
+    turns.take("first", 0x40)
+    for request in (0x40, 0x40):
+        turns.wait("second", request, b"again")
+    CHECKS.that(len(turns.waiting) == 1, "what it has asked before, it does not ask any more")
+    turns.wait("second", 0x80, b"")
+    CHECKS.that(not turns.waiting, "nor what it has given up")
+
+
 def a_program_that_goes_leaves_no_turn():
     turns = Turns()
     turns.take("first", 0x40)
@@ -67,6 +77,7 @@ def a_program_that_does_not_read_holds_up_nobody():
 
 
 a_transfer_is_one_program_s_to_its_end()
+a_program_that_gives_up_is_not_served_later()
 a_program_that_goes_leaves_no_turn()
 a_program_that_does_not_read_holds_up_nobody()
 CHECKS.end()

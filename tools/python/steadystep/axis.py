@@ -23,6 +23,7 @@ class Axis:
 
     def __init__(self, objects: Objects, known: Dictionary) -> None:
         self.objects, self.known = objects, known
+        self._seen_state = ""
         self._unit_rad = self._read_unit()
 
     def _read_unit(self) -> float:
@@ -57,7 +58,9 @@ class Axis:
 
     @property
     def status(self) -> int:
-        return int(self.objects.read(0x6041))
+        status = int(self.objects.read(0x6041))
+        self._seen_state = state_of(status)
+        return status
 
     @property
     def state(self) -> str:
@@ -213,12 +216,15 @@ class Axis:
             time.sleep(LOOK_S)
 
     def quick_stop(self) -> None:
-        """The same without waiting."""
-        if self.state == "OPERATION ENABLED":
+        """The same without waiting, not even for an SDO transfer that is under way: by process data first. If none
+        of those comes to its end in time, the drive ends switched off."""
+        if self._seen_state == "OPERATION ENABLED":
+            self.objects.send_controlword(QUICK_STOP)
+        if self.state in ("OPERATION ENABLED", "QUICK STOP ACTIVE"):
             self.objects.write(0x605A, 6)  # stays, and holds
             self._control(QUICK_STOP)
             self.objects.write(0x60FF, 0)  # what would go on when enabled
-        elif self.state != "QUICK STOP ACTIVE" and self.read("reference_moving"):
+        elif self.read("reference_moving"):
             self.command("stop")  # the console's motion
 
     def set_position(self, position_rad: float) -> None:

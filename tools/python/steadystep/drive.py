@@ -34,6 +34,7 @@ class Drive(Axis):
                 check_version(objects, self.version, line.place)
             super().__init__(objects, dictionary())
             self.settings = Settings(objects, self.known)
+            objects.node.nmt.state = "OPERATIONAL"  # as a stop by process data asks for
         except BaseException:
             objects.close()
             raise

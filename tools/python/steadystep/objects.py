@@ -2,7 +2,8 @@
 import contextlib
 import logging
 import threading
-from typing import Any, Iterator
+import time
+from typing import Any, Callable, Iterator
 
 import canopen
 from canopen.objectdictionary import ODVariable
@@ -16,9 +17,14 @@ from .text_bus import TextBus
 logging.getLogger("canopen").addHandler(logging.NullHandler())  # what it says is raised here
 
 OUT_OF_RANGE, WRONG_STATE, STORE_FAILED = 0x06090030, 0x08000022, 0x06060000
-RESPONSE_S, TRIES = 0.5, 2
+RESPONSE_S, TRIES = 0.5, 1
+PATIENCE_S, SILENCE_S = 10.0, 0.4  # with a server that serves another program; of a line that is dead
 
 Number = bool | int | float | str
+
+
+class NoAnswer(LostLink):
+    """To a request; the line may be alive."""
 
 
 class OutOfRange(Refused):
@@ -58,12 +64,25 @@ class Objects:
         return entry if isinstance(entry.od, ODVariable) else entry[sub]
 
     def read(self, index: int, sub: int = 0) -> Any:
-        with self.transfer():
-            return self._variable(index, sub).raw
+        return self._asked(lambda: self._variable(index, sub).raw)
 
     def write(self, index: int, value: Number, sub: int = 0) -> None:
-        with self.transfer():
-            self._variable(index, sub).raw = value
+        self._asked(lambda: setattr(self._variable(index, sub), "raw", value))
+
+    def _asked(self, work: Callable[[], Any]) -> Any:
+        """While others are heard, one that gets no answer waits for its turn."""
+        end = time.monotonic() + PATIENCE_S
+        while True:
+            try:
+                with self.transfer():
+                    return work()
+            except NoAnswer:
+                if time.monotonic() > end or time.monotonic() - self.bus.heard_s > SILENCE_S:
+                    raise
+
+    def send_controlword(self, word: int) -> None:
+        """By RPDO1, as it is mapped unless a client has mapped something else; then it is passed over."""
+        self.network.send_message(0x200 + self.number, word.to_bytes(2, "little"))
 
     @contextlib.contextmanager
     def transfer(self) -> Iterator[None]:
@@ -90,4 +109,4 @@ class Objects:
             return self.bus.lost
         if self.bus.restarted:
             return LostLink(f"{self.bus.channel_info}: the drive has restarted; connect anew")
-        return LostLink(f"{self.bus.channel_info}: the drive does not answer any more: {said}")
+        return NoAnswer(f"{self.bus.channel_info}: the drive does not answer any more: {said}")

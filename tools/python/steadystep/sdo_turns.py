@@ -31,6 +31,12 @@ class Turns(Generic[Client]):
             self._end()
         return True
 
+    def wait(self, client: Client, request: int, text: bytes) -> None:
+        """For its turn. One that asks anew, or gives up, does not want its earlier request any more."""
+        self.waiting = collections.deque(one for one in self.waiting if one[0] is not client)
+        if request != ABORT:
+            self.waiting.append((client, text))
+
     def hear(self, response: int) -> None:
         self.heard_s = time.monotonic()
         if self._block == BLOCK_UPLOAD and not self._request & 3 and response >> 5 == 2:

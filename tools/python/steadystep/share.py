@@ -154,7 +154,7 @@ class Share:
             if number & ~NODE_BITS == REQUEST:
                 turns = self._turns[number & NODE_BITS]
                 if not turns.take(client, request):
-                    turns.waiting.append((client, text))
+                    turns.wait(client, request, text)
                     return
                 self._next(turns)
             for other in self._clients:

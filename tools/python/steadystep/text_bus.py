@@ -58,6 +58,7 @@ class TextBus(can.BusABC):
         self._answer = ""
         self.lost: LostLink | None = None
         self.restarted = False
+        self.heard_s = time.monotonic()  # the last frame
         super().__init__(channel=line.place, **kwargs)
         self.channel_info = line.place
         try:
@@ -105,6 +106,7 @@ class TextBus(can.BusABC):
         for text, ending in self._pieces.of(data):
             frame = frame_of(text) if ending == b"\r" else None
             if frame is not None:
+                self.heard_s = time.monotonic()
                 self._frames.append(frame)
             elif ending == b"\n" and text.startswith(b"steadystep "):
                 self.restarted = True  # it announces itself on its console: the channel is closed
