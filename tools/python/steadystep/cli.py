@@ -149,7 +149,7 @@ def velocity(drive: Drive, arguments: Arguments) -> None:
     if arguments.enable:
         drive.enable(progress=Bar())
     drive.velocity(arguments.speed_rad_s, acceleration_rad_s2=arguments.acceleration)
-    print("goes on until stop, or velocity 0")
+    print("goes on until stop, or velocity 0; share the drive to look at it meanwhile")
 
 
 def give_command(drive: Drive, arguments: Arguments) -> None:
