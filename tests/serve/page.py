@@ -119,6 +119,8 @@ async def stop_works(client):
     found = await client.status(lambda now: now["state"] == "SWITCH ON DISABLED", 2)
     CHECKS.that(found["state"] in ("SWITCH ON DISABLED", "QUICK STOP ACTIVE"), f"an enabling ends: {found} {said}")
     await client.act("disable")
+    # what has been aligned in part swings for a while, and the drive wants a rotor at rest
+    await client.status(lambda now: abs(float(now["truth"]["omega_rad_s"])) < 0.05)
 
 
 async def stop_waits_for_nobody(client):

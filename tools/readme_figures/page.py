@@ -9,7 +9,13 @@ def what_is_drawn(_):
     return "".join(path.read_text(encoding="utf-8") for path in sorted(STATIC.iterdir()))
 
 
-@entry("picture-page", "tools/page_pictures", Cost.CAMPAIGN, probe=(what_is_drawn,), picture="page.png")
-def page_pictures(sources):
-    sources.tool("page_pictures", sources.program)
-    return {}
+def pictured(name):
+    @entry(f"picture-{name}", "tools/page_pictures", Cost.CAMPAIGN, probe=(what_is_drawn,), picture=f"{name}.png")
+    def draw(sources):
+        sources.tool("page_pictures", sources.program)
+        return {}
+    return draw
+
+
+pictured("page")
+pictured("page-narrow")
