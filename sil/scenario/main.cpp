@@ -31,6 +31,7 @@
 #include "sil/scenario/report.h"
 #include "sil/scenario/runner.h"
 #include "sil/scenario/settings_file.h"
+#include "sil/scenario/dictionary_json.h"
 #include "sil/scenario/pages.h"
 #include "sil/scenario/sweep.h"
 #include "sil/scenario/text.h"
@@ -465,6 +466,16 @@ int list_command(const Options &options)
     return complaints.empty() ? held : bad_input;
 }
 
+int dictionary_command(const Options &options)
+{
+    std::vector<Motor> motors;
+    for (const fs::path &file : options.catalogue().motors()) {
+        motors.push_back(read_motor(file));
+    }
+    print(dictionary_json(motors));
+    return held;
+}
+
 int check_motor_command(const Options &options)
 {
     const Catalogue catalogue = options.catalogue();
@@ -635,6 +646,8 @@ int run_program(int argc, char **argv)
     check_motor->add_flag("--json", options.json, "one array of motors, nothing else");
     CLI::App *list = app.add_subcommand(
         "list", "scenarios, sweeps, motors, parameter sets and laws, in one line each");
+    CLI::App *dictionary = app.add_subcommand(
+        "dictionary", "settings, commands, signals, faults and motors for programs, as JSON");
     for (const Page &page : pages()) {
         app.add_subcommand(page.name, page.about);
     }
@@ -649,6 +662,9 @@ int run_program(int argc, char **argv)
                 print(page.text());
                 return held;
             }
+        }
+        if (*dictionary) {
+            return dictionary_command(options);
         }
         if (*check_motor) {
             return check_motor_command(options);

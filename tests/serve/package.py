@@ -1,0 +1,204 @@
+"""The package `steadystep` operates a served drive: settings, motion, faults, captures, and what it says
+when something is wrong.
+
+usage: package.py SIL
+"""
+import csv
+import pathlib
+import sys
+import tempfile
+import threading
+import time
+import tomllib
+
+from operated import PACKAGE, Simulated, refusal, steadystep
+from served import Checks, Served
+from steadystep import capture_in_drive
+from steadystep.capture import record
+
+CHECKS = Checks()
+SIL = sys.argv[1]
+
+
+def settings_go_out_and_come_back(drive):
+    text = drive.settings.export()
+    CHECKS.that("current_limit_A = 3.0  # A\n" in text and 'law = "state-feedback"\n' in text, text)
+    changed = drive.settings.load(text.replace("current_limit_A = 3.0", "current_limit_A = 2.5"))
+    CHECKS.that(changed == ["current_limit_A"], f"only what differs is written: {changed}")
+    CHECKS.that(drive.settings["current_limit_A"] == 2.5, "it is in force")
+    drive.settings.default("current_limit_A")
+    CHECKS.that(drive.settings.export() == text, "taken back, all is as before")
+    drive.settings.load('law_gains.rho_per_s = 100.0\nlaw = "foc"\n')
+    CHECKS.that("law_gains.rho_per_s = 100.0\n" in drive.settings.export(), "gains by their names")
+    drive.settings.load(text)
+    drive.settings.default("law_gains")
+    CHECKS.that(drive.settings.export() == text, "and the law before")
+
+
+def what_is_no_setting_is_refused(drive):
+    for name, value, said in (("current_limit_A", 100.0, "0.01 × rated…2 × rated A, got 100.0"),
+                              ("law", "best", "one of state-feedback, pid"),
+                              ("curent_limit_A", 1.0, "is it current_limit_A"),
+                              ("rotor_teeth", 1.5, "a whole number"), ("feed_forward", 1, "true, false")):
+        found = refusal(lambda name=name, value=value: drive.settings.__setitem__(name, value))
+        CHECKS.that(said in found, f"{name} = {value}: {found}")
+    before = drive.settings["current_limit_A"]
+    for text, said in (("current_limit_A = 1.0\nlaw = best", "drive.toml:2: "),
+                       ("current_limit_A = 1.0\n\nnode_id = 1000", "drive.toml:3: node_id"),
+                       ("current_limit_A = 1.0\ncurrent = 1.0", "drive.toml:2: current: no such setting"),
+                       ("law_gains.nothing = 1.0", "drive.toml:1: law_gains.nothing")):
+        found = refusal(lambda text=text: drive.settings.load(text, "drive.toml"))
+        CHECKS.that(found.startswith(said), f"{text}: {found}")
+        is_read = "node_id" in text  # it is the drive that refuses that
+        CHECKS.that((drive.settings["current_limit_A"] == before) != is_read, f"{text}: is read as a whole")
+        drive.settings["current_limit_A"] = before
+
+
+def it_moves(drive, knobs):
+    CHECKS.that("enable it first" in refusal(lambda: drive.move(1.0)), "off it does not move")
+    seen = []
+    drive.enable(progress=lambda what, share: seen.append(share))
+    CHECKS.that(seen[-1] == 1.0 and len(seen) > 3, f"enabling shows its progress: {len(seen)}")
+    drive.move(1.5)
+    CHECKS.that(abs(float(knobs.truth()["theta_rad"]) - 1.5) < 0.01, "the rotor goes to its target")
+    drive.move(-0.5, relative=True, speed_rad_s=20, acceleration_rad_s2=2000)
+    CHECKS.that(abs(drive.position_rad - 1.0) < 0.01, f"and on from there: {drive.position_rad}")
+    drive.move(1000.0, speed_rad_s=20, wait=False)
+    time.sleep(0.1)
+    drive.move(1.0, timeout_s=5)
+    CHECKS.that(abs(drive.position_rad - 1.0) < 0.01, "a newer target counts at once")
+    drive.velocity(10, wait=True)
+    CHECKS.that(abs(float(drive.read("omega_ref_rad_s")) - 10) < 0.1, "it turns at a speed")
+    drive.stop()
+    CHECKS.that(drive.state == "QUICK STOP ACTIVE" and not drive.read("reference_moving"), "it stops")
+    CHECKS.that("enable it first" in refusal(lambda: drive.move(1.0)), "and stays so")
+    drive.enable()
+    time.sleep(0.1)
+    CHECKS.that(not drive.read("reference_moving"), "enabled again it does not go on")
+    drive.set_position(0.0)
+    drive.move(0.2, relative=True)
+    CHECKS.that(abs(drive.position_rad - 0.2) < 0.01, f"from a new zero: {drive.position_rad}")
+    drive.command("sine", amplitude_rad=0.1, frequency_Hz=5)
+    time.sleep(0.1)
+    CHECKS.that(drive.read("reference_moving") is True, "any command by its name")
+    drive.stop()
+    for parameters, said in (({"amplitude_rad": 0.1}, "frequency_Hz is missing"),
+                             ({"amplitude": 0.1}, "no parameter amplitude"),
+                             ({"amplitude_rad": 1e9, "frequency_Hz": 5}, "amplitude_rad: expected")):
+        found = refusal(lambda parameters=parameters: drive.command("sine", **parameters))
+        CHECKS.that(said in found, f"sine {parameters}: {found}")
+    drive.enable()
+
+
+def it_captures(drive, folder):
+    names = ["theta_est_rad", "load_torque_est_Nm", "i_q_A", "bus_V", "synchronism"]
+    for count, least_Hz in ((3, 50), (5, 5)):  # the fourth real number comes by SDO
+        drive.move(2.0, relative=True, wait=False, speed_rad_s=3)
+        made = drive.capture(names[:count], 0.4, 200, recorder=record)
+        CHECKS.that(made.rate_Hz > least_Hz, f"{count} signals at {made.rate_Hz:.0f} Hz")
+        CHECKS.that(made["theta_est_rad"][-1] - made["theta_est_rad"][0] > 0.3, "it shows the motion")
+        drive.wait()
+    CHECKS.that(0.2 < made.time_s[-1] < 0.6, f"in the drive's time: {made.time_s[-1]}")
+    CHECKS.that(abs(made["bus_V"][0] - 24) < 1, f"the supply: {made['bus_V'][0]}")
+    made.save(folder / "move.csv")
+    with (folder / "move.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    CHECKS.that(len(rows) == len(made) and set(rows[0]) == {"time_s", *names}, "written as CSV")
+    made.save(folder / "move.mcap")
+    from mcap.reader import make_reader
+    with (folder / "move.mcap").open("rb") as file:
+        messages = list(make_reader(file).iter_messages())
+    CHECKS.that(len(messages) == len(made) and messages[0][1].topic == "/drive", "and as MCAP")
+    CHECKS.that("expected a name that ends with .csv" in refusal(lambda: made.save(folder / "a.xls")), "else")
+    CHECKS.that("is it" in refusal(lambda: drive.capture(["theta_est"], 1)), "an unknown signal")
+
+
+def what_the_drive_records_itself(drive):
+    """Every interrupt, around the begin of a move, where the drive has that."""
+    if not capture_in_drive.is_there(drive.objects):
+        found = refusal(lambda: drive.capture(["period"], 0.1, trigger=steadystep.Trigger("reference_moving")))
+        CHECKS.that("knows no trigger" in found, found)
+        return
+    names = ["theta_ref_rad", "theta_est_rad", "reference_moving", "period", "fault"]
+    mover = threading.Timer(0.3, lambda: drive.move(1.0, relative=True, wait=False))
+    mover.start()
+    made = drive.capture(names, 0.1, 10000, trigger=steadystep.Trigger("reference_moving", before_s=0.01))
+    mover.join()
+    CHECKS.that(len(made) == 1000 and made.time_s[0] == -0.01 and abs(made.rate_Hz - 10000) < 1, f"{len(made)} samples")
+    periods = made["period"]
+    CHECKS.that(all(b - a == 1 for a, b in zip(periods, periods[1:])), "none is left out")
+    begin = made["reference_moving"].index(1.0)
+    CHECKS.that(abs(made.time_s[begin]) <= 1e-4, f"the time counts from the trigger: {made.time_s[begin]}")
+    drive.wait()
+    found = refusal(lambda: drive.capture(names, 10, 10000, trigger=steadystep.Trigger("reference_moving")))
+    CHECKS.that("memory does not hold 100000 samples" in found, found)
+    found = refusal(lambda: drive.capture(["period"], 0.1, trigger=steadystep.Trigger("reference_moving", timeout_s=0.1)),
+                    steadystep.TimedOut)
+    CHECKS.that("reference_moving has not risen above 0.5 within 0.1 s" in found, found)
+
+
+def a_fault_is_in_words(drive, knobs):
+    knobs.turn("plant.bus_V = 8")
+    time.sleep(0.2)
+    found = refusal(drive.wait, steadystep.DriveFault)
+    CHECKS.that(found.startswith("bus-voltage (0x3200): the supply is outside"), found)
+    CHECKS.that("supply_V to the supply's voltage" in drive.faults[0].remedy, "and what to do")
+    knobs.turn("plant.bus_V = 24")
+    drive.reset()
+    CHECKS.that(drive.state == "SWITCH ON DISABLED" and drive.fault is None, "it is reset")
+    drive.settings["torque_constant_Nm_A"] = 0.001
+    CHECKS.that("too little back-EMF" in refusal(drive.enable), "a refusal to be enabled, too")
+    drive.settings["torque_constant_Nm_A"] = 0.157
+
+
+def a_lost_link_is_said(drive, knobs):
+    knobs.turn('command = "power-cycle"')
+    time.sleep(0.1)
+    found = refusal(lambda: drive.state, steadystep.LostLink)
+    CHECKS.that("the drive has restarted; connect anew" in found, found)
+
+
+def what_is_no_drive_is_said(place, folder):
+    (folder / "file").write_text("")
+    for wrong, said in (("/dev/no-such", "No such file"), (str(folder / "file"), "no serial port"),
+                        ("tcp://127.0.0.1:1", "Connection refused"), ("tcp://here", "expected tcp://HOST:PORT")):
+        found = refusal(lambda wrong=wrong: steadystep.Drive(wrong), steadystep.WrongPort)
+        CHECKS.that(said in found, f"{wrong}: {found}")
+    found = refusal(lambda: steadystep.Drive(place, node=5), steadystep.WrongPort)
+    CHECKS.that("node 5 does not answer; heard: 1" in found, found)
+    known = steadystep.dictionary()
+    version, known.version = known.version, "9.9.0"
+    found = refusal(lambda: steadystep.Drive(place), steadystep.WrongVersion)
+    CHECKS.that("this package is for 9.9.0" in found, found)
+    steadystep.Drive(place, any_version=True).close()
+    known.version = version
+
+
+def a_terminal_serves_as_well():
+    with Served() as served, steadystep.Drive(str(served.link)) as drive:
+        drive.enable()
+        drive.move(0.5)
+        CHECKS.that(abs(drive.position_rad - 0.5) < 0.01, "on a pseudo-terminal")
+        served.end()
+        CHECKS.that("drive" in refusal(lambda: drive.state, steadystep.LostLink), "whose end is noticed")
+
+
+def its_version_is_that_of_the_drive():
+    project = tomllib.loads((PACKAGE / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    CHECKS.that(project["version"] == steadystep.dictionary().version, project["version"])
+
+
+its_version_is_that_of_the_drive()
+with tempfile.TemporaryDirectory() as scratch, Simulated(program=SIL) as simulated:
+    FOLDER = pathlib.Path(scratch)
+    what_is_no_drive_is_said(simulated.place, FOLDER)
+    with steadystep.Drive(simulated.place) as DRIVE:
+        settings_go_out_and_come_back(DRIVE)
+        what_is_no_setting_is_refused(DRIVE)
+        it_moves(DRIVE, simulated.knobs)
+        it_captures(DRIVE, FOLDER)
+        what_the_drive_records_itself(DRIVE)
+        a_fault_is_in_words(DRIVE, simulated.knobs)
+        a_lost_link_is_said(DRIVE, simulated.knobs)
+a_terminal_serves_as_well()
+CHECKS.end()

@@ -1,0 +1,218 @@
+"""The page of a drive, by what it asks its server for: who is let in, what its buttons do, what it shows.
+
+usage: page.py SIL
+"""
+import asyncio
+import contextlib
+import os
+import pathlib
+import time
+
+from operated import steadystep
+from page_process import Page
+from served import Checks
+
+import aiohttp
+
+CHECKS = Checks()
+
+
+class Client:
+    """What page.js does."""
+
+    def __init__(self, page, session):
+        self.page, self.session = page, session
+
+    async def ask(self, method, path, body=None, **headers):
+        """Status and answer."""
+        headers = {"Authorization": f"Bearer {self.page.token}", **headers}
+        if isinstance(body, str):
+            given = {"data": body}
+        else:
+            given = {"json": body} if body is not None else {}
+        async with self.session.request(method, self.page.url + path, headers=headers, **given) as said:
+            is_json = said.content_type == "application/json"
+            return said.status, await said.json() if is_json else await said.text()
+
+    async def act(self, action, **values):
+        status, said = await self.ask("POST", f"/api/act/{action}", values)
+        CHECKS.that(status == 200, f"{action}: {status} {said}")
+
+    def live(self, origin=None, token=None):
+        headers = {"Origin": self.page.url if origin is None else origin} if origin != "" else {}
+        return self.session.ws_connect(f"{self.page.url}/api/live?token={token or self.page.token}", headers=headers)
+
+    async def status(self, condition=lambda status: True, timeout_s=10.0):
+        """The first that fulfils it; the last one if none comes in time."""
+        last = {}
+        async with self.live() as live:
+            end = time.monotonic() + timeout_s
+            while time.monotonic() < end and not (last and condition(last)):
+                with contextlib.suppress(asyncio.TimeoutError):
+                    last = (await live.receive_json(timeout=1)).get("status", last)
+        return last
+
+
+async def who_is_let_in(client):
+    url = client.page.url
+    for path in ("/", "/static/page.js", "/static/uPlot.iife.min.js"):
+        status, _ = await client.ask("GET", path, Authorization="")
+        CHECKS.that(status == 200, f"{path} holds no secret: {status}")
+    for path in ("/static/../__init__.py", "/static/..%2f__init__.py", "/static/web.py"):
+        status, said = await client.ask("GET", path)
+        CHECKS.that(status == 404, f"{path}: {status} {said}")
+    for headers, expected in (({"Authorization": ""}, 401), ({"Authorization": "Bearer wrong"}, 401),
+                              ({"Origin": "http://elsewhere.example"}, 403), ({"Origin": "null"}, 403),
+                              ({"Host": "elsewhere.example"}, 403), ({"Origin": url}, 200)):
+        for method, path, body in (("GET", "/api/settings", None), ("POST", "/api/act/stop", {})):
+            status, said = await client.ask(method, path, body, **headers)
+            CHECKS.that(status == expected, f"{method} {path} with {headers}: {status} {said}")
+    for origin, token, expected in (("http://elsewhere.example", None, 403), ("", None, 403), (None, "wrong", 401)):
+        try:
+            async with client.live(origin, token):
+                CHECKS.that(False, f"a socket of {origin} {token} is refused")
+        except aiohttp.WSServerHandshakeError as refusal:
+            CHECKS.that(refusal.status == expected, f"a socket of {origin} {token}: {refusal.status}")
+
+
+def nothing_listens_beyond_loopback(page):
+    sockets = {os.readlink(link) for link in pathlib.Path(f"/proc/{page.process.pid}/fd").iterdir()
+               if link.is_symlink() and os.path.lexists(link)}
+    inodes = {name[8:-1] for name in sockets if name.startswith("socket:")}
+    listening = []
+    for table in ("tcp", "tcp6"):
+        rows = [line.split() for line in pathlib.Path(f"/proc/net/{table}").read_text().splitlines()[1:]]
+        listening += [row[1] for row in rows if row[3] == "0A" and row[9] in inodes]
+    CHECKS.that(len(listening) == 2 and all(one.startswith("0100007F:") for one in listening), f"{listening}")
+
+
+async def it_is_operated(client):
+    await client.act("enable")
+    await client.act("move", position_rad=1.5)
+    found = await client.status(lambda now: abs(now.get("position_rad", 0) - 1.5) < 0.01)
+    CHECKS.that(found["state"] == "OPERATION ENABLED" and found["simulated"], f"it goes to 1.5: {found}")
+    with steadystep.Drive(client.page.shared) as other:
+        await asyncio.to_thread(other.move, 0.5)
+    found = await client.status(lambda now: abs(now["position_rad"] - 0.5) < 0.01)
+    CHECKS.that(abs(found["position_rad"] - 0.5) < 0.01, f"another program moves it meanwhile: {found}")
+    for action, values, said in (("move", {"position_rad": "a"}, "position_rad: expected a number"),
+                                 ("jump", {}, "jump: expected one of enable"),
+                                 ("move", {"position_rad": 1e9}, "position_rad: expected a number in")):
+        status, answer = await client.ask("POST", f"/api/act/{action}", values)
+        CHECKS.that(status == 409 and said in answer["error"], f"{action} {values}: {status} {answer}")
+
+
+async def stop_works(client):
+    await client.act("velocity", speed_rad_s=20)
+    await client.status(lambda now: now["moving"])
+    begin = time.monotonic()
+    await client.act("stop")
+    found = await client.status(lambda now: not now["moving"], 2)
+    CHECKS.that(found["state"] == "QUICK STOP ACTIVE" and not found["moving"], f"it stops: {found}")
+    CHECKS.that(time.monotonic() - begin < 2, "soon")
+    await client.act("disable")
+    await client.status(lambda now: now["state"] == "SWITCH ON DISABLED")
+    enabling = asyncio.create_task(client.ask("POST", "/api/act/enable", {}))
+    await asyncio.sleep(0.15)
+    await client.act("stop")
+    status, said = await enabling
+    found = await client.status(lambda now: now["state"] == "SWITCH ON DISABLED", 2)
+    CHECKS.that(found["state"] in ("SWITCH ON DISABLED", "QUICK STOP ACTIVE"), f"an enabling ends: {found} {said}")
+    await client.act("disable")
+    # what has been aligned in part swings for a while, and the drive wants a rotor at rest
+    await client.status(lambda now: abs(float(now["truth"]["omega_rad_s"])) < 0.05)
+
+
+async def stop_waits_for_nobody(client):
+    """Another program is in the midst of a transfer, and does not go on."""
+    await client.act("enable")
+    await client.act("velocity", speed_rad_s=20)
+    await client.status(lambda now: now["moving"])
+    reader, writer = await asyncio.open_connection(*client.page.shared.removeprefix("tcp://").split(":"))
+    writer.write(b"O\rt60184010230000000000\r")
+    await reader.readuntil(b"t581841")
+    stopping = asyncio.create_task(client.act("stop"))
+    await asyncio.sleep(0.3)
+    _, said = await client.ask("POST", "/api/knob", {"line": "state"})
+    speed = float(said["said"].split("omega_rad_s=")[1].split()[0])
+    CHECKS.that(abs(speed) < 2, f"it is at rest by then: {speed} rad/s")
+    CHECKS.that(not stopping.done(), "while the transfer is still that program's")
+    await stopping
+    writer.close()
+    found = await client.status(lambda now: now["state"] != "OPERATION ENABLED", 2)
+    CHECKS.that(found["state"] in ("QUICK STOP ACTIVE", "SWITCH ON DISABLED"), f"it stays so: {found}")
+    await client.act("disable")
+
+
+async def settings_go_round(client):
+    _, before = await client.ask("GET", "/api/settings")
+    status, after = await client.ask("POST", "/api/settings", {"name": "current_limit_A", "value": 2.5})
+    CHECKS.that(status == 200 and after == {**before, "current_limit_A": 2.5}, f"one is set: {status}")
+    _, text = await client.ask("GET", "/api/settings.toml")
+    CHECKS.that("current_limit_A = 2.5  # A\n" in text, "and exported")
+    await client.ask("POST", "/api/settings", {"name": "current_limit_A", "value": None})
+    _, changed = await client.ask("POST", "/api/settings.toml", text)
+    CHECKS.that(changed == ["current_limit_A"], f"and comes back: {changed}")
+    for name, value, said in (("current_limit_A", 100, "0.01 × rated…2 × rated A"), ("law", 3, "one of"),
+                              ("nothing", 1, "no such setting")):
+        status, answer = await client.ask("POST", "/api/settings", {"name": name, "value": value})
+        CHECKS.that(status == 409 and said in answer["error"], f"{name} = {value}: {status} {answer}")
+    status, _ = await client.ask("POST", "/api/settings", {"name": "law"})
+    CHECKS.that(status == 400, f"half a request: {status}")
+
+
+async def traces_come(client):
+    async with client.live() as live:
+        messages = [await live.receive_json(timeout=5) for _ in range(20)]
+        span_s = messages[-1]["time_s"] - messages[0]["time_s"]
+        CHECKS.that(len(messages[0]["values"]) == 4 and span_s < 6, f"20 samples in {span_s:.2f} s")
+        await client.ask("POST", "/api/live", {"signals": ["bus_V"]})
+        seen = [await live.receive_json(timeout=5) for _ in range(4)][-1]
+        CHECKS.that(seen["signals"] == ["bus_V"] and abs(seen["values"][0] - 24) < 1, f"of others: {seen}")
+    async with client.live() as live:
+        status, made = await client.ask("POST", "/api/capture", {"signals": ["bus_V", "i_q_A"], "duration_s": 0.3,
+                                                                 "rate_Hz": 100})
+        shown = [message.get("capturing") for message in [await live.receive_json(timeout=5) for _ in range(8)]]
+    CHECKS.that(1.0 in shown, f"how far it is is shown: {shown}")
+    CHECKS.that(status == 200 and len(made["columns"]["i_q_A"]) == len(made["time_s"]) > 5, f"captured: {made}")
+    _, text = await client.ask("GET", "/api/capture.csv")
+    CHECKS.that(text.startswith("time_s,bus_V,i_q_A"), text[:60])
+
+
+async def what_breaks_is_said(client):
+    await client.act("enable")
+    status, said = await client.ask("POST", "/api/knob", {"line": "plant.bus_V = 8"})
+    CHECKS.that(status == 200 and said["said"].startswith("ok time_s="), f"a knob: {said}")
+    found = await client.status(lambda now: now["fault"])
+    CHECKS.that(found["fault"]["name"] == "bus-voltage" and found["fault"]["remedy"], f"the fault in words: {found}")
+    status, said = await client.ask("POST", "/api/knob", {"line": "nothing = 1"})
+    CHECKS.that(status == 409, f"a knob that is none: {said}")
+    await client.ask("POST", "/api/knob", {"line": "plant.bus_V = 24"})
+    await client.act("reset")
+    await client.ask("POST", "/api/knob", {"line": 'command = "power-cycle"'})
+    found = await client.status(lambda now: now["lost"], 5)
+    CHECKS.that(found["lost"], f"a lost link is said: {found}")
+    found = await client.status(lambda now: not now["lost"], 8)
+    CHECKS.that(found.get("state") == "SWITCH ON DISABLED", f"and found again: {found}")
+
+
+async def main(page):
+    async with aiohttp.ClientSession() as session:
+        client = Client(page, session)
+        await who_is_let_in(client)
+        await it_is_operated(client)
+        await stop_works(client)
+        await stop_waits_for_nobody(client)
+        await settings_go_round(client)
+        await traces_come(client)
+        await what_breaks_is_said(client)
+
+
+PAGE = Page()
+try:
+    nothing_listens_beyond_loopback(PAGE)
+    asyncio.run(main(PAGE))
+finally:
+    CODE, SAID = PAGE.end()
+CHECKS.that(CODE == 0 and SAID == "", f"it ends in order: {CODE} {SAID}")
+CHECKS.end()

@@ -1,0 +1,154 @@
+"""The page in a browser, by mouse and keyboard, wide and narrow.
+
+usage: page_in_browser.py SIL
+"""
+import time
+
+from browser import NARROW, WIDE, expect, opened
+from page_process import Page
+from served import Checks
+
+CHECKS = Checks()
+VIEWS = ("operate", "captures", "settings", "simulation", "guide")
+
+
+def view(tab, name):
+    tab.click(f"nav button[data-view={name}]")
+
+
+def it_is_operated_by_keyboard(tab):
+    tab.locator("#operate [data-act=enable]").press("Enter")
+    expect(tab.locator("#state")).to_have_text("ready")
+    tab.fill("#velocity input", "5")
+    tab.press("#velocity input", "Enter")
+    expect(tab.locator("#state")).to_have_text("moving")
+    tab.keyboard.press("Escape")
+    expect(tab.locator("#state")).to_have_text("stopped")
+    tab.locator("nav button[data-view=operate]").focus()
+    tab.keyboard.press("ArrowRight")
+    tab.keyboard.press("Enter")
+    expect(tab.locator("#captures")).to_be_visible()
+    view(tab, "operate")
+    tab.click("#operate [data-act=enable]")
+    expect(tab.locator("#state")).to_have_text("ready")
+    tab.fill("#velocity input", "0")
+    tab.click("#stop")
+    expect(tab.locator("#state")).to_have_text("stopped")
+    tab.click("#operate [data-act=enable]")
+    expect(tab.locator("#state")).to_have_text("ready")
+
+
+def traces_run_smoothly(tab):
+    drawn = tab.evaluate("""async () => {
+      const canvas = document.querySelector("#live canvas"), hash = () => canvas.toDataURL().length;
+      let frames = 0, changes = 0, before = hash(), begin = performance.now();
+      while (performance.now() - begin < 2000) {
+        await new Promise(requestAnimationFrame);
+        frames++;
+        if (frames % 5 === 0 && before !== (before = hash())) changes++;
+      }
+      return [frames, changes];
+    }""")
+    CHECKS.that(drawn[0] >= 20 and drawn[1] >= 3, f"frames and changes in 2 s: {drawn}")
+    tab.select_option("#live .card:nth-child(4) select", "bus_V")
+    expect(tab.locator("#live .card:nth-child(4) output")).to_contain_text("24.")
+
+
+def a_capture_is_zoomed(tab):
+    view(tab, "captures")
+    tab.fill("#capture [name=duration_s]", "1")
+    tab.click("#capture button")
+    expect(tab.locator("#capture-said")).to_contain_text("samples")
+    CHECKS.that(tab.locator("#captured canvas").count() == 2, "a plot for each unit")
+    before = tab.locator("#captured canvas").first.screenshot()
+    tab.click("[data-zoom=in]")
+    time.sleep(0.2)
+    CHECKS.that(tab.locator("#captured canvas").first.screenshot() != before, "closer")
+    tab.click("[data-zoom=all]")
+    with tab.expect_download() as saved:
+        tab.click("[data-save=csv]")
+    text = saved.value.path().read_text(encoding="utf-8")
+    CHECKS.that(text.startswith("time_s,theta_est_rad,theta_ref_rad,i_q_A"), f"saved: {text[:60]}")
+
+
+def settings_are_found_and_set(tab):
+    tab.locator("nav").click()
+    tab.keyboard.press("/")
+    tab.keyboard.type("current limit")
+    expect(tab.locator(".setting:visible").first).to_be_visible()
+    CHECKS.that(tab.locator("#setting-current_limit_A").is_visible(), "it is found")
+    CHECKS.that(not tab.locator("#setting-inductance_H").is_visible(), "and nothing else")
+    limit = tab.locator("#setting-current_limit_A")
+    expect(limit).to_have_value("3")
+    limit.fill("100")
+    limit.press("Enter")
+    expect(tab.locator(".setting .error:visible")).to_contain_text("expected a number in 0.01 × rated")
+    limit.fill("2.5")
+    limit.press("Enter")
+    expect(tab.locator("#message")).to_contain_text("current_limit_A is set")
+    tab.reload()
+    view(tab, "settings")
+    tab.fill("#search", "current_limit")
+    expect(tab.locator("#setting-current_limit_A")).to_have_value("2.5")
+
+
+def a_fault_is_in_words(tab):
+    view(tab, "simulation")
+    tab.click("#knobs button[title='plant.bus_V = 8']")
+    expect(tab.locator("#fault")).to_contain_text("bus-voltage")
+    expect(tab.locator("#fault")).to_contain_text("What to do")
+    tab.click("#knobs button[title='plant.bus_V = 24']")
+    view(tab, "operate")
+    tab.click("#reset")
+    expect(tab.locator("#fault")).to_be_hidden()
+
+
+def the_guide_leads_to_a_motion(tab):
+    view(tab, "guide")
+    tab.fill("#motor-search", "bendjedia-2012")
+    expect(tab.locator("#motor-values")).to_contain_text("0.37 ohm")
+    tab.select_option("#motor", "bendjedia-2012")
+    tab.click("#take-motor")
+    expect(tab.locator("#message")).to_contain_text("next enable")
+    tab.click("#guide [data-act=enable]")
+    expect(tab.locator(".step-state")).to_have_text("ready")
+    before = float(tab.locator("#position").text_content().split()[0])
+    tab.click("[data-jog='1.5708']")
+    tab.wait_for_function(f"Math.abs(parseFloat(document.querySelector('#position').textContent) - {before}"
+                          " - 1.5708) < 0.02")
+    tab.click("#guide [data-act=store]")
+    expect(tab.locator("#message")).to_contain_text("stored")
+
+
+def it_fits(tab):
+    for size in (WIDE, NARROW):
+        tab.set_viewport_size(size)
+        for name in VIEWS:
+            view(tab, name)
+            width = tab.evaluate("document.documentElement.scrollWidth")
+            CHECKS.that(width <= size["width"], f"{name} at {size['width']}: {width} wide")
+        CHECKS.that(tab.locator("#stop").is_visible(), "the stop is in sight")
+        tab.evaluate("window.scrollTo(0, 1e6)")
+        box = tab.locator("#stop").bounding_box()
+        CHECKS.that(0 <= box["y"] < 200, f"wherever one scrolls: {box}")
+
+
+PAGE, REMARKS = Page(), []
+try:
+    with opened(PAGE.address, REMARKS) as TAB:
+        it_is_operated_by_keyboard(TAB)
+        traces_run_smoothly(TAB)
+        a_capture_is_zoomed(TAB)
+        settings_are_found_and_set(TAB)
+        a_fault_is_in_words(TAB)
+        the_guide_leads_to_a_motion(TAB)
+        it_fits(TAB)
+        CODE, SAID = PAGE.end()
+        expect(TAB.locator("#state")).to_have_text("no link")
+finally:
+    if PAGE.process.poll() is None:
+        PAGE.end()
+CHECKS.that(CODE == 0 and SAID == "", f"it ends while it is looked at: {CODE} {SAID}")
+EXPECTED = ("the server responded with a status of 409", "ERR_CONNECTION_REFUSED", "WebSocket connection to")
+CHECKS.that(all(any(known in remark for known in EXPECTED) for remark in REMARKS), f"no remark: {REMARKS}")
+CHECKS.end()

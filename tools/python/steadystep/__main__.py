@@ -1,0 +1,4 @@
+"""python -m steadystep"""
+import sys
+from .cli import main
+sys.exit(main())

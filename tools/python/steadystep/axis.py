@@ -1,0 +1,269 @@
+"""The axis of a drive: signals, states of CiA 402, motion, faults."""
+import math
+import time
+from typing import Callable
+
+from canopen.profiles.p402 import State402
+
+from .dictionary import Dictionary, Fault
+from .errors import DriveFault, Refused, TimedOut
+from .objects import Objects, OutOfRange
+from .settings import Progress, unseen
+
+LOOK_S = 0.01
+
+PROFILE_POSITION, PROFILE_VELOCITY, HOMING = 1, 3, 6
+SHUTDOWN, SWITCH_ON, ENABLE_OPERATION, QUICK_STOP, RESET = 0x06, 0x07, 0x0F, 0x02, 0x80
+NEW_SET_POINT, AT_ONCE, RELATIVE = 0x10, 0x20, 0x40
+REFUSED, REACHED, ACKNOWLEDGED = 0x0080, 0x0400, 0x1000
+
+
+class Axis:
+    """Of a drive that is connected."""
+
+    def __init__(self, objects: Objects, known: Dictionary) -> None:
+        self.objects, self.known = objects, known
+        self._seen_state = ""
+        self._unit_rad = self._read_unit()
+
+    def _read_unit(self) -> float:
+        """CiA 402's factor group: rad in a position unit."""
+        gear, feed = ([self.objects.read(index, sub) for sub in (1, 2)] for index in (0x6091, 0x6092))
+        return float(2 * math.pi * feed[1] * gear[0] / (feed[0] * gear[1]))
+
+    # ---- what it shows ----
+
+    def read(self, signal: str) -> bool | int | float | str:
+        """A signal by its name; of an enumeration its word."""
+        row = self.known.signal(signal)
+        number = self.objects.read(row.index)
+        if row.name == "fault":
+            return self.fault_name(number)
+        if row.words == ("no", "yes"):
+            return bool(number)
+        if row.words:
+            return row.words[int(number)]
+        return number if isinstance(number, (int, float)) else float(number)
+
+    def fault_name(self, code: int) -> str:
+        return self.known.faults[code].name if code in self.known.faults else "none" if code == 0 else hex(code)
+
+    @property
+    def position_rad(self) -> float:
+        return float(self.read("theta_est_rad"))
+
+    @property
+    def speed_rad_s(self) -> float:
+        return float(self.read("omega_est_rad_s"))
+
+    @property
+    def status(self) -> int:
+        status = int(self.objects.read(0x6041))
+        self._seen_state = state_of(status)
+        return status
+
+    @property
+    def state(self) -> str:
+        """Of CiA 402."""
+        return state_of(self.status)
+
+    @property
+    def fault(self) -> Fault | None:
+        """Why the bridge is open; None: it is not in fault."""
+        return self.known.faults.get(int(self.objects.read(0x603F)))
+
+    @property
+    def faults(self) -> list[Fault]:
+        """The last ones since the channel was opened, the newest first."""
+        count = int(self.objects.read(0x1003))
+        codes = [int(self.objects.read(0x1003, n + 1)) & 0xFFFF for n in range(count)]
+        return [self.known.faults[code] for code in codes if code in self.known.faults]
+
+    def _raise_fault(self) -> None:
+        fault = self.fault
+        if fault:
+            raise DriveFault(fault.name, fault.code, fault.cause, fault.remedy)
+        raise DriveFault("fault", 0, "its cause is gone", "reset it")
+
+    # ---- states ----
+
+    def _control(self, word: int) -> None:
+        self.objects.write(0x6040, word)
+
+    def enable(self, timeout_s: float = 10.0, progress: Progress = unseen) -> None:
+        """Until it is ready to move. A fault is raised, not reset."""
+        begin = time.monotonic()
+        while (state := self.state) != "OPERATION ENABLED":
+            if state == "FAULT":
+                self._raise_fault()
+            word = {"SWITCH ON DISABLED": SHUTDOWN, "READY TO SWITCH ON": SWITCH_ON,
+                    "SWITCHED ON": ENABLE_OPERATION, "QUICK STOP ACTIVE": ENABLE_OPERATION}.get(state, 0)
+            self._control(word)
+            if word == SWITCH_ON and self.status & REFUSED:
+                answer = self.objects.bus.ask_console("enable")  # a fieldbus has no words
+                if not answer.startswith("ok"):
+                    raise Refused(answer.removeprefix("error: ") or "the drive refuses to be enabled")
+            passed_s = time.monotonic() - begin
+            progress("enabling", min(passed_s / timeout_s, 1.0))
+            if passed_s > timeout_s:
+                raise TimedOut(f"enabling has not ended within {timeout_s:g} s; the drive is {state.lower()}")
+            time.sleep(LOOK_S)
+        progress("enabling", 1.0)
+
+    def disable(self) -> None:
+        """Opens the bridge."""
+        self._control(0)
+
+    def reset(self, timeout_s: float = 2.0) -> None:
+        """A fault; the bridge stays open."""
+        self._control(0)
+        self._control(RESET)
+        self._until(lambda status: state_of(status) != "FAULT", timeout_s, "the fault has not gone")
+        self._control(0)
+
+    def _until(self, condition: Callable[[int], object], timeout_s: float, otherwise: str) -> int:
+        end = time.monotonic() + timeout_s
+        while True:
+            status = self.status
+            if condition(status):
+                return status
+            if time.monotonic() > end:
+                raise TimedOut(f"{otherwise} within {timeout_s:g} s")
+            time.sleep(LOOK_S)
+
+    # ---- motion ----
+
+    def _in_mode(self, mode: int) -> None:
+        """From another mode: the drive comes to rest first."""
+        if self.state == "FAULT":
+            self._raise_fault()
+        if self.state == "SWITCHED ON":
+            self.enable()  # the rotor is held already
+        if self.state != "OPERATION ENABLED":
+            raise Refused(f"the drive is {self.state.lower()}: enable it first")
+        self.objects.write(0x6060, mode)
+        end = time.monotonic() + 10
+        while self.objects.read(0x6061) != mode:
+            if time.monotonic() > end:
+                raise TimedOut("the drive has not come to rest within 10 s, as another mode asks for")
+            time.sleep(LOOK_S)
+
+    def _profile(self, speed_rad_s: float | None, acceleration_rad_s2: float | None) -> None:
+        for index, name, value in ((0x6081, "speed_rad_s", speed_rad_s),
+                                   (0x6083, "acceleration_rad_s2", acceleration_rad_s2),
+                                   (0x6084, "acceleration_rad_s2", acceleration_rad_s2)):
+            if value is not None and index in self.objects.entries:  # 6084h: not of every version
+                units = round(value / self._unit_rad) if math.isfinite(value) else 0
+                if not 0 < units < 2**32:
+                    raise Refused(f"{name}: expected a number above 0, got {value:g}")
+                self.objects.write(index, units)
+
+    def _position_units(self, position_rad: float) -> int:
+        most = (2**31 - 1) * self._unit_rad
+        if not abs(position_rad) <= most:
+            raise Refused(f"position_rad: expected a number in ±{most:.6g} rad, got {position_rad:g}")
+        return round(position_rad / self._unit_rad)
+
+    def move(self, position_rad: float, *, relative: bool = False, speed_rad_s: float | None = None,
+             acceleration_rad_s2: float | None = None, wait: bool = True, timeout_s: float = 60.0,
+             progress: Progress = unseen) -> None:
+        """To a position, from whatever motion. What is not given stays as it was, at first the motor's."""
+        units = self._position_units(position_rad)
+        self._in_mode(PROFILE_POSITION)
+        self._profile(speed_rad_s, acceleration_rad_s2)
+        self._control(ENABLE_OPERATION)
+        self.objects.write(0x607A, units)
+        self._control(ENABLE_OPERATION | NEW_SET_POINT | AT_ONCE | (RELATIVE if relative else 0))
+        self._until(lambda status: status & ACKNOWLEDGED, 2.0, "the target has not been accepted")
+        self._control(ENABLE_OPERATION)
+        if wait:
+            self.wait(timeout_s, progress)
+
+    def wait(self, timeout_s: float = 60.0, progress: Progress = unseen) -> None:
+        """Until the target is reached; raises DriveFault."""
+        begin = time.monotonic()
+        while not (status := self.status) & REACHED or state_of(status) != "OPERATION ENABLED":
+            if state_of(status) == "FAULT":
+                self._raise_fault()
+            if state_of(status) != "OPERATION ENABLED":
+                raise Refused(f"the target is not reached: the drive is {state_of(status).lower()}")
+            passed_s = time.monotonic() - begin
+            progress("moving", min(passed_s / timeout_s, 1.0))
+            if passed_s > timeout_s:
+                raise TimedOut(f"the target is not reached within {timeout_s:g} s; the position is "
+                               f"{self.position_rad:.5g} rad")
+            time.sleep(LOOK_S)
+        progress("moving", 1.0)
+
+    def velocity(self, speed_rad_s: float, *, acceleration_rad_s2: float | None = None,
+                 wait: bool = False, timeout_s: float = 60.0) -> None:
+        """A speed for ever; 0 comes to rest."""
+        units = self._position_units(speed_rad_s)
+        self._in_mode(PROFILE_VELOCITY)
+        self._profile(None, acceleration_rad_s2)
+        self._control(ENABLE_OPERATION)
+        self.objects.write(0x60FF, units)
+        if wait:
+            self.wait(timeout_s)
+
+    def stop(self, timeout_s: float = 10.0) -> None:
+        """Brings it to rest, quickly, and holds. No motion begins until the drive is enabled again."""
+        self.quick_stop()
+        end = time.monotonic() + timeout_s
+        while self.read("reference_moving"):
+            if time.monotonic() > end:
+                raise TimedOut(f"it has not come to rest within {timeout_s:g} s")
+            time.sleep(LOOK_S)
+
+    def quick_stop(self) -> None:
+        """The same without waiting, not even for an SDO transfer that is under way: by process data first. If none
+        of those comes to its end in time, the drive ends switched off."""
+        if self._seen_state == "OPERATION ENABLED":
+            self.objects.send_controlword(QUICK_STOP)
+        if self.state in ("OPERATION ENABLED", "QUICK STOP ACTIVE"):
+            self.objects.write(0x605A, 6)  # stays, and holds
+            self._control(QUICK_STOP)
+            self.objects.write(0x60FF, 0)  # what would go on when enabled
+        elif self.read("reference_moving"):
+            self.command("stop")  # the console's motion
+
+    def set_position(self, position_rad: float) -> None:
+        """The axis, at rest, is at this position from now on."""
+        if self.state == "OPERATION ENABLED":
+            self._in_mode(HOMING)
+            self.command("set-position", position_rad=position_rad)
+            self._until(lambda _: not self.read("reference_moving"), 2.0, "it has not come to rest")
+            self._in_mode(PROFILE_POSITION)
+        else:
+            self.command("set-position", position_rad=position_rad)
+
+    def command(self, name: str, **parameters: float) -> None:
+        """Any command of the dictionary, with its parameters by name."""
+        row = self.known.command(name)
+        known = {parameter.name: parameter for parameter in row.parameters}
+        for given in parameters:
+            if given not in known:
+                raise Refused(f"{name}: no parameter {given}; it has {', '.join(known) or 'none'}")
+        for parameter in row.parameters:
+            if parameter.name not in parameters and not parameter.optional:
+                raise Refused(f"{name}: {parameter.name} is missing: {parameter.meaning}")
+            value = float(parameters.get(parameter.name, 0.0))
+            if parameter.name in parameters and not parameter.least <= value <= parameter.most:
+                raise Refused(f"{name}: {parameter.name}: expected a number in {parameter.least:g}…"
+                              f"{parameter.most:g} {parameter.unit}, got {value:g}")
+            self.objects.write(parameter.index, value)
+        try:
+            self.objects.write(0x2200, row.number)
+        except OutOfRange:
+            raise Refused(f"{name}: the drive has no such command") from None
+        except Refused:
+            raise Refused(f"{name}: legal {row.legal}; the drive is {self.read('state')}") from None
+
+
+def state_of(status: int) -> str:
+    """The state of CiA 402 in a statusword."""
+    for name, (mask, bits) in State402.SW_MASK.items():
+        if status & mask == bits:
+            return str(name)
+    return "UNKNOWN"
+

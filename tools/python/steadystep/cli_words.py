@@ -1,0 +1,100 @@
+"""The words of the command `steadystep`."""
+import argparse
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    Commands = argparse._SubParsersAction[argparse.ArgumentParser]
+
+PORT = "STEADYSTEP_PORT"
+
+
+def _add(commands: "Commands", name: str, about: str) -> argparse.ArgumentParser:
+    return commands.add_parser(name, help=about, description=about)
+
+
+def _add_settings(commands: "Commands") -> None:
+    settings = _add(commands, "settings", "get, set, export, import, motor, defaults").add_subparsers(
+        dest="settings_command", required=True, metavar="WHAT")
+    _add(settings, "get", "these, or all").add_argument("names", nargs="*")
+    one = _add(settings, "set", "one; `default` takes it back")
+    one.add_argument("name")
+    one.add_argument("value")
+    _add(settings, "export", "all of them as text").add_argument("file", nargs="?", default="-")
+    _add(settings, "import", "from such a text what differs").add_argument("file")
+    _add(settings, "motor", "those of a motor of the library").add_argument("motor")
+    _add(settings, "defaults", "all but the motor's back")
+    _add(commands, "store", "settings and what was learned, to flash")
+
+
+def _add_motion(commands: "Commands") -> None:
+    enable = _add(commands, "enable", "until it is ready")
+    enable.add_argument("--reset", action="store_true", help="a fault, first")
+    enable.add_argument("--timeout", type=float, default=10.0, metavar="S")
+    _add(commands, "disable", "opens the bridge")
+    _add(commands, "reset", "a fault; the bridge stays open")
+    _add(commands, "stop", "to rest, quickly, and holds")
+    move = _add(commands, "move", "to a position")
+    move.add_argument("position_rad", type=float)
+    move.add_argument("--relative", action="store_true")
+    move.add_argument("--speed", type=float, metavar="RAD_S")
+    move.add_argument("--timeout", type=float, default=60.0, metavar="S")
+    move.add_argument("--no-wait", action="store_true")
+    velocity = _add(commands, "velocity", "a speed for ever")
+    velocity.add_argument("speed_rad_s", type=float)
+    for each in (move, velocity):
+        each.add_argument("--acceleration", type=float, metavar="RAD_S2")
+        each.add_argument("--enable", action="store_true", help="first")
+    _add(commands, "set-position", "the axis, at rest, is here").add_argument("position_rad", type=float)
+    command = _add(commands, "command", "any of the dictionary")
+    command.add_argument("name")
+    command.add_argument("parameters", nargs="*", metavar="NAME=VALUE")
+
+
+def _add_signals(commands: "Commands") -> None:
+    _add(commands, "state", "state and every signal")
+    _add(commands, "faults", "the fault, and the last ones: cause, and what to do")
+    capture = _add(commands, "capture", "signals over time, to .csv, .parquet or .mcap")
+    capture.add_argument("signals", nargs="+")
+    capture.add_argument("--duration", type=float, default=1.0, metavar="S")
+    capture.add_argument("--rate", type=float, default=1000.0, metavar="HZ")
+    capture.add_argument("--trigger", metavar="SIGNAL", help="it rises above --level")
+    capture.add_argument("--level", type=float, default=0.5)
+    capture.add_argument("--falling", action="store_true", help="or falls to it")
+    capture.add_argument("--before", type=float, default=0.0, metavar="S", help="what lies before the trigger")
+    capture.add_argument("--out", required=True, metavar="FILE")
+    _add(commands, "signals", "what there is to capture")
+    _add(commands, "motors", "the library's")
+
+
+def _add_programs(commands: "Commands") -> None:
+    simulate = _add(commands, "simulate", "a simulated drive, until interrupted")
+    page = _add(commands, "page", "the page, on loopback")
+    share = _add(commands, "share", "the drive for several programs, until interrupted")
+    for each in (simulate, page):
+        each.add_argument("--motor", help="of the library, or a file")
+        each.add_argument("--simulator", help="steadystep-sil", metavar="PROGRAM")
+    simulate.add_argument("--link", default="/tmp/steadystep", help="of the drive; its knobs: with -knobs behind it")
+    simulate.add_argument("more", nargs="*", help="behind --: options of steadystep-sil serve")
+    page.add_argument("--simulate", action="store_true", help="with a simulated drive of its own")
+    page.add_argument("--http", type=int, default=0, metavar="PORT", help="of the page; 0: a free one")
+    page.add_argument("--open", action="store_true", help="in the browser")
+    page.add_argument("--knobs", help="tcp://127.0.0.1:PORT of a simulated drive that is served elsewhere")
+    page.add_argument("--link", help="pseudo-terminal for another program")
+    share.add_argument("--link", help="pseudo-terminal for a program", default="/tmp/steadystep")
+    for each in (page, share):
+        each.add_argument("--tcp", type=int, default=0, metavar="PORT",
+                          help="for any number of other programs; 0: a free one")
+
+
+def parser() -> argparse.ArgumentParser:
+    top = argparse.ArgumentParser(prog="steadystep", description="Operates a steadystep drive.")
+    top.add_argument("--port", help=f"serial port, pseudo-terminal or tcp://127.0.0.1:PORT; else {PORT}, or the only "
+                                    "serial adapter there is")
+    top.add_argument("--node", type=int, default=1, help="the drive's number on a bus (1)")
+    top.add_argument("--any-version", action="store_true", help="go on with a drive of another version")
+    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    _add_signals(commands)
+    _add_settings(commands)
+    _add_motion(commands)
+    _add_programs(commands)
+    return top

@@ -1,0 +1,96 @@
+"""A drive that one operates: its connection, its settings, captures; what the axis does is in axis.py."""
+from types import TracebackType
+from typing import Sequence
+
+from . import capture_in_drive
+from .axis import Axis
+from .byte_line import ByteLine, open_line
+from .capture import Capture, Recorder, record
+from .capture_in_drive import Trigger
+from .dictionary import dictionary
+from .errors import Refused, WrongVersion
+from .objects import Objects
+from .settings import Progress, Settings, unseen
+
+CONTROL_PERIOD_S = 1e-4  # of the boards and of the simulated one
+SAVE, LOAD = 0x65766173, 0x64616F6C
+
+
+class Drive(Axis):
+    """`Drive("/dev/ttyACM0")`, a pseudo-terminal, or `Drive("tcp://127.0.0.1:4001")`. When it is closed the
+    drive goes on with what it does."""
+
+    def __init__(self, place: str | ByteLine, node: int = 1, *, any_version: bool = False) -> None:
+        line = place if isinstance(place, ByteLine) else open_line(place)
+        try:
+            objects = Objects(line, node)
+        except BaseException:
+            line.close()
+            raise
+        try:
+            self.name = str(objects.read(0x1008))
+            self.version = str(objects.read(0x100A))
+            if not any_version:
+                check_version(objects, self.version, line.place)
+            super().__init__(objects, dictionary())
+            self.settings = Settings(objects, self.known)
+            objects.node.nmt.state = "OPERATIONAL"  # as a stop by process data asks for
+        except BaseException:
+            objects.close()
+            raise
+
+    def __enter__(self) -> "Drive":
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
+                 trace: TracebackType | None) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return f"<{self.version} on {self.objects.bus.channel_info}>"
+
+    def close(self) -> None:
+        self.objects.close()
+
+    def store(self) -> None:
+        """Settings and what was learned, to flash."""
+        self.objects.write(0x1010, SAVE, 1)
+
+    def defaults(self) -> None:
+        """Of all settings but the motor's, at the next enabling."""
+        self.objects.write(0x1011, LOAD, 1)
+
+    # ---- captures ----
+
+    def capture(self, signals: Sequence[str], duration_s: float, rate_Hz: float = 1000.0, *,
+                trigger: Trigger | None = None, recorder: Recorder | None = None,
+                progress: Progress = unseen) -> Capture:
+        """These signals over a time. `recorder`: how; else the drive records them by itself, at rate_Hz, or, if it cannot or
+        has not the memory, they are asked for as quickly as the link allows, up to rate_Hz."""
+        rows = [self.known.signal(name) for name in signals]
+        if not rows or not 0 < duration_s <= 86400 or not 0 < rate_Hz <= 1e5:
+            raise Refused("capture: expected signals, a duration of up to 86400 s and a rate of up to 100000 Hz")
+        if recorder is None and capture_in_drive.is_there(self.objects):
+            try:
+                return capture_in_drive.record_in_drive(self.objects, rows, duration_s, rate_Hz, CONTROL_PERIOD_S,
+                                                        progress, trigger)
+            except capture_in_drive.TooMuch:
+                if trigger:
+                    raise
+        if trigger:
+            raise Refused("capture: this drive records nothing by itself, and knows no trigger")
+        return (recorder or record)(self.objects, rows, duration_s, rate_Hz, CONTROL_PERIOD_S, progress)
+
+
+def check_version(objects: Objects, version: str, place: str) -> None:
+    """Identity, and MAJOR.MINOR, within which indexes keep their meaning; raises WrongVersion."""
+    for sub in (1, 2, 3):
+        known, found = objects.entries[0x1018][sub], objects.read(0x1018, sub)
+        if found != known.default:
+            raise WrongVersion(f"{place}: {known.name} is {found:#x}, this package is for {known.default:#x}; "
+                               f"the drive says: {version}")
+    words, ours = version.split(), dictionary().version
+    number = words[1] if len(words) > 1 else version
+    if number.split(".")[:2] != ours.split(".")[:2]:
+        raise WrongVersion(f"{place}: the drive has version {number}, this package is for {ours}; install that of the "
+                           "drive's version")

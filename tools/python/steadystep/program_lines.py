@@ -1,0 +1,81 @@
+"""Where programs come in that share a drive. None of them can make the others wait: what is for one that does not
+read is lost, as on a wire."""
+import os
+import pathlib
+import select
+import socket
+import time
+
+from .byte_line import ByteLine, TcpLine
+from .errors import LostLink, WrongPort
+
+
+class ProgramLine(TcpLine):
+    """A program that has connected."""
+
+    def __init__(self, connected: socket.socket) -> None:
+        ByteLine.__init__(self, "tcp://%s:%d" % connected.getpeername()[:2])
+        connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._socket = connected
+
+    def write(self, data: bytes) -> None:
+        try:
+            sent = self._socket.send(data, socket.MSG_DONTWAIT)
+        except BlockingIOError:
+            return
+        except OSError as error:
+            raise LostLink(f"{self.place}: {error}") from None
+        if sent < len(data):
+            self.close()  # half a frame is no frame
+            raise LostLink(f"{self.place}: it does not read")
+
+
+class TerminalLine(ByteLine):
+    """The inner end of a pseudo-terminal, with a link to the other. It is quiet while nobody has that open."""
+
+    def __init__(self, link: str) -> None:
+        import termios
+        import tty
+
+        super().__init__(link)
+        self._inner, outer = os.openpty()
+        tty.setraw(outer, termios.TCSANOW)
+        os.set_blocking(self._inner, False)
+        path = pathlib.Path(link)
+        try:
+            if path.is_symlink():
+                path.unlink()
+            path.symlink_to(os.ttyname(outer))
+        except OSError as error:
+            raise WrongPort(f"{link}: {error.strerror}") from None
+        finally:
+            os.close(outer)
+        self._path = path
+        self.closed = False
+
+    def read(self, timeout_s: float) -> bytes:
+        """Raises LostLink while nobody is there."""
+        waiting = select.poll()
+        waiting.register(self._inner, select.POLLIN)
+        events = waiting.poll(1000 * timeout_s)
+        if self.closed:
+            raise LostLink(f"{self.place}: closed")
+        if events and not events[0][1] & select.POLLIN:
+            time.sleep(min(timeout_s, 0.05))
+            raise LostLink(f"{self.place}: nobody has it open")
+        try:
+            return os.read(self._inner, 65536) if events else b""
+        except OSError as error:
+            raise LostLink(f"{self.place}: {error}") from None
+
+    def write(self, data: bytes) -> None:
+        try:
+            os.write(self._inner, data)
+        except OSError:
+            pass  # lost, as on a wire that nobody reads
+
+    def close(self) -> None:
+        if not self.closed:
+            self.closed = True
+            self._path.unlink(missing_ok=True)
+            os.close(self._inner)
