@@ -53,7 +53,7 @@ static bool is_above(const struct capture *capture, const struct drive *drive)
 
 static void put_sample(struct capture *capture, const struct drive *drive)
 {
-    uint32_t *to = &capture->memory[capture->head * capture->record_words];
+    uint32_t *to = &capture->memory[(size_t)capture->head * capture->record_words];
 
     for (uint32_t i = 0; i < capture->signals; i++) {
         const struct capture_source *source = capture->source[i];
@@ -113,6 +113,12 @@ void capture_follow(struct capture *capture, const struct drive *drive)
 }
 
 /* ---- the background ---- */
+
+enum capture_state capture_state_of(const struct capture *capture)
+{
+    atomic_signal_fence(memory_order_seq_cst); /* read now */
+    return (enum capture_state)capture->state;
+}
 
 static void follow(struct application *application, bool follows)
 {
@@ -225,14 +231,14 @@ double capture_value(const struct application *application, uint32_t sample, uin
     const struct drive *drive = &application->drive;
     const struct capture_source *source = capture->source[signal];
     const uint32_t record = (capture->head + sample) % capture->samples;
-    const uint32_t *from = &capture->memory[record * capture->record_words];
+    const uint32_t *from = &capture->memory[(size_t)record * capture->record_words];
 
     for (uint32_t i = 0; i < signal; i++) {
         from += words_of(capture->source[i]);
     }
     union capture_raw raw = {.position = {0}};
 
-    memcpy(&raw, from, 4u * words_of(source));
+    memcpy(&raw, from, sizeof(uint32_t) * words_of(source));
     if (source->base == CAPTURE_COUNT) {
         return (double)raw.count;
     }

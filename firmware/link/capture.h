@@ -75,10 +75,8 @@ void capture_look(struct application *application);
 /* Behind a control interrupt. */
 void capture_follow(struct capture *capture, const struct drive *drive);
 
-static inline enum capture_state capture_state_of(const struct capture *capture)
-{
-    return (enum capture_state) * (const volatile uint8_t *)&capture->state;
-}
+/* Background: as the interrupt has left it. */
+enum capture_state capture_state_of(const struct capture *capture);
 
 /* Of one that is done, in the units of signals.md; the oldest sample is number 0. */
 double capture_value(const struct application *application, uint32_t sample, uint32_t signal);
