@@ -18,10 +18,6 @@ static const struct line_form forms[] = {
     {"state", LINE_STATE, DRIVE_COMMANDS, 0, 0, false, "what it does and measures"},
     {"cycles", LINE_CYCLES, DRIVE_COMMANDS, 0, 0, false,
      "cycles of the control interrupt, mean and most; cycles reset begins anew"},
-#ifndef STEADYSTEP_WITHOUT_LINK
-    {"capture", LINE_CAPTURE, DRIVE_COMMANDS, 0, 0, false,
-     "what was captured; capture 17 shows a sample"},
-#endif
     {"signals", LINE_SIGNALS, DRIVE_COMMANDS, 0, 0, false, "all signals"},
     {"move", LINE_MOVE, DRIVE_COMMAND_MOVE_SMOOTH, WITH(position_rad),
      WITH(duration_s) | WITH(ramp_s) | WITH(jerk_s), true,
@@ -33,6 +29,10 @@ static const struct line_form forms[] = {
      "set hold_current_A 1.2, or default; acts at the next enable, or in motion at once"},
     {"defaults", LINE_DEFAULTS, DRIVE_COMMANDS, 0, 0, false,
      "all settings but the motor's to defaults"},
+#ifndef STEADYSTEP_WITHOUT_LINK
+    {"capture", LINE_CAPTURE, DRIVE_COMMANDS, 0, 0, false,
+     "what was captured; capture 17 shows a sample"},
+#endif
 };
 
 #define PARAMETER(index, member, unit, least, most, sentence)                                      \

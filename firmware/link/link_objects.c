@@ -79,16 +79,15 @@ static enum object_abort restore(struct application *application, uint32_t signa
 /* The current limit, in thousandths of the rated current: torque goes with it. */
 static enum object_abort limit_torque(struct application *application, uint32_t thousandths)
 {
-    struct object limit;
-
-    (void)objects_find(CURRENT_LIMIT, 0, &limit);
-
     const double limit_A =
         1e-3 * (double)thousandths * application->drive.settings.motor.rated_current_A;
-    uint8_t value[OBJECT_BYTES_MAX];
+    char refusal[DRIVE_ERROR_TEXT];
+    const enum setting_change change =
+        setting_change(application, setting_of_index(CURRENT_LIMIT), 0, limit_A, refusal);
 
-    memcpy(value, &limit_A, sizeof limit_A);
-    return object_put(application, &limit, value);
+    return change == SETTING_CHANGED        ? OBJECT_DONE
+           : change == SETTING_OUT_OF_RANGE ? OBJECT_OUT_OF_RANGE
+                                            : OBJECT_WRONG_STATE;
 }
 
 /* 1: begins, 0: ends. */

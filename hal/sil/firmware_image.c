@@ -3,6 +3,7 @@
 #include "firmware/application/application.h"
 #include "firmware/drive/drive_hash.h"
 #include "firmware/linkage.h"
+#include "hal/sil/hal_sil.h"
 
 /* An application and the hash over what its drive has shown so far. */
 struct instance {
@@ -10,7 +11,6 @@ struct instance {
     uint64_t hash;
 #ifndef STEADYSTEP_WITHOUT_LINK
     struct link link;
-    uint32_t capture[9 * 1024]; /* as many words as the STM32G474's */
 #endif
 };
 
@@ -18,7 +18,11 @@ static void put_link(struct instance *self)
 {
 #ifndef STEADYSTEP_WITHOUT_LINK
     application_put_link(&self->application, &self->link);
-    link_put_memory(&self->link, self->capture, sizeof self->capture / sizeof self->capture[0]);
+    if (self->application.board.follow_control != NULL) { /* the simulated board's */
+        struct hal_sil *sil = self->application.board.context;
+
+        link_put_memory(&self->link, sil->capture, HAL_SIL_CAPTURE_WORDS);
+    }
 #else
     (void)self;
 #endif

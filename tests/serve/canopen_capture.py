@@ -1,3 +1,4 @@
+#!/usr/bin/python3
 """A move is captured at 10 kHz, uploaded in blocks by an unmodified python-canopen, and read on the console.
 
 usage: canopen_capture.py SIL [IMAGE.elf]      of the simulator's drive, or of a board's image

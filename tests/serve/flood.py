@@ -1,3 +1,4 @@
+#!/usr/bin/python3
 """Rubbish on the bus does not delay the control interrupt of a board's image, and breaks nothing.
 
 Lines of every kind, some of them frames for the node, as fast as the line carries them, while the drive

@@ -140,9 +140,11 @@ static void test_without_a_trigger_it_begins_at_once_and_takes_all_memory(void)
 {
     choose_signals();
     arm();
-    periods(WORDS / 5 + 10);
+    const uint32_t room = WORDS / bench_link.capture.record_words;
+
+    periods((int)room + 10);
     TEST_ASSERT_EQUAL(CAPTURE_DONE, state());
-    TEST_ASSERT_EQUAL(WORDS / 5, bench_link.capture.samples);
+    TEST_ASSERT_EQUAL(room, bench_link.capture.samples);
     assert_shown();
 }
 
