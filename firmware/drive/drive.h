@@ -11,6 +11,7 @@
 #include "firmware/control/position_law_dispatch.h"
 #include "firmware/control/standstill_hold.h"
 #include "firmware/drive/axis.h"
+#include "firmware/drive/belt_watch.h"
 #include "firmware/drive/brake.h"
 #include "firmware/drive/command_queue.h"
 #include "firmware/drive/expectation.h"
@@ -181,6 +182,7 @@ struct drive {
     /* background */
     struct phase_watch phase_watch;
     struct phase_watch_params phase_watch_params;
+    struct belt_watch belt_watch;
     struct idle_current idle;
     struct idle_current_params idle_params;
     struct thermal_watch thermal;
