@@ -198,6 +198,7 @@ CALLED_FROM_OUTSIDE void application_background(struct application *application)
     thermal_watch_background(&application->drive);
     rotor_watch_background(&application->drive);
     belt_watch_background(&application->drive);
+    torque_constant_background(&application->drive);
     stop_if_unheard(application);
     control_cycles_gather(&application->cycle_statistics, &application->cycles);
     console_background(application);

@@ -27,6 +27,7 @@
 #include "firmware/drive/protection.h"
 #include "firmware/drive/rotor_watch.h"
 #include "firmware/drive/thermal_watch.h"
+#include "firmware/drive/torque_constant.h"
 #include "firmware/estimator/encoder_alignment.h"
 #include "firmware/estimator/estimator.h"
 #include "firmware/estimator/initial_position.h"
@@ -183,6 +184,7 @@ struct drive {
     struct phase_watch phase_watch;
     struct phase_watch_params phase_watch_params;
     struct belt_watch belt_watch;
+    struct torque_constant torque_constant;
     struct idle_current idle;
     struct idle_current_params idle_params;
     struct thermal_watch thermal;
