@@ -121,6 +121,7 @@ static inline void period(void)
     if (bridge.background) {
         drive_background(&drive);
         phase_watch_background(&drive);
+        torque_constant_background(&drive);
     }
 }
 
