@@ -12,6 +12,9 @@ static const double swing_rad_s = 125.0; /* electrical, from one side to the oth
 
 void belt_watch_design(struct drive *drive, const struct drive_settings *given)
 {
+    if (!WATCHES_BELT) {
+        return;
+    }
     const double period_s = drive->board->facts->control_period_s;
     const double swing = swing_rad_s / drive->settings.motor.rotor_teeth;
 
@@ -46,7 +49,7 @@ void belt_watch_background(struct drive *drive)
 {
     const uint32_t period = interrupt_view_period(drive);
 
-    if (!drive->belt_watch.watches || interrupt_view_state(drive) != DRIVE_OPERATION_ENABLED) {
+    if (!WATCHES_BELT || !drive->belt_watch.watches || interrupt_view_state(drive) != DRIVE_OPERATION_ENABLED) {
         return;
     }
     atomic_signal_fence(memory_order_seq_cst);
