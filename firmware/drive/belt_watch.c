@@ -49,7 +49,8 @@ void belt_watch_background(struct drive *drive)
 {
     const uint32_t period = interrupt_view_period(drive);
 
-    if (!WATCHES_BELT || !drive->belt_watch.watches || interrupt_view_state(drive) != DRIVE_OPERATION_ENABLED) {
+    if (!WATCHES_BELT || !drive->belt_watch.watches ||
+        interrupt_view_state(drive) != DRIVE_OPERATION_ENABLED) {
         return;
     }
     atomic_signal_fence(memory_order_seq_cst);
