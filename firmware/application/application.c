@@ -204,6 +204,8 @@ CALLED_FROM_OUTSIDE void application_background(struct application *application)
     idle_current_background(&application->drive);
     thermal_watch_background(&application->drive);
     rotor_watch_background(&application->drive);
+    belt_watch_background(&application->drive);
+    torque_constant_background(&application->drive);
     stop_if_unheard(application);
     control_cycles_gather(&application->cycle_statistics, &application->cycles);
     console_background(application);

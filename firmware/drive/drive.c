@@ -320,6 +320,8 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
     params->reference = reference_design(&drive->base, period_s, creep_limits(settings));
     params->current_control = current_control_design(&settings->motor, &drive->base, period_s,
                                                      settings->current_bandwidth_rad_s);
+    belt_watch_design(drive, given);
+    drive->torque_constant = (struct torque_constant){.in_force = 0.0};
     params->modulator = modulator_design(facts->pwm_half_period_counts,
                                          modulation_max(facts->low_state_s, period_s));
     params->protection = protection_design(&drive->base, facts, &drive->settings);

@@ -11,6 +11,7 @@
 #include "firmware/control/position_law_dispatch.h"
 #include "firmware/control/standstill_hold.h"
 #include "firmware/drive/axis.h"
+#include "firmware/drive/belt_watch.h"
 #include "firmware/drive/brake.h"
 #include "firmware/drive/command_queue.h"
 #include "firmware/drive/expectation.h"
@@ -26,6 +27,7 @@
 #include "firmware/drive/protection.h"
 #include "firmware/drive/rotor_watch.h"
 #include "firmware/drive/thermal_watch.h"
+#include "firmware/drive/torque_constant.h"
 #include "firmware/estimator/encoder_alignment.h"
 #include "firmware/estimator/estimator.h"
 #include "firmware/estimator/initial_position.h"
@@ -181,6 +183,8 @@ struct drive {
     /* background */
     struct phase_watch phase_watch;
     struct phase_watch_params phase_watch_params;
+    struct belt_watch belt_watch;
+    struct torque_constant torque_constant;
     struct idle_current idle;
     struct idle_current_params idle_params;
     struct thermal_watch thermal;

@@ -11,6 +11,7 @@
 #define NOISE_SHARE       0.02
 #define LOOK_PERIODS      4u /* from look to look, or one more */
 #define LOOKS             4u /* two currents of a moving rotor can be the same */
+#define LAG_LOOKS         32 /* 13 ms: a fault carries the estimate away within less */
 #define GAP_PERIODS       14u
 #define PUSHED_MAX        NUM(1.0) /* twice the rated current */
 #define VOLTAGE_ERROR     0.05     /* of the supply */
@@ -107,8 +108,8 @@ static bool follows(const struct drive *drive, struct phases current)
            num_abs(drive->current_reference.q - now.q) < CURRENT_DEVIATION;
 }
 
-/* Against the voltage of S(k+1)...S(k+2). Without an encoder of the reference: an estimator finds a
-   rotor for any current. */
+/* Against the voltage of S(k+1)...S(k+2). Without an encoder of the reference, as far beside it as
+   the rotor has been of late: an estimator finds a rotor for any current. */
 static struct phases back_emf(const struct drive *drive)
 {
     const struct rotor *rotor = &drive->estimator.estimate.rotor;
@@ -117,10 +118,20 @@ static struct phases back_emf(const struct drive *drive)
     const num_t speed = encoder ? rotor->speed : reference->speed;
     const num_t turn = num_mul_coef(speed, drive->params.model.turns_per_speed);
     const angle_t begin = encoder ? rotor->position.fraction + (angle_t)angle_from_turns(turn)
-                                  : reference->position.fraction;
+                                  : reference->position.fraction + (angle_t)drive->phase_watch.lag;
 
     return inverse_park((struct dq){NUM(0.0), speed},
                         sincos_of(begin + (angle_t)angle_from_turns(num_half(turn))));
+}
+
+/* Up to S(k+1). A torque constant that is not the model's leaves the rotor a quarter turn beside
+   its reference in motion, where it feeds forward a speed that is not the estimate's. */
+static void track_lag(struct phase_watch *watch, const struct drive *drive)
+{
+    const angle_t at = drive->estimator.estimate.next.position.fraction;
+    const angle_t lag = at - drive->reference.next.position.fraction;
+
+    watch->lag += (int32_t)(lag - (angle_t)watch->lag) / LAG_LOOKS;
 }
 
 static void look_at(struct phase_look *look, const struct drive *drive)
@@ -180,6 +191,7 @@ void phase_watch_background(struct drive *drive)
     if (look.period != interrupt_view_period(drive)) {
         return; /* an interrupt has come in between */
     }
+    track_lag(&drive->phase_watch, drive);
     fault = phase_watch_step(&drive->phase_watch, &drive->phase_watch_params, &look);
     if (fault == DRIVE_FAULT_NONE) {
         fault = judge_resistance(drive, &look);

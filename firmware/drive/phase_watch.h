@@ -11,7 +11,9 @@
  * rated current, or a voltage law acts. But for feedback linearisation voltage laws may change
  * their voltage's sign from period to period: of these the sum is of |...| with the sign of
  * u - R i - e, looked at four and five periods apart in turn. A rotor that has pulled out shows a
- * back-EMF that is not its estimate's, too, but with currents that follow.
+ * back-EMF that is not its estimate's, too, but with currents that follow. Without an encoder e is
+ * that of the reference, turned by what the estimate has been beside it over the last 13 ms: with
+ * the reference's alone a rotor that lags, on a belt that swings, was a broken lead.
  *
  * In a hold a stuck sensor lets the true current drift away, and the resistance that is found with
  * it: at the end of its range it is the sensor of the larger current.
@@ -37,6 +39,7 @@ struct phase_watch {
     uint32_t period;  /* looked at last */
     uint16_t code[2]; /* at which the current stands */
     uint8_t looks[2]; /* that have found it there */
+    int32_t lag;      /* of the estimate behind the reference of late, 2^-32 turns */
     num_t pushed[2];  /* by how much its voltage would have changed it since */
 };
 

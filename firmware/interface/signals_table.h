@@ -57,6 +57,8 @@
          "measured supply; a trace has the true one under this name")                              \
     REAL(0x2328, phase_imbalance, enabling.phase_imbalance, "", UNTRACED, ratio, "",               \
          "by what share phase a's resistance, as measured, is above that of both, and b's below")  \
+    REAL(0x2329, torque_constant_change, torque_constant.change, "", UNTRACED, ratio, "",          \
+         "by what share the torque constant that motion shows is above that of the settings")      \
     COUNT(0x2305, reference_underruns, planner.underruns, "underruns", UNTRACED,                   \
           "sines and set-points whose continuation came too late")                                 \
     COUNT(                                                                                         \

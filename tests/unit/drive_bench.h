@@ -127,6 +127,7 @@ static inline void period(void)
         idle_current_background(&drive);
         thermal_watch_background(&drive);
         rotor_watch_background(&drive);
+        torque_constant_background(&drive);
     }
 }
 

@@ -1,0 +1,44 @@
+/*
+ * The torque constant as the rotor shows it in motion, in the background of a sensorless drive.
+ *
+ * The estimate's speed is what the back-EMF says, Km_true w / Km; its angle is drawn along with the
+ * rotor all the same. So over a while
+ *
+ *   sum of w_hat T / (change of theta_hat) - 1 = Km_true / Km - 1 = c
+ *
+ * What is left of R and of offsets errs it by so much over the back-EMF: it is learned from an
+ * eighth of the supply on. c is bounded to +-20 %. What it is off by more than 3 % goes into the
+ * base of the speeds and into what the interrupt has by it: the model, the reference's
+ * feed-forward, the decoupling. The gains stay. A speed of the present estimate stays what it is, a
+ * back-EMF.
+ */
+#ifndef STEADYSTEP_TORQUE_CONSTANT_H
+#define STEADYSTEP_TORQUE_CONSTANT_H
+
+#include <stdint.h>
+
+#include "firmware/numeric/angle.h"
+#include "firmware/numeric/num.h"
+
+/* An image that has no room for it goes by the settings. */
+#ifdef STEADYSTEP_WITHOUT_TORQUE_CONSTANT
+enum { LEARNS_TORQUE_CONSTANT = 0 };
+#else
+enum { LEARNS_TORQUE_CONSTANT = 1 };
+#endif
+
+struct torque_constant {
+    num_t change;         /* c, learned */
+    double in_force;      /* of it */
+    struct position from; /* where the rotor was as it began to look */
+    uint32_t begun;       /* period */
+    uint32_t looked;
+    int64_t travel; /* since, by the speed: 2^-32 turns */
+};
+
+struct drive;
+
+/* Background: looks at a drive in operation, at each call. */
+void torque_constant_background(struct drive *drive);
+
+#endif

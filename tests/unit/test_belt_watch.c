@@ -1,0 +1,62 @@
+/* A speed that swings on and on: a belt. */
+#include <math.h>
+
+#include "firmware/drive/belt_watch.h"
+#include "tests/unit/num_assert.h"
+
+static struct belt_watch watch;
+
+void setUp(void)
+{
+    watch = (struct belt_watch){.swing = NUM(0.02), .soonest = 14, .latest = 40};
+}
+
+void tearDown(void)
+{
+}
+
+/* Whether `periods` of a swing of this length and amplitude, about an error that stays, show. */
+static bool shows(uint32_t periods, double length, double amplitude)
+{
+    bool seen = false;
+
+    for (uint32_t k = 0; k < periods && !seen; k++) {
+        const double angle = 6.283185307179586 * k / length;
+
+        seen = belt_watch_swings(&watch, num_from_double(0.3 + amplitude * sin(angle)), k);
+    }
+    return seen;
+}
+
+static void test_a_swing_of_125_to_350_hertz_is_seen_within_eight_cycles(void)
+{
+    static const double lengths[] = {30.0, 40.0, 60.0, 78.0};
+
+    for (size_t i = 0; i < 4; i++) {
+        setUp();
+        TEST_ASSERT_TRUE(shows((uint32_t)(8.0 * lengths[i]), lengths[i], 0.012));
+    }
+}
+
+static void test_a_few_cycles_are_none(void)
+{
+    TEST_ASSERT_FALSE(shows(200, 40.0, 0.05));
+}
+
+static void test_slower_quicker_and_smaller_ones_are_none(void)
+{
+    TEST_ASSERT_FALSE(shows(20000, 90.0, 0.05));
+    setUp();
+    TEST_ASSERT_FALSE(shows(20000, 24.0, 0.05));
+    setUp();
+    TEST_ASSERT_FALSE(shows(20000, 40.0, 0.009));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_swing_of_125_to_350_hertz_is_seen_within_eight_cycles);
+    RUN_TEST(test_a_few_cycles_are_none);
+    RUN_TEST(test_slower_quicker_and_smaller_ones_are_none);
+    return UNITY_END();
+}
