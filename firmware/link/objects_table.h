@@ -13,6 +13,8 @@
  *   node's number is added to the preset.
  * - Of 1400h, 1600h, 1800h and 1a00h there are four each, one behind the other, and of a mapping
  *   eight entries; the rows show the first.
+ * - Bytes that count sub-indexes stand last: members lie in the rows' order, and a byte between
+ * wider ones takes four.
  */
 #ifndef STEADYSTEP_OBJECTS_TABLE_H
 #define STEADYSTEP_OBJECTS_TABLE_H
@@ -48,20 +50,15 @@
     STORED(0x1006, 0, U32, RW, sync_period_us, 0, "Communication cycle period")                    \
     ASKED(0x1008, 0, TEXT, RO, 0, "Manufacturer device name")                                      \
     ASKED(0x100a, 0, TEXT, RO, 0, "Manufacturer software version")                                 \
-    STORED(0x1010, 0, U8, RO, store_highest, 1, "Highest sub-index supported")                     \
     ASKED(0x1010, 1, U32, RW, 1, "Save all parameters")                                            \
-    STORED(0x1011, 0, U8, RO, restore_highest, 1, "Highest sub-index supported")                   \
     ASKED(0x1011, 1, U32, RW, 1, "Restore all default parameters")                                 \
     STORED(0x1014, 0, U32, RO_NODE, emergency_cob_id, 0x80, "COB-ID EMCY")                         \
-    STORED(0x1016, 0, U8, RO, consumer_highest, 1, "Highest sub-index supported")                  \
     STORED(0x1016, 1, U32, RW, consumer_heartbeat, 0, "Consumer heartbeat time 1")                 \
     STORED(0x1017, 0, U16, RW, heartbeat_ms, 0, "Producer heartbeat time")                         \
-    STORED(0x1018, 0, U8, RO, identity_highest, 4, "Highest sub-index supported")                  \
     STORED(0x1018, 1, U32, RO, vendor, 0, "Vendor-ID")                                             \
     STORED(0x1018, 2, U32, RO, product, 1, "Product code")                                         \
     STORED(0x1018, 3, U32, RO, revision, 0x00000002, "Revision number")                            \
     STORED(0x1018, 4, U32, RO, serial, 0, "Serial number")                                         \
-    STORED(0x1200, 0, U8, RO, sdo_highest, 2, "Highest sub-index supported")                       \
     STORED(0x1200, 1, U32, RO_NODE, sdo_request, 0x600, "COB-ID client to server")                 \
     STORED(0x1200, 2, U32, RO_NODE, sdo_response, 0x580, "COB-ID server to client")                \
     ASKED(0x1400, 0, U8, RO, 2, "Highest sub-index supported")                                     \
@@ -76,7 +73,6 @@
     ASKED(0x1800, 5, U16, RW, 0, "Event timer")                                                    \
     ASKED(0x1a00, 0, U8, RW, 1, "Number of mapped objects")                                        \
     ASKED(0x1a00, 1, U32, RW, 0, "Mapped object")                                                  \
-    STORED(0x2400, 0, U8, RO, capture_highest, 9, "Highest sub-index supported")                   \
     ASKED(0x2400, 1, U8, RW, 0, "Capture")                                                         \
     STORED(0x2400, 2, U16, RW, capture_divider, 1, "Periods from sample to sample")                \
     STORED(0x2400, 3, U16, RW, capture_trigger, 0, "Trigger signal")                               \
@@ -86,7 +82,6 @@
     STORED(0x2400, 7, U32, RW, capture_samples, 0, "Samples in all")                               \
     ASKED(0x2400, 8, U32, RO, 0, "Samples taken")                                                  \
     ASKED(0x2400, 9, U32, RO, 0, "Period of the first sample")                                     \
-    STORED(0x2401, 0, U8, RO, capture_columns, 8, "Highest sub-index supported")                   \
     STORED(0x2401, 1, U16, RW, capture_1, 0, "Captured signal 1")                                  \
     STORED(0x2401, 2, U16, RW, capture_2, 0, "Captured signal 2")                                  \
     STORED(0x2401, 3, U16, RW, capture_3, 0, "Captured signal 3")                                  \
@@ -118,28 +113,35 @@
     ASKED(0x6079, 0, U32, RO_T, 0, "DC link circuit voltage")                                      \
     STORED(0x607a, 0, I32, RW_R, target_position, 0, "Target position")                            \
     STORED(0x607c, 0, I32, RW, home_offset, 0, "Home offset")                                      \
-    STORED(0x607d, 0, U8, RO, limits_highest, 2, "Highest sub-index supported")                    \
     STORED(0x607d, 1, I32, RW, position_least, INT32_MIN, "Min position limit")                    \
     STORED(0x607d, 2, I32, RW, position_most, INT32_MAX, "Max position limit")                     \
     STORED(0x6081, 0, U32, RW_R, profile_velocity, 0, "Profile velocity")                          \
     STORED(0x6083, 0, U32, RW_R, profile_acceleration, 0, "Profile acceleration")                  \
     STORED(0x6084, 0, U32, RW_R, profile_deceleration, 0, "Profile deceleration")                  \
     STORED(0x6085, 0, U32, RW, quick_stop_deceleration, 0, "Quick stop deceleration")              \
-    STORED(0x608f, 0, U8, RO, resolution_highest, 2, "Highest sub-index supported")                \
     STORED(0x608f, 1, U32, RO, increments, 65536, "Encoder increments")                            \
     STORED(0x608f, 2, U32, RO, increments_turns, 1, "Motor revolutions")                           \
-    STORED(0x6091, 0, U8, RO, gear_highest, 2, "Highest sub-index supported")                      \
     STORED(0x6091, 1, U32, RW, gear_motor, 1, "Motor revolutions")                                 \
     STORED(0x6091, 2, U32, RW, gear_shaft, 1, "Shaft revolutions")                                 \
-    STORED(0x6092, 0, U8, RO, feed_highest, 2, "Highest sub-index supported")                      \
     STORED(0x6092, 1, U32, RW, feed, 65536, "Feed")                                                \
     STORED(0x6092, 2, U32, RW, feed_shaft, 1, "Shaft revolutions")                                 \
     STORED(0x6098, 0, I8, RW_R, homing_method, 37, "Homing method")                                \
-    STORED(0x60c2, 0, U8, RO, interval_highest, 2, "Highest sub-index supported")                  \
     STORED(0x60c2, 1, U8, RW, interval, 4, "Interpolation time period value")                      \
     STORED(0x60c2, 2, I8, RW, interval_exponent, -3, "Interpolation time index")                   \
     ASKED(0x60f4, 0, I32, RO_T, 0, "Following error actual value")                                 \
     STORED(0x60ff, 0, I32, RW_R, target_velocity, 0, "Target velocity")                            \
-    STORED(0x6502, 0, U32, RO, modes, 0x000000a5, "Supported drive modes")
+    STORED(0x6502, 0, U32, RO, modes, 0x000000a5, "Supported drive modes")                         \
+    STORED(0x1010, 0, U8, RO, store_highest, 1, "Highest sub-index supported")                     \
+    STORED(0x1011, 0, U8, RO, restore_highest, 1, "Highest sub-index supported")                   \
+    STORED(0x1016, 0, U8, RO, consumer_highest, 1, "Highest sub-index supported")                  \
+    STORED(0x1018, 0, U8, RO, identity_highest, 4, "Highest sub-index supported")                  \
+    STORED(0x1200, 0, U8, RO, sdo_highest, 2, "Highest sub-index supported")                       \
+    STORED(0x2400, 0, U8, RO, capture_highest, 9, "Highest sub-index supported")                   \
+    STORED(0x2401, 0, U8, RO, capture_columns, 8, "Highest sub-index supported")                   \
+    STORED(0x607d, 0, U8, RO, limits_highest, 2, "Highest sub-index supported")                    \
+    STORED(0x608f, 0, U8, RO, resolution_highest, 2, "Highest sub-index supported")                \
+    STORED(0x6091, 0, U8, RO, gear_highest, 2, "Highest sub-index supported")                      \
+    STORED(0x6092, 0, U8, RO, feed_highest, 2, "Highest sub-index supported")                      \
+    STORED(0x60c2, 0, U8, RO, interval_highest, 2, "Highest sub-index supported")
 
 #endif

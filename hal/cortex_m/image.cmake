@@ -105,7 +105,7 @@ endfunction()
 function(carry_link target default)
   option(STEADYSTEP_LINK "Carry the CANopen link (firmware/link)" ${default})
   if(NOT STEADYSTEP_LINK)
-    target_compile_definitions(${target} PRIVATE STEADYSTEP_WITHOUT_LINK)
+    target_compile_definitions(${target} PUBLIC STEADYSTEP_WITHOUT_LINK)
   endif()
 endfunction()
 

@@ -3,7 +3,6 @@
 #include "firmware/application/application.h"
 #include "firmware/drive/drive_hash.h"
 #include "firmware/linkage.h"
-#include "hal/sil/hal_sil.h"
 
 /* An application and the hash over what its drive has shown so far. */
 struct instance {
@@ -18,11 +17,6 @@ static void put_link(struct instance *self)
 {
 #ifndef STEADYSTEP_WITHOUT_LINK
     application_put_link(&self->application, &self->link);
-    if (self->application.board.follow_control != NULL) { /* the simulated board's */
-        struct hal_sil *sil = self->application.board.context;
-
-        link_put_memory(&self->link, sil->capture, HAL_SIL_CAPTURE_WORDS);
-    }
 #else
     (void)self;
 #endif
@@ -103,6 +97,19 @@ static void image_signals(const void *drive, struct drive_signals *signals)
     drive_signals_read(&self->application.drive, signals);
 }
 
+static void image_put_memory(void *drive, uint32_t *words, size_t count)
+{
+#ifndef STEADYSTEP_WITHOUT_LINK
+    struct instance *self = drive;
+
+    link_put_memory(&self->link, words, count);
+#else
+    (void)drive;
+    (void)words;
+    (void)count;
+#endif
+}
+
 static void image_follow_control(void *drive)
 {
     struct instance *self = drive;
@@ -136,5 +143,6 @@ EXPORTED const struct firmware_image IMAGE_OF(NUM_FORMAT) = {
     .background = image_background,
     .signals = image_signals,
     .hash = image_hash,
+    .put_memory = image_put_memory,
     .follow_control = image_follow_control,
 };

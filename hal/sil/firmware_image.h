@@ -38,6 +38,8 @@ struct firmware_image {
     void (*signals)(const void *drive, struct drive_signals *signals);
     /* drive_hash so far: gains once, then duties and signals of every period (FNV-1a, 64 bit). */
     uint64_t (*hash)(const void *drive);
+    /* So many words for captures, behind either init. */
+    void (*put_memory)(void *drive, uint32_t *words, size_t count);
     /* Behind the control interrupt, while the board is asked to: application_follow_control. */
     void (*follow_control)(void *drive);
 };

@@ -22,7 +22,9 @@ VIEW = "firmware/drive/interrupt_view.h"
 
 # Sources that write the members of a block. Those of the others are written by what knows no drive.
 WRITERS = {
-    "params": ["drive", "estimator_design", "settings_in_motion"],
+    "params": ["drive", "estimator_design", "settings_in_motion", "belt_watch", "torque_constant"],
+    "belt_watch": ["belt_watch"],
+    "torque_constant": ["torque_constant"],
     "settings": ["drive", "settings_in_motion"],
     "supervision": ["state_machine"],
     "axis": ["axis"],

@@ -168,6 +168,7 @@ static void test_a_speed_is_reached_by_its_acceleration_and_jerk(void)
 
     enable(3);
     put(0x6083, 0, 4, 10 * TURN);
+    put(0x6084, 0, 4, 10 * TURN);
     put(0x60ff, 0, 4, TURN);
     bench_periods(1); /* beside this line of the bus */
     TEST_ASSERT_DOUBLE_WITHIN(0.7, 10.0 * TWO_PI, greatest_acceleration(&periods));
@@ -190,6 +191,7 @@ static void test_a_quick_stop_brakes_by_its_own_deceleration(void)
     control(0x0b);
     TEST_ASSERT_DOUBLE_WITHIN(0.8, 20.0 * TWO_PI, greatest_acceleration(&periods));
     TEST_ASSERT_INT_WITHIN(6, 1020, periods);
+    bench_periods(520); /* the rotor follows to its rest */
     TEST_ASSERT_EQUAL(DRIVE_SWITCH_ON_DISABLED, bench.application.drive.supervision.state);
 }
 
@@ -199,6 +201,7 @@ static void test_speed_and_acceleration_beyond_what_the_drive_can_are_cut_and_sa
 
     enable(3);
     put(0x6083, 0, 4, 0xffffffff);
+    put(0x6084, 0, 4, 0xffffffff);
     put(0x60ff, 0, 4, 0x7fffffff);
     const double most = greatest_acceleration(&periods);
 
@@ -219,6 +222,7 @@ static void test_the_speed_counts_as_reached_within_a_thousandth(void)
     enable(3);
     TEST_ASSERT_EQUAL_HEX32(REACHED | OF_MODE, status(REACHED | OF_MODE)); /* 0, and at rest */
     put(0x6083, 0, 4, TURN);
+    put(0x6084, 0, 4, TURN);
     put(0x60ff, 0, 4, TURN);
     bench_periods(200);
     TEST_ASSERT_EQUAL_HEX32(0, status(REACHED | OF_MODE));

@@ -84,14 +84,18 @@ std::uint64_t dummy_hash(const void *drive)
     return static_cast<std::uint64_t>(static_cast<const Dummy *>(drive)->cycles);
 }
 
+void dummy_put_memory(void *, std::uint32_t *, std::size_t)
+{
+}
+
 void dummy_follow_control(void *)
 {
 }
 
-const firmware_image image = {"dummy",        sizeof(Dummy),       dummy_init,
-                              nullptr,        dummy_control_cycle, dummy_brake,
-                              dummy_law_gain, dummy_command,       dummy_background,
-                              dummy_signals,  dummy_hash,          dummy_follow_control};
+const firmware_image image = {
+    "dummy",     sizeof(Dummy),    dummy_init,          nullptr,          dummy_control_cycle,
+    dummy_brake, dummy_law_gain,   dummy_command,       dummy_background, dummy_signals,
+    dummy_hash,  dummy_put_memory, dummy_follow_control};
 
 plant::Config config()
 {

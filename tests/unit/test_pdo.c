@@ -117,12 +117,12 @@ static void test_there_are_four_each_way_of_eight_objects(void)
 
 static void test_identifiers_have_eleven_bits(void)
 {
-    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(RPDO, 1, 4, 0x7ff));
-    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(RPDO, 1, 4, 0x7ffu | off));
-    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO, 1, 4, 0x7ffu | off | no_remote));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(RPDO, 1, 4, 0x57f));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(RPDO, 1, 4, 0x57fu | off));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO, 1, 4, 0x57fu | off | no_remote));
     TEST_ASSERT_EQUAL_HEX32(OBJECT_OUT_OF_RANGE, link_bench_put(RPDO, 1, 4, 0x800));
     TEST_ASSERT_EQUAL_HEX32(OBJECT_OUT_OF_RANGE, link_bench_put(RPDO, 1, 4, 0x20000201));
-    TEST_ASSERT_EQUAL_HEX32(0x7ffu | off, link_bench_get(RPDO, 1));
+    TEST_ASSERT_EQUAL_HEX32(0x57fu | off, link_bench_get(RPDO, 1));
 }
 
 static void test_transmission_types_between_240_and_254_mean_nothing(void)
