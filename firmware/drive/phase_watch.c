@@ -131,7 +131,10 @@ static void track_lag(struct phase_watch *watch, const struct drive *drive)
     const angle_t at = drive->estimator.estimate.next.position.fraction;
     const angle_t lag = at - drive->reference.next.position.fraction;
 
-    watch->lag += (int32_t)(lag - (angle_t)watch->lag) / LAG_LOOKS;
+    /* A turn is no overflow: the sum wraps. */
+    const int32_t nearer = (int32_t)(lag - (angle_t)watch->lag) / LAG_LOOKS;
+
+    watch->lag = (int32_t)((angle_t)watch->lag + (angle_t)nearer);
 }
 
 static void look_at(struct phase_look *look, const struct drive *drive)

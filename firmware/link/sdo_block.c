@@ -27,7 +27,7 @@ static uint16_t checksum(uint16_t crc, const uint8_t *bytes, size_t count)
     for (size_t i = 0; i < count; i++) {
         crc ^= (uint16_t)(bytes[i] << 8);
         for (int bit = 0; bit < 8; bit++) {
-            crc = (uint16_t)(crc << 1 ^ ((crc & 0x8000u) != 0u ? 0x1021u : 0u));
+            crc = (uint16_t)((unsigned)crc << 1 ^ ((crc & 0x8000u) != 0u ? 0x1021u : 0u));
         }
     }
     return crc;

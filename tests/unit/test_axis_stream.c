@@ -197,12 +197,12 @@ static void test_targets_in_a_heap_are_one(void)
 
 static double speed_limit_rad_s(void)
 {
-    return axis_motion_speed_limit(&bench.application);
+    return (double)axis_motion_speed_limit(&bench.application);
 }
 
 static void test_a_jump_is_followed_at_the_speed_that_the_drive_can(void)
 {
-    const double acceleration = axis_motion_acceleration_limit(&bench.application);
+    const double acceleration = (double)axis_motion_acceleration_limit(&bench.application);
     double most = 0.0;
     double steepest = 0.0; /* of three intervals */
     double before[3] = {0.0};
