@@ -32,7 +32,7 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
   list(FILTER unit_tests EXCLUDE REGEX "test_(detent_compensation|motion_plan)\\.c$")
   # Closed loops, too, whose motor is doubles, and designs, of which each takes a second.
   list(FILTER unit_tests EXCLUDE REGEX
-    "test_(capture|drive_laws|drive_faults|drive_standstill|designed_anew|hold_bearing|law_gains|version_gains|version_run)\\.c$")
+    "test_(axis|capture|drive_laws|drive_faults|drive_standstill|designed_anew|hold_bearing|law_gains|version_gains|version_run)\\.c$")
   # Likewise; moreover this core has no board with an encoder. The M4F's is left to --full.
   if(STEADYSTEP_CORE STREQUAL m0plus)
     list(FILTER unit_tests EXCLUDE REGEX "test_encoder_alignment\\.c$")
