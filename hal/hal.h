@@ -83,6 +83,9 @@ struct hal_facts {
     uint32_t parameter_word_bytes; /* unit of programming */
 };
 
+/* Words that a board with follow_control has for what is captured. */
+enum { HAL_CAPTURE_WORDS = 9 * 1024 };
+
 /*
  * A board. Every function may be called from the background loop; bridge_disable also from any
  * interrupt. `context` is the board's own. Blocking times are those of the STM32G474 port; what

@@ -148,7 +148,6 @@ static enum drive_fault look(struct drive *drive, uint32_t period)
                                        drive->synchronism.policy == DRIVE_SYNCHRONISM_FAULT;
     const num_t error = position_difference(drive->reference.now.position,
                                             drive->estimator.estimate.rotor.position);
-
     const num_t limit = encoder ? following->limit : SWING_TURNS;
 
     if (rotor_watch_jumps(&drive->rotor_watch, drive->reference.now.position, limit)) {

@@ -6,7 +6,7 @@
  *
  *   GROUP(index, name)                                       of an index with several sub-indexes
  *   STORED(index, sub, type, access, member, preset, name)   a member of struct link_objects
- *   ASKED(index, sub, type, access, preset, name)            link_objects.c or cia402_objects.c
+ *   ASKED(index, sub, type, access, preset, name)            link_objects.c, cia402_objects.c
  * answer
  *
  * - access: RO, RW, WO; _T: may be mapped into a PDO that is sent, _R: that is received; NODE: the

@@ -19,9 +19,8 @@ enum {
     HAL_SIL_PAGE_BYTES = 2048,
     HAL_SIL_WORD_BYTES = 8,
     HAL_SIL_PAGES = 4,
-    HAL_SIL_STREAM_BYTES = 2048,      /* capacity of the byte stream in each direction */
-    HAL_SIL_CAPTURE_WORDS = 9 * 1024, /* what the STM32G474 has left */
-    HAL_SIL_WATCHDOG_US = 50000,      /* runs from the first feeding on */
+    HAL_SIL_STREAM_BYTES = 2048, /* capacity of the byte stream in each direction */
+    HAL_SIL_WATCHDOG_US = 50000, /* runs from the first feeding on */
 };
 
 struct hal_sil_stream {
@@ -46,7 +45,7 @@ struct hal_sil {
     uint64_t watchdog_fed_us;
     struct hal_sil_stream to_drive, to_host;
     uint8_t parameters[HAL_SIL_PAGES * HAL_SIL_PAGE_BYTES];
-    uint32_t capture[HAL_SIL_CAPTURE_WORDS];
+    uint32_t capture[HAL_CAPTURE_WORDS];
 };
 
 /*

@@ -21,7 +21,7 @@
 
 struct application application;
 static struct link fieldbus;
-static uint32_t capture_memory[9 * 1024] __attribute__((section(".bss.capture")));
+static uint32_t capture_memory[HAL_CAPTURE_WORDS] __attribute__((section(".bss.capture")));
 
 /* Before, nothing of firmware/ may run that has constants, which design/text.c has not, and no
    control interrupt. */
@@ -88,7 +88,7 @@ int main(void)
         board_fault(BOARD_FAULT_SETTINGS_REFUSED);
     }
     application_put_link(&application, &fieldbus);
-    link_put_memory(&fieldbus, capture_memory, sizeof capture_memory / sizeof capture_memory[0]);
+    link_put_memory(&fieldbus, capture_memory, HAL_CAPTURE_WORDS);
     start_control();
     watchdog_start();
     pins_led(1);

@@ -112,7 +112,7 @@ void Board::start()
     if (!started) {
         throw std::invalid_argument(error);
     }
-    board.image.put_memory(board.drive, board.hal.capture, HAL_SIL_CAPTURE_WORDS);
+    board.image.put_memory(board.drive, board.hal.capture, HAL_CAPTURE_WORDS);
 }
 
 Board::~Board() = default;

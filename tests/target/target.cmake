@@ -32,7 +32,7 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
   list(FILTER unit_tests EXCLUDE REGEX "test_(detent_compensation|motion_plan)\\.c$")
   # Closed loops, too, whose motor is doubles, and designs, of which each takes a second.
   list(FILTER unit_tests EXCLUDE REGEX
-    "test_(axis|capture|drive_laws|drive_faults|drive_standstill|designed_anew|hold_bearing|law_gains|version_gains|version_run)\\.c$")
+    "test_(capture|drive_laws|drive_faults|drive_standstill|designed_anew|hold_bearing|law_gains|version_gains|version_run)\\.c$")
   # Likewise; moreover this core has no board with an encoder. The M4F's is left to --full.
   if(STEADYSTEP_CORE STREQUAL m0plus)
     list(FILTER unit_tests EXCLUDE REGEX "test_encoder_alignment\\.c$")
@@ -63,12 +63,14 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
     target_link_options(${target} PRIVATE -fno-lto)
     add_test(NAME target.unit.${name}.${numeric} COMMAND ${target})
     set(labels target)
+    set(timeout_s 120)
     if((name MATCHES "^(invariant_ekf|motion|sliding_mode)$" AND numeric STREQUAL fixed)
-       OR name STREQUAL encoder_alignment)
+       OR name MATCHES "^(axis|encoder_alignment)$")
       list(APPEND labels full)
+      set(timeout_s 600) # closed loops: minutes under QEMU
     endif()
     set_tests_properties(target.unit.${name}.${numeric}
-      PROPERTIES LABELS "${labels}" TIMEOUT 120)
+      PROPERTIES LABELS "${labels}" TIMEOUT ${timeout_s})
   endforeach()
 
   foreach(case IN LISTS replay_cases)

@@ -31,6 +31,20 @@ static inline const char *link_bench_say(const char *line, int periods)
     return bench_heard();
 }
 
+/* A command of network management to the node; what comes within some periods. */
+static inline const char *link_bench_nmt(unsigned command, int periods)
+{
+    char line[16];
+
+    snprintf(line, sizeof line, "t0002%02X01", command);
+    return link_bench_say(line, periods);
+}
+
+static inline void link_bench_heard(const char *part, const char *heard)
+{
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(heard, part), heard);
+}
+
 static inline void link_bench_open(void)
 {
     (void)link_bench_say("O", 1);

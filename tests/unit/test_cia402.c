@@ -286,18 +286,24 @@ static int rests_after(void)
     return periods;
 }
 
-static int rests_after_quick_stop(unsigned option)
+/* From a turn in a second, by a controlword and its option code. */
+static int rests_after_word(unsigned controlword, unsigned option_index, unsigned option)
 {
     setUp();
     put(0x6084, 0, 4, 4 * TURN);
     put(0x6085, 0, 4, 40 * TURN);
-    put(0x605a, 0, 2, option);
+    put(option_index, 0, 2, option);
     enable(3);
     put(0x60ff, 0, 4, TURN);
     bench_periods(2000);
-    put(0x6040, 0, 2, 0x0b);
+    put(0x6040, 0, 2, controlword);
     bench_period();
     return rests_after();
+}
+
+static int rests_after_quick_stop(unsigned option)
+{
+    return rests_after_word(0x0b, 0x605a, option);
 }
 
 static void test_a_quick_stop_brakes_and_ends_as_its_option_says(void)
@@ -340,22 +346,8 @@ static void test_a_speed_falls_with_the_deceleration(void)
 
 static void test_a_halt_brakes_as_its_option_says(void)
 {
-    int periods[2];
-
-    for (unsigned option = 1; option <= 2; option++) {
-        setUp();
-        put(0x6084, 0, 4, 4 * TURN);
-        put(0x6085, 0, 4, 40 * TURN);
-        put(0x605d, 0, 2, option);
-        enable(3);
-        put(0x60ff, 0, 4, TURN);
-        bench_periods(2000);
-        put(0x6040, 0, 2, 0x10f);
-        bench_period();
-        periods[option - 1] = rests_after();
-    }
-    TEST_ASSERT_GREATER_THAN(2400, periods[0]);
-    TEST_ASSERT_LESS_THAN(500, periods[1]);
+    TEST_ASSERT_GREATER_THAN(2400, rests_after_word(0x10f, 0x605d, 1));
+    TEST_ASSERT_LESS_THAN(500, rests_after_word(0x10f, 0x605d, 2));
 }
 
 /* Rated current 3 A, 0.17 Nm/A, of the bench. */

@@ -15,19 +15,6 @@ void tearDown(void)
 {
 }
 
-static const char *nmt(unsigned command, int periods)
-{
-    char line[16];
-
-    snprintf(line, sizeof line, "t0002%02X01", command);
-    return link_bench_say(line, periods);
-}
-
-static void assert_heard(const char *part, const char *heard)
-{
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(heard, part), heard);
-}
-
 static bool is_off(void)
 {
     return bench.application.drive.supervision.state == DRIVE_SWITCH_ON_DISABLED;
@@ -68,7 +55,7 @@ static void test_a_line_that_is_too_long_means_nothing_and_line_feeds_are_left_o
 {
     TEST_ASSERT_EQUAL_STRING("\a",
                              link_bench_say("t6018400010000000000000000000000000000000000000", 2));
-    assert_heard("t58184300100092010400\r", link_bench_say("t60184000\n100000000000", 2));
+    link_bench_heard("t58184300100092010400\r", link_bench_say("t60184000\n100000000000", 2));
 }
 
 /* The console goes on with what happens from then on. */
@@ -106,17 +93,17 @@ static void test_a_pass_takes_a_frame(void)
 
 static void test_nmt_is_two_bytes_for_this_node_or_all(void)
 {
-    (void)nmt(START, 2);
+    (void)link_bench_nmt(START, 2);
     TEST_ASSERT_EQUAL(LINK_OPERATIONAL, bench_link.nmt);
     (void)link_bench_say("t00010201", 2);
     (void)link_bench_say("t000102", 2);
     (void)link_bench_say("t0003020100", 2);
     (void)link_bench_say("t00020203", 2);
-    (void)nmt(3, 2);
+    (void)link_bench_nmt(3, 2);
     TEST_ASSERT_EQUAL(LINK_OPERATIONAL, bench_link.nmt);
     (void)link_bench_say("t00020200", 2);
     TEST_ASSERT_EQUAL(LINK_STOPPED, bench_link.nmt);
-    (void)nmt(PRE_OPERATIONAL, 2);
+    (void)link_bench_nmt(PRE_OPERATIONAL, 2);
     TEST_ASSERT_EQUAL(LINK_PRE_OPERATIONAL, bench_link.nmt);
     TEST_ASSERT_EQUAL_HEX32(0x00040192, link_bench_get(0x1000, 0));
 }
@@ -125,12 +112,12 @@ static void test_a_reset_of_the_node_opens_the_bridge_and_one_of_communication_d
 {
     enable();
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1017, 0, 2, 500));
-    assert_heard("t701100\r", nmt(RESET_COMMUNICATION, 20));
+    link_bench_heard("t701100\r", link_bench_nmt(RESET_COMMUNICATION, 20));
     TEST_ASSERT_FALSE(is_off());
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(0x1017, 0));
     TEST_ASSERT_EQUAL_HEX32(0x23, link_bench_get(0x6041, 0) & 0x6fu); /* is enabled already */
-    (void)nmt(START, 2);
-    assert_heard("t701100\r", nmt(RESET_NODE, 20));
+    (void)link_bench_nmt(START, 2);
+    link_bench_heard("t701100\r", link_bench_nmt(RESET_NODE, 20));
     TEST_ASSERT_TRUE(is_off());
     TEST_ASSERT_EQUAL(LINK_PRE_OPERATIONAL, bench_link.nmt);
     TEST_ASSERT_EQUAL_HEX32(0x40, link_bench_get(0x6041, 0) & 0x6fu);
@@ -222,7 +209,7 @@ static void test_a_heartbeat_that_was_heard_must_come_again_in_time(void)
     TEST_ASSERT_FALSE(bench_link.unheard);
     beat(5, 195);
     TEST_ASSERT_FALSE(bench_link.unheard);
-    assert_heard("t08183081110000000000\r", link_bench_say("", 20));
+    link_bench_heard("t08183081110000000000\r", link_bench_say("", 20));
     TEST_ASSERT_TRUE(bench_link.unheard);
     TEST_ASSERT_EQUAL_HEX32(0x11, link_bench_get(0x1001, 0));
     TEST_ASSERT_EQUAL_HEX32(0x8130, link_bench_get(0x1003, 1));
@@ -285,12 +272,12 @@ static void test_sync_may_be_late_by_half_of_its_period(void)
     enable();
     (void)link_bench_say("t0800", 200); /* not operational */
     TEST_ASSERT_FALSE(bench_link.unheard);
-    (void)nmt(START, 2);
+    (void)link_bench_nmt(START, 2);
     for (int i = 0; i < 20; i++) {
         (void)link_bench_say("t0800", 58);
     }
     TEST_ASSERT_FALSE(bench_link.unheard);
-    assert_heard("t08180081110000000000\r", link_bench_say("t0800", 75));
+    link_bench_heard("t08180081110000000000\r", link_bench_say("t0800", 75));
     bench_periods(4000);
     TEST_ASSERT_TRUE(is_off());
 }
@@ -298,7 +285,7 @@ static void test_sync_may_be_late_by_half_of_its_period(void)
 static void test_a_sync_that_is_not_watched_may_stay_away(void)
 {
     enable();
-    (void)nmt(START, 2);
+    (void)link_bench_nmt(START, 2);
     (void)link_bench_say("t0800", 2000);
     TEST_ASSERT_FALSE(bench_link.unheard);
     (void)link_bench_say("C", 2);
@@ -310,7 +297,7 @@ static void test_a_channel_that_closes_ends_what_sync_has_driven(void)
 {
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1006, 0, 4, 4000));
     enable();
-    (void)nmt(START, 2);
+    (void)link_bench_nmt(START, 2);
     (void)link_bench_say("t0800", 2);
     (void)link_bench_say("C", 2);
     bench_periods(8000);

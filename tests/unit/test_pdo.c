@@ -23,19 +23,6 @@ void tearDown(void)
 {
 }
 
-static const char *nmt(unsigned command, int periods)
-{
-    char line[16];
-
-    snprintf(line, sizeof line, "t0002%02X01", command);
-    return link_bench_say(line, periods);
-}
-
-static void assert_heard(const char *part, const char *heard)
-{
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(heard, part), heard);
-}
-
 /* Maps these objects, each index << 16 | sub << 8 | bits, up to a 0; the abort code. */
 static uint32_t map(unsigned index, const uint32_t entries[])
 {
@@ -167,7 +154,7 @@ static void test_a_received_frame_is_taken_apart_as_it_is_mapped(void)
     static const uint32_t mapped[] = {0x607a0020, 0x60600008, 0x60980008, 0};
 
     TEST_ASSERT_EQUAL_HEX32(0, map(RPDO_MAP + 2, mapped));
-    (void)nmt(START, 1);
+    (void)link_bench_nmt(START, 1);
     (void)link_bench_say("t401604030201"
                          "0323",
                          1);
@@ -192,7 +179,7 @@ static void test_a_received_frame_is_taken_apart_as_it_is_mapped(void)
                          1);
     TEST_ASSERT_EQUAL_HEX32(0x01020314, link_bench_get(0x607a, 0));
     TEST_ASSERT_EQUAL_HEX32(37, link_bench_get(0x6098, 0));
-    (void)nmt(PRE_OPERATIONAL, 1);
+    (void)link_bench_nmt(PRE_OPERATIONAL, 1);
     (void)link_bench_say("t401604030201"
                          "0323",
                          1);
@@ -202,10 +189,10 @@ static void test_a_received_frame_is_taken_apart_as_it_is_mapped(void)
 static void test_a_sent_frame_is_put_together_as_it_is_mapped(void)
 {
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO + 1, 1, 4, 0x281));
-    const char *heard = nmt(START, 12);
+    const char *heard = link_bench_nmt(START, 12);
 
-    assert_heard("t18124002\r", heard);
-    assert_heard("t2813400201\r", heard);
+    link_bench_heard("t18124002\r", heard);
+    link_bench_heard("t2813400201\r", heard);
     TEST_ASSERT_EQUAL_INT(1, link_bench_count("t281", heard));
     TEST_ASSERT_EQUAL_INT(0, link_bench_count("t381", heard));
 }
@@ -213,7 +200,7 @@ static void test_a_sent_frame_is_put_together_as_it_is_mapped(void)
 static void test_the_status_comes_every_100_ms_and_the_rest_on_change(void)
 {
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO + 1, 1, 4, 0x281));
-    (void)nmt(START, 50);
+    (void)link_bench_nmt(START, 50);
     const char *heard = link_bench_say("", SECOND);
 
     TEST_ASSERT_EQUAL_INT(10, link_bench_count("t181", heard));
@@ -221,13 +208,13 @@ static void test_the_status_comes_every_100_ms_and_the_rest_on_change(void)
     (void)link_bench_put(0x6060, 0, 1, 3);
     heard = link_bench_say("", 15);
     TEST_ASSERT_EQUAL_INT(1, link_bench_count("t281", heard));
-    assert_heard("t2813400203\r", heard);
-    (void)nmt(START, 50); /* is operational already */
+    link_bench_heard("t2813400203\r", heard);
+    (void)link_bench_nmt(START, 50); /* is operational already */
     heard = link_bench_say("", 15);
     TEST_ASSERT_EQUAL_INT(0, link_bench_count("t281", heard));
-    (void)nmt(PRE_OPERATIONAL, 50);
+    (void)link_bench_nmt(PRE_OPERATIONAL, 50);
     TEST_ASSERT_EQUAL_INT(0, link_bench_count("t1812", link_bench_say("", SECOND)));
-    TEST_ASSERT_EQUAL_INT(1, link_bench_count("t281", nmt(START, 50)));
+    TEST_ASSERT_EQUAL_INT(1, link_bench_count("t281", link_bench_nmt(START, 50)));
 }
 
 static void test_an_inhibit_time_keeps_what_changes_all_the_time_from_the_bus(void)
@@ -237,7 +224,7 @@ static void test_an_inhibit_time_keeps_what_changes_all_the_time_from_the_bus(vo
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO, 5, 2, 0));
     TEST_ASSERT_EQUAL_HEX32(0, map(TPDO_MAP, period));
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO, 3, 2, 50)); /* 5 ms */
-    (void)nmt(START, 50);
+    (void)link_bench_nmt(START, 50);
     TEST_ASSERT_EQUAL_INT(10, link_bench_count("t181", link_bench_say("", 500)));
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO, 3, 2, 0));
     (void)link_bench_say("", 20);
@@ -249,7 +236,7 @@ static void test_without_an_object_nothing_is_sent(void)
     static const uint32_t none[] = {0};
 
     TEST_ASSERT_EQUAL_HEX32(0, map(TPDO_MAP, none));
-    TEST_ASSERT_EQUAL_INT(0, link_bench_count("t181", nmt(START, SECOND)));
+    TEST_ASSERT_EQUAL_INT(0, link_bench_count("t181", link_bench_nmt(START, SECOND)));
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO, 2, 1, 1));
     TEST_ASSERT_EQUAL_STRING("z\r", link_bench_say("t0800", 20));
 }
@@ -259,7 +246,7 @@ static void test_sync_sends_every_nth_time(void)
     int frames = 0;
 
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO, 2, 1, 3));
-    (void)nmt(START, 50);
+    (void)link_bench_nmt(START, 50);
     for (int n = 1; n <= 9; n++) {
         const int here = link_bench_count("t1812", link_bench_say("t0800", 20));
 
@@ -271,8 +258,8 @@ static void test_sync_sends_every_nth_time(void)
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO, 2, 1, 3)); /* counts anew */
     TEST_ASSERT_EQUAL_INT(0, link_bench_count("t1812", link_bench_say("t0800", 20)));
     TEST_ASSERT_EQUAL_INT(0, link_bench_count("t1812", link_bench_say("t0800", 20)));
-    (void)nmt(PRE_OPERATIONAL, 1);
-    (void)nmt(START, 1);
+    (void)link_bench_nmt(PRE_OPERATIONAL, 1);
+    (void)link_bench_nmt(START, 1);
     TEST_ASSERT_EQUAL_INT(0, link_bench_count("t1812", link_bench_say("t0800", 20)));
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO, 1, 4, 0x181u | off));
     TEST_ASSERT_EQUAL_INT(0, link_bench_count("t1812", link_bench_say("t0800", 20)));
@@ -282,19 +269,19 @@ static void test_sync_sends_every_nth_time(void)
 static void test_with_type_0_sync_sends_what_has_changed(void)
 {
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO, 2, 1, 0));
-    (void)nmt(START, 50);
+    (void)link_bench_nmt(START, 50);
     TEST_ASSERT_EQUAL_INT(1, link_bench_count("t181", link_bench_say("t0800", 20)));
     TEST_ASSERT_EQUAL_INT(0, link_bench_count("t181", link_bench_say("t0800", 20)));
     (void)link_bench_put(0x6040, 0, 2, 6);
     TEST_ASSERT_EQUAL_INT(0, link_bench_count("t181", link_bench_say("", SECOND)));
-    assert_heard("t18122102\r", link_bench_say("t0800", 20));
+    link_bench_heard("t18122102\r", link_bench_say("t0800", 20));
 }
 
 /* The later of two frames counts, and it acts once. */
 static void test_what_waits_for_sync_acts_with_it_and_once(void)
 {
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(RPDO, 2, 1, 240));
-    (void)nmt(START, 1);
+    (void)link_bench_nmt(START, 1);
     (void)link_bench_say("t20120000", 2);
     (void)link_bench_say("t20120600", 2);
     TEST_ASSERT_EQUAL_HEX32(0x0240, link_bench_get(0x6041, 0));
@@ -304,8 +291,8 @@ static void test_what_waits_for_sync_acts_with_it_and_once(void)
     (void)link_bench_say("t0800", 2);
     TEST_ASSERT_EQUAL_HEX32(0x0240, link_bench_get(0x6041, 0));
     (void)link_bench_say("t20120600", 2);
-    (void)nmt(PRE_OPERATIONAL, 1);
-    (void)nmt(START, 1); /* what waited is forgotten */
+    (void)link_bench_nmt(PRE_OPERATIONAL, 1);
+    (void)link_bench_nmt(START, 1); /* what waited is forgotten */
     (void)link_bench_say("t0800", 2);
     TEST_ASSERT_EQUAL_HEX32(0x0240, link_bench_get(0x6041, 0));
     (void)link_bench_put(RPDO, 2, 1, 254);
@@ -319,7 +306,7 @@ static void test_sync_is_what_1005h_says(void)
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO, 2, 1, 1));
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1005, 0, 4, 0x90));
     TEST_ASSERT_EQUAL_INT(0, link_bench_count("t1812", link_bench_say("t0900", 2)));
-    (void)nmt(START, 2);
+    (void)link_bench_nmt(START, 2);
     TEST_ASSERT_EQUAL_INT(0, link_bench_count("t1812", link_bench_say("t0800", 2)));
     TEST_ASSERT_EQUAL_INT(1, link_bench_count("t1812", link_bench_say("t0900", 2)));
 }

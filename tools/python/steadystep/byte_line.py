@@ -12,6 +12,7 @@ from .errors import LostLink, WrongPort
 
 BAUD = 921600
 MOST_BYTES = 65536
+PORT_ERRORS = (serial.SerialException, OSError, ValueError, TypeError)  # closed meanwhile, too
 
 
 class ByteLine(abc.ABC):
@@ -33,7 +34,36 @@ class ByteLine(abc.ABC):
         """No more of it."""
 
 
-class SerialLine(ByteLine):
+class PortLine(ByteLine):
+    """Of the operating system, whose errors it says in words."""
+
+    def read(self, timeout_s: float) -> bytes:
+        try:
+            data = self._receive(timeout_s)
+        except PORT_ERRORS as error:
+            raise LostLink(f"{self.place}: {_reason(error)}") from None
+        if data is None:
+            return b""
+        if not data:
+            raise LostLink(f"{self.place}: the other end is gone")
+        return data
+
+    def write(self, data: bytes) -> None:
+        try:
+            self._send(data)
+        except PORT_ERRORS as error:
+            raise LostLink(f"{self.place}: {_reason(error)}") from None
+
+    @abc.abstractmethod
+    def _receive(self, timeout_s: float) -> bytes | None:
+        """None: nothing in that time; b"": the other end is gone."""
+
+    @abc.abstractmethod
+    def _send(self, data: bytes) -> None:
+        """All of it."""
+
+
+class SerialLine(PortLine):
     def __init__(self, place: str) -> None:
         super().__init__(place)
         terminal = place.startswith("/dev/pts/") or os.path.realpath(place).startswith("/dev/pts/")
@@ -44,31 +74,22 @@ class SerialLine(ByteLine):
         except (serial.SerialException, OSError, ValueError) as error:
             raise WrongPort(f"{place}: {_reason(error)}{_hint(place)}") from None
 
-    def read(self, timeout_s: float) -> bytes:
-        try:
-            if sys.platform == "win32":  # select() knows sockets only
-                self._port.timeout = timeout_s
-                return bytes(self._port.read(max(1, self._port.in_waiting)))
-            if not select.select([self._port.fileno()], [], [], timeout_s)[0]:
-                return b""
-            data = os.read(self._port.fileno(), MOST_BYTES)
-        except (serial.SerialException, OSError, ValueError, TypeError) as error:
-            raise LostLink(f"{self.place}: {_reason(error)}") from None
-        if not data:
-            raise LostLink(f"{self.place}: the other end is gone")
-        return data
+    def _receive(self, timeout_s: float) -> bytes | None:
+        if sys.platform == "win32":  # select() knows sockets only
+            self._port.timeout = timeout_s
+            return bytes(self._port.read(max(1, self._port.in_waiting))) or None
+        if not select.select([self._port.fileno()], [], [], timeout_s)[0]:
+            return None
+        return os.read(self._port.fileno(), MOST_BYTES)
 
-    def write(self, data: bytes) -> None:
-        try:
-            self._port.write(data)
-        except (serial.SerialException, OSError, ValueError, TypeError) as error:
-            raise LostLink(f"{self.place}: {_reason(error)}") from None
+    def _send(self, data: bytes) -> None:
+        self._port.write(data)
 
     def close(self) -> None:
         self._port.close()
 
 
-class TcpLine(ByteLine):
+class TcpLine(PortLine):
     def __init__(self, place: str) -> None:
         super().__init__(place)
         scheme, _, address = place.partition("://")
@@ -81,22 +102,13 @@ class TcpLine(ByteLine):
             raise WrongPort(f"{place}: {_reason(error)}; no drive is served there") from None
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
-    def read(self, timeout_s: float) -> bytes:
-        try:
-            if not select.select([self._socket], [], [], timeout_s)[0]:
-                return b""
-            data = self._socket.recv(MOST_BYTES)
-        except (OSError, ValueError) as error:
-            raise LostLink(f"{self.place}: {_reason(error)}") from None
-        if not data:
-            raise LostLink(f"{self.place}: the other end is gone")
-        return data
+    def _receive(self, timeout_s: float) -> bytes | None:
+        if not select.select([self._socket], [], [], timeout_s)[0]:
+            return None
+        return self._socket.recv(MOST_BYTES)
 
-    def write(self, data: bytes) -> None:
-        try:
-            self._socket.sendall(data)
-        except OSError as error:
-            raise LostLink(f"{self.place}: {_reason(error)}") from None
+    def _send(self, data: bytes) -> None:
+        self._socket.sendall(data)
 
     def close(self) -> None:
         self._socket.close()
