@@ -84,7 +84,7 @@ struct hal_facts {
 };
 
 /* Words that a board with follow_control has for what is captured. */
-enum { HAL_CAPTURE_WORDS = 9 * 1024 };
+enum { HAL_CAPTURE_WORDS = 8 * 1024 };
 
 /*
  * A board. Every function may be called from the background loop; bridge_disable also from any

@@ -31,6 +31,7 @@ static void unpack_memory(void)
         {&interrupt_code_start, &interrupt_code_end},
         {&tables_start, &tables_end},
         {&texts_start, &texts_end},
+        {&designs_start, &designs_end},
     };
 
     unpack(packed, regions, sizeof regions / sizeof regions[0]);

@@ -30,12 +30,9 @@ Machine::Machine(const ChipDescription &description)
         ram_.push_back({range, std::vector<std::uint8_t>(range.bytes, garbage)});
     }
     for (Ram &ram : ram_) {
-        const bool holds_code =
-            description.fast_code.bytes == 0 || description.fast_code.contains(ram.range.base);
         for (const std::uint32_t base : {ram.range.base, ram.range.alias}) {
             if (base != 0) {
-                core_.map_memory({base, ram.range.bytes}, ram.bytes.data(),
-                                 holds_code ? MemoryUse::both : MemoryUse::data);
+                core_.map_memory({base, ram.range.bytes}, ram.bytes.data(), MemoryUse::both);
             }
         }
     }

@@ -204,9 +204,8 @@ void UnicornCore::stop()
 void UnicornCore::map_memory(AddressRange range, std::uint8_t *host, MemoryUse use)
 {
     const int write = use == MemoryUse::program ? 0 : UC_PROT_WRITE;
-    const int run = use == MemoryUse::data ? 0 : UC_PROT_EXEC;
     check(uc_mem_map_ptr(engine_, range.base, range.bytes,
-                         static_cast<std::uint32_t>(UC_PROT_READ | write | run), host),
+                         static_cast<std::uint32_t>(UC_PROT_READ | UC_PROT_EXEC | write), host),
           "memory");
 }
 

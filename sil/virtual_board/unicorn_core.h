@@ -67,7 +67,6 @@ enum class Stopped {
 /* What the core may do with memory besides reading it. */
 enum class MemoryUse {
     program, /* run it */
-    data,    /* write it */
     both
 };
 

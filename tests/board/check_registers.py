@@ -300,13 +300,19 @@ def check_clocks(root, facts):
 
 def check_memory(root, facts):
     script = without_comments((root / PORT / "memory.ld").read_text(encoding="utf-8"))
-    places = {"FLASH": "BANK_1", "CCM": "CCMRAM_ICODE", "RAM": "SRAM1", "SRAM2": "SRAM2"}
-    for name, memory in places.items():
-        pattern = rf"{name}\s+\(\w+\)\s*: ORIGIN = (0x\w+), LENGTH = (\d+)K"
-        origin, length = re.search(pattern, script).groups()
-        start, size = facts.memories[memory]
-        if int(origin, 16) != start or int(length) * 1024 > size:
-            yield f"memory.ld: {name} is {origin}, {length}K; the chip has {start:#x}, {size} bytes"
+    regions = re.findall(r"(\w+)\s+\(\w+\)\s*: ORIGIN = (0x\w+), LENGTH = (\d+)K", script)
+    regions = sorted((int(origin, 16), int(length) * 1024, name) for name, origin, length in regions)
+    first = {"FLASH": "BANK_1", "CCM": "CCMRAM_ICODE", "RAM": "SRAM1"}
+    end = max(start + size for start, size in facts.memories.values() if start >= 0x20000000)
+    for (start, size, name), (following, _, other) in zip(regions, regions[1:] + [(end, 0, "the end")]):
+        begin, room = facts.memories[first[name]] if name in first else (start, end - start)
+        if start != begin or size > room:
+            yield f"memory.ld: {name} is {start:#x}, {size} bytes; the chip has {begin:#x}, {room}"
+        if start + size > following:
+            yield f"memory.ld: {name} reaches over the beginning of {other}"
+    dma, (start, size) = next(one for one in regions if one[2] == "SRAM2"), facts.memories["SRAM2"]
+    if not start <= dma[0] <= dma[0] + dma[1] <= start + size:
+        yield f"memory.ld: SRAM2 is not in SRAM2, which begins at {start:#x}"
 
 
 def differences(cc, root, cmsis, pin_maps):
@@ -359,6 +365,9 @@ PLANTED = [
     (PIN_MAP, "#define ENCODER_TIMER 4", "#define ENCODER_TIMER 8"),
     (PIN_MAP, "#define LED_PIN 5", "#define LED_PIN 6"),
     ("memory.ld", "ORIGIN = 0x10000000", "ORIGIN = 0x10001000"),
+    ("memory.ld", "ORIGIN = 0x20016000, LENGTH = 8K", "ORIGIN = 0x20016000, LENGTH = 9K"),
+    ("memory.ld", "ORIGIN = 0x20016000", "ORIGIN = 0x20013000"),
+    ("memory.ld", "ORIGIN = 0x20013000, LENGTH = 12K", "ORIGIN = 0x20013000, LENGTH = 13K"),
 ]
 
 

@@ -20,7 +20,7 @@ void lines_overflow(Expectations &expectations, const std::string &image)
         lines += "cycles\n";
     }
     run.device.serial_line().send(run.machine.now(), lines);
-    run.run_for(150 * ms);
+    run.run_for(250 * ms);
     const std::string text = run.output();
     const std::size_t kept = count(text, "ok cycles");
     std::printf("  %zu lines of 100 are answered\n", kept);

@@ -101,17 +101,31 @@ def size_of_image(sources):
     return "{} {}".format(*sizes(image(sources, G474)))
 
 
-@entry("image-fewer-laws", f"cmake --preset {G474} -B build/figures-fewer-laws "
-       '-D"STEADYSTEP_LAWS=state-feedback;pid;feedback-linearisation"', Cost.DEAR,
-       probe=(size_of_image,))
-def fewer_laws(sources):
+FEWER_LAWS = "STEADYSTEP_LAWS=state-feedback;pid;feedback-linearisation"
+WITHOUT_LINK = "STEADYSTEP_LINK=OFF"
+
+
+def variant(sources, name, option):
+    """Sizes of the image with an option."""
     same_compiler(sources)
-    folder = sources.build / "figures-fewer-laws"
+    folder = sources.build / f"figures-{name}"
     sources.text("cmake", "--preset", G474, "-B", folder, f"-DSTEADYSTEP_HOST_BUILD={sources.build}/sil",
-                 "-DSTEADYSTEP_LAWS=state-feedback;pid;feedback-linearisation", accepted=(0,))
+                 f"-D{option}", accepted=(0,))
     sources.text("cmake", "--build", folder, "--target", "steadystep", accepted=(0,))
     flash_B, ccm_B = sizes(folder / "steadystep.elf")
     return {"flash": kilobytes(flash_B), "ccm": kilobytes(ccm_B)}
+
+
+@entry("image-fewer-laws", f'cmake --preset {G474} -B build/figures-fewer-laws -D"{FEWER_LAWS}"',
+       Cost.DEAR, probe=(size_of_image,))
+def fewer_laws(sources):
+    return variant(sources, "fewer-laws", FEWER_LAWS)
+
+
+@entry("image-without-link", f"cmake --preset {G474} -B build/figures-without-link -D{WITHOUT_LINK}",
+       Cost.DEAR, probe=(size_of_image,))
+def without_link(sources):
+    return {"flash": variant(sources, "without-link", WITHOUT_LINK)["flash"]}
 
 
 @entry("picture-interrupt", "tools/interrupt_budget RUN... --longest-path FILE --plot FILE.png",
