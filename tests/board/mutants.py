@@ -4,7 +4,7 @@ test could see. The virtual board must catch each, for its own reason: by what i
 drive_hash that is not the simulator's, or by an expectation of stm32g474_disturbances that is not
 held.
 
-usage: mutants.py ROOT BUILD SIMULATOR DISTURBANCES [--only TEXT]
+usage: mutants.py ROOT BUILD SIMULATOR DISTURBANCES [--only TEXT] [--one-per-file]
 
 BUILD: folder of the preset board-stm32g474, with steadystep.elf built. A mutant recompiles the
 sources of the port that read what was changed, and links them to the firmware as it is.
@@ -328,17 +328,23 @@ def reads(changed, source, root):
     return any(reads(changed, Path(name), root) for name in included)
 
 
+def place_of(mutant, root):
+    """The port's file, relative to the root, that has the mutant's text once; and what it says."""
+    found = port_files(root, mutant.file)
+    text = (root / found[0]).read_text(encoding="utf-8") if len(found) == 1 else ""
+    if text.count(mutant.text) != 1:
+        raise RuntimeError(f"{mutant.name}: {mutant.file}: not exactly one\n{mutant.text}")
+    return found[0], text
+
+
 def change(mutant, root, folder):
     """Copies the port into `folder` and makes the change there; returns the file changed."""
     for port in PORT:
         if (root / port).is_dir():
             shutil.copytree(root / port, folder / port)
-    found = port_files(folder, mutant.file)
-    text = (folder / found[0]).read_text(encoding="utf-8") if len(found) == 1 else ""
-    if text.count(mutant.text) != 1:
-        raise RuntimeError(f"{mutant.name}: {mutant.file}: not exactly one\n{mutant.text}")
-    (folder / found[0]).write_text(text.replace(mutant.text, mutant.instead), encoding="utf-8")
-    return found[0]
+    changed, text = place_of(mutant, folder)
+    (folder / changed).write_text(text.replace(mutant.text, mutant.instead), encoding="utf-8")
+    return changed
 
 
 def build_mutant(mutant, root, build, folder):
@@ -410,6 +416,7 @@ def main():
     parser.add_argument("simulator", type=lambda text: Path(text).resolve())
     parser.add_argument("disturbances", type=lambda text: Path(text).resolve())
     parser.add_argument("--only", metavar="TEXT", default="", help="mutants whose name has TEXT")
+    parser.add_argument("--one-per-file", action="store_true", help="of each file the first only")
     options = parser.parse_args()
     built = (options.build / "steadystep.elf").stat().st_mtime
     newer = [
@@ -425,6 +432,10 @@ def main():
         for mutant in MUTANTS
         if options.only in mutant.name and mutant.numeric in ("", options.numeric)
     ]
+    for mutant in MUTANTS:  # run or not
+        place_of(mutant, options.root)
+    if options.one_per_file:
+        chosen = list({mutant.file: mutant for mutant in reversed(chosen)}.values())
     caught = 0
     with ThreadPoolExecutor(max_workers=2) as pool:
         for mutant, (right, happened) in zip(

@@ -48,8 +48,9 @@ CYCLES_OF = {"state-feedback": "default-sensorless"}
 HOW_TO_READ = """
 <p>Every law runs as the drive's own firmware on the same simulated board, with the same encoder,
 observer structure, angle advance, voltage limit, loss compensation and calibrated series
-resistance (detent learning is the default law's alone); its bandwidths were found by the same optimiser with the same budget and cost. What
-differs between two rows is the law.</p>
+resistance; its bandwidths were found by the same optimiser with the same budget and cost, with
+detent learning and without, of which it has what costs less. What differs between two rows is the
+law.</p>
 <p>Errors are reference minus true angle. The rms counts from 0.03 s on (sine: 0.3 s), so that the
 load's arrival at time zero does not weigh in. The step is a raw one: laws that live from a smooth
 reference are at no advantage there. <b>Ripple</b> is the rms of the q current about its mean over

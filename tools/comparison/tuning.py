@@ -46,13 +46,18 @@ def tunables_of(law, period_s):
     return shared + [Tunable(key, low, high) for key, (low, high) in MORE.get(law, {}).items()]
 
 
-def fixed_settings(law, motor):
-    """What a law has to be given besides."""
+# It follows no estimate, so it has nothing to learn the detent torque from.
+WITHOUT_ENCODER = ("microstepping",)
+
+
+def fixed_settings(law, motor, learning=True):
+    """What a law has to be given besides. `learning`: whether it learns the detent torque."""
+    settings = {} if law in WITHOUT_ENCODER else {"drive.detent_learning": learning}
     if law == "stmms":  # without current control it refuses speeds of N w L / R > 4
-        return {"drive.speed_limit_rad_s": float(f"{3.999 * motor.electrical_corner_rad_s:.4g}")}
+        settings["drive.speed_limit_rad_s"] = float(f"{3.999 * motor.electrical_corner_rad_s:.4g}")
     if law == "csmc-servo":  # the sine's
-        return {"drive.law_gains.servo_frequency_rad_s": float(f"{2 * math.pi * SINE_Hz:.6g}")}
-    return {}
+        settings["drive.law_gains.servo_frequency_rad_s"] = float(f"{2 * math.pi * SINE_Hz:.6g}")
+    return settings
 
 
 def settings_at(point, tunables):

@@ -102,14 +102,6 @@ def laws(sources):
     return found
 
 
-@entry("laws-all-learn", f"{COMPARE} --detent-learning", Cost.DEAR,
-       probe=tuple(f"{one} --set drive.detent_learning=true" for one in PROBES))
-def laws_all_learn(sources):
-    rows, _ = compared(sources, "--detent-learning")
-    return {**{f"lead-{move}": lead(rows, move) for move in MOVES},
-            "lead-step": lead(rows, "step", "settling_time_s")}
-
-
 @entry("laws-learned", "tools/compare --plants nominal --seeds 1-8 --moves learned-creep --ablation "
        f"--laws {DEFAULT}", Cost.DEAR,
        probe=("run compare-learned-creep --json",
