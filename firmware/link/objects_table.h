@@ -131,6 +131,7 @@
     ASKED(0x60f4, 0, I32, RO_T, 0, "Following error actual value")                                 \
     STORED(0x60ff, 0, I32, RW_R, target_velocity, 0, "Target velocity")                            \
     STORED(0x6502, 0, U32, RO, modes, 0x000000a5, "Supported drive modes")                         \
+    STORED(0x607e, 0, U8, RW, polarity, 0, "Polarity")                                             \
     STORED(0x1010, 0, U8, RO, store_highest, 1, "Highest sub-index supported")                     \
     STORED(0x1011, 0, U8, RO, restore_highest, 1, "Highest sub-index supported")                   \
     STORED(0x1016, 0, U8, RO, consumer_highest, 1, "Highest sub-index supported")                  \

@@ -16,8 +16,8 @@ namespace serve
 namespace
 {
 
-constexpr long nap_ns = 500000;             /* between two looks at the clock */
-constexpr long short_nap_ns = 50000;        /* while somebody waits for an answer */
+constexpr long nap_ns = 500000;      /* between two looks at the clock */
+constexpr long short_nap_ns = 50000; /* while somebody waits for an answer */
 constexpr std::uint32_t answer_periods = 30;
 constexpr double bits_per_byte = 10;        /* 8N1 */
 constexpr std::size_t most_waiting = 65536; /* bytes for the drive; what comes beyond is lost */
