@@ -297,12 +297,15 @@ static void go_at_speed(struct application *application)
         return;
     }
     if ((speed != motion->speed_rad_s || motion->at_limit) &&
-        !command_queue_holds_any(&application->drive.commands) &&
-        post(application, &velocity, speed,
-             slows(before, speed) ? objects->profile_deceleration
-                                  : objects->profile_acceleration)) {
-        motion->speed_rad_s = speed;
-        motion->at_limit = false;
+        !command_queue_holds_any(&application->drive.commands)) {
+        if (post(application, &velocity, speed,
+                 slows(before, speed) ? objects->profile_deceleration
+                                      : objects->profile_acceleration)) {
+            motion->speed_rad_s = speed;
+            motion->at_limit = false;
+        } else {
+            motion->limited = true;
+        }
     }
 }
 

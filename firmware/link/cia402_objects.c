@@ -100,6 +100,17 @@ static double quantity(struct application *application, uint16_t index)
     return value / cia402_turned_unit_rad(&application->link->objects, turned);
 }
 
+/* Bits of 60fdh: the inputs, quick stop as the first of our own; of 60feh: "set brake", alarm, in
+   position. */
+static uint32_t wires(const struct machine_io *io, uint16_t index)
+{
+    if (index == 0x60fdu) {
+        return (io->inputs & 0x0fu) | ((io->inputs & HAL_INPUT_QUICK_STOP) != 0u ? 1u << 16 : 0u);
+    }
+    return ((io->outputs & HAL_OUTPUT_BRAKE) == 0u ? 1u : 0u) |
+           (uint32_t)(io->outputs & (HAL_OUTPUT_ALARM | HAL_OUTPUT_IN_POSITION)) << 16;
+}
+
 void cia402_ask(struct application *application, const struct object *object, uint8_t *value)
 {
     const struct cia402 *axis = &application->link->axis;
@@ -113,6 +124,10 @@ void cia402_ask(struct application *application, const struct object *object, ui
         break;
     case 0x6061:
         can_put(value, (uint8_t)axis->mode, 1);
+        break;
+    case 0x60fd:
+    case 0x60fe:
+        can_put(value, wires(&application->io, object->index), 4);
         break;
     default:
         can_put(value, (uint32_t)rounded(quantity(application, object->index)),
