@@ -1,5 +1,5 @@
 /*
- * The machine around the drive, on wires: switches that it obeys and what it tells a controller
+ * The machine around the drive, on wires: switches that it obeys and what it reports to a controller
  * that has no bus. Looked at once in a millisecond, in the background; a level counts when two
  * looks have found it.
  *
