@@ -24,16 +24,27 @@ const char *machine_stop_text(enum machine_stop stop)
     return texts[stop];
 }
 
+uint32_t machine_io_active(const struct application *application)
+{
+    return (application->io.levels ^ (uint32_t)application->chosen.inputs_low) &
+           (uint32_t)application->chosen.inputs_used;
+}
+
+static uint8_t levels_of(const struct application *application)
+{
+    return (uint8_t)application->board.inputs_read(application->board.context);
+}
+
 static bool is_enabled(const struct application *application)
 {
     return (application->chosen.inputs_used & HAL_INPUT_ENABLE) == 0 ||
-           (application->io.inputs & HAL_INPUT_ENABLE) != 0u;
+           (machine_io_active(application) & HAL_INPUT_ENABLE) != 0u;
 }
 
 /* What stands against a motion up, down, or both ways. */
 static enum machine_stop stop_of(const struct application *application, bool up, bool down)
 {
-    const uint8_t inputs = application->io.inputs;
+    const uint32_t inputs = machine_io_active(application);
 
     if (!is_enabled(application)) {
         return MACHINE_STOP_NOT_ENABLED;
@@ -122,16 +133,6 @@ bool machine_io_allows(struct application *application, struct drive_command *co
 
 /* ---- inputs ---- */
 
-static uint8_t active_inputs(const struct application *application)
-{
-    const struct hal *board = &application->board;
-    const uint8_t used = (uint8_t)application->chosen.inputs_used;
-    const uint8_t levels =
-        (uint8_t)board->inputs_read(board->context) ^ (uint8_t)application->chosen.inputs_low;
-
-    return levels & used;
-}
-
 bool machine_io_start(struct application *application, bool starts, char error[DRIVE_ERROR_TEXT])
 {
     struct machine_io *io = &application->io;
@@ -143,8 +144,8 @@ bool machine_io_start(struct application *application, bool starts, char error[D
                                     "expected 0");
     }
     if (starts) {
-        io->seen = active_inputs(application);
-        io->inputs = io->seen;
+        io->seen = levels_of(application);
+        io->levels = io->seen;
     }
     return true;
 }
@@ -152,11 +153,11 @@ bool machine_io_start(struct application *application, bool starts, char error[D
 static void look_at_inputs(struct application *application)
 {
     struct machine_io *io = &application->io;
-    const uint8_t active = active_inputs(application);
-    const uint8_t same = (uint8_t) ~(active ^ io->seen);
+    const uint8_t levels = levels_of(application);
+    const uint8_t same = (uint8_t) ~(levels ^ io->seen);
 
-    io->inputs = (uint8_t)((io->inputs & ~same) | (active & same));
-    io->seen = active;
+    io->levels = (uint8_t)((io->levels & ~same) | (levels & same));
+    io->seen = levels;
 }
 
 static void command(struct application *application, enum drive_command_kind kind)

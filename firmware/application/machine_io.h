@@ -1,7 +1,7 @@
 /*
- * The machine around the drive, on wires: switches that it obeys and what it reports to a controller
- * that has no bus. Looked at once in a millisecond, in the background; a level counts when two
- * looks have found it.
+ * The machine around the drive, on wires: switches that it obeys and what it reports to a
+ * controller that has no bus. Looked at once in a millisecond, in the background; a level counts
+ * when two looks have found it.
  *
  *   limit -, limit +   what moves towards it is braked, and refused from then on; back is allowed
  *   home               is only shown (60fdh)
@@ -42,8 +42,8 @@ enum machine_stop {
 
 struct machine_io {
     uint32_t looked_in; /* period of the last look */
-    uint8_t seen;       /* HAL_INPUT_..., active, in the last look */
-    uint8_t inputs;     /* in two */
+    uint8_t seen;       /* levels of the last look, HAL_INPUT_... */
+    uint8_t levels;     /* as two looks have found them */
     uint8_t outputs;    /* HAL_OUTPUT_..., active */
     uint8_t stop;       /* enum machine_stop: while it lasts */
     bool engages;       /* the brake, before the bridge is off */
@@ -52,6 +52,9 @@ struct machine_io {
 /* What is set is for a board that has it; false: reason in error. At its start levels are as they
    are found. */
 bool machine_io_start(struct application *application, bool starts, char error[DRIVE_ERROR_TEXT]);
+
+/* Of the inputs that are wired those that are active, HAL_INPUT_... */
+uint32_t machine_io_active(const struct application *application);
 
 /* Background, all the time. */
 void machine_io_background(struct application *application);

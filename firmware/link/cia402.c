@@ -199,7 +199,7 @@ void cia402_background(struct application *application)
 {
     struct cia402 *axis = &application->link->axis;
     const enum drive_state drive = interrupt_view_state(&application->drive);
-    const bool stops = (application->io.inputs & HAL_INPUT_QUICK_STOP) != 0u;
+    const bool stops = (machine_io_active(application) & HAL_INPUT_QUICK_STOP) != 0u;
     const enum request request =
         request_of(stops ? axis->controlword & ~(uint32_t)NO_QUICK_STOP : axis->controlword);
 

@@ -102,10 +102,13 @@ static double quantity(struct application *application, uint16_t index)
 
 /* Bits of 60fdh: the inputs, quick stop as the first of our own; of 60feh: "set brake", alarm, in
    position. */
-static uint32_t wires(const struct machine_io *io, uint16_t index)
+static uint32_t wires(const struct application *application, uint16_t index)
 {
+    const struct machine_io *io = &application->io;
+    const uint32_t inputs = machine_io_active(application);
+
     if (index == 0x60fdu) {
-        return (io->inputs & 0x0fu) | ((io->inputs & HAL_INPUT_QUICK_STOP) != 0u ? 1u << 16 : 0u);
+        return (inputs & 0x0fu) | ((inputs & HAL_INPUT_QUICK_STOP) != 0u ? 1u << 16 : 0u);
     }
     return ((io->outputs & HAL_OUTPUT_BRAKE) == 0u ? 1u : 0u) |
            (uint32_t)(io->outputs & (HAL_OUTPUT_ALARM | HAL_OUTPUT_IN_POSITION)) << 16;
@@ -127,7 +130,7 @@ void cia402_ask(struct application *application, const struct object *object, ui
         break;
     case 0x60fd:
     case 0x60fe:
-        can_put(value, wires(&application->io, object->index), 4);
+        can_put(value, wires(application, object->index), 4);
         break;
     default:
         can_put(value, (uint32_t)rounded(quantity(application, object->index)),

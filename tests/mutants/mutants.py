@@ -1008,7 +1008,7 @@ MUTANTS = [
            "stream->owed < OWED_MAX", "false"),
     Mutant(APPLICATION + "machine_io.c", "machine_io",
            "a_level_counts_when_it_lasts",
-           "(io->inputs & ~same) | (active & same)", "active"),
+           "(io->levels & ~same) | (levels & same)", "levels"),
     Mutant(APPLICATION + "machine_io.c", "machine_io",
            "a_limit_switch_stops_and_lets_back_alone",
            "up && (inputs & HAL_INPUT_LIMIT_PLUS)", "(inputs & HAL_INPUT_LIMIT_PLUS)"),

@@ -72,7 +72,7 @@ def knobs_do_what_events_do(served):
 
 def a_switch_on_the_wires_is_obeyed(served):
     drive, knobs = Line(str(served.link)), Line(served.knobs[-1])
-    drive.send("disable\nset inputs_used 10\nset inputs_low 2\n")
+    drive.send("set inputs_used 10\nset inputs_low 2\n")
     drive.until("ok set inputs_low")
     CHECKS.that(value_of(knobs.ask("state"), "outputs") == 0, "off: the brake holds")
     drive.send("enable\n")
@@ -134,8 +134,8 @@ with Served() as one:
     a_client_that_comes_back_reads_nothing_old(one)
     tcp_carries_the_same(one)
     knobs_do_what_events_do(one)
-    a_switch_on_the_wires_is_obeyed(one)
     a_power_cycle_keeps_what_was_stored(one)
+    a_switch_on_the_wires_is_obeyed(one)
 it_ends_in_order(signal.SIGTERM)
 it_ends_in_order(signal.SIGINT)
 what_cannot_be_had_is_said()
