@@ -83,6 +83,24 @@ struct hal_facts {
     uint32_t parameter_word_bytes; /* unit of programming */
 };
 
+/* Levels of the machine's inputs, a bit each (firmware/application/machine_io.h). */
+enum hal_input {
+    HAL_INPUT_LIMIT_MINUS = 1u << 0, /* in the order of 60fdh */
+    HAL_INPUT_LIMIT_PLUS = 1u << 1,
+    HAL_INPUT_HOME = 1u << 2,
+    HAL_INPUT_ENABLE = 1u << 3,
+    HAL_INPUT_QUICK_STOP = 1u << 4,
+    HAL_INPUTS = (1u << 5) - 1u
+};
+
+/* Of its outputs; low after a reset. */
+enum hal_output {
+    HAL_OUTPUT_ALARM = 1u << 0,
+    HAL_OUTPUT_IN_POSITION = 1u << 1,
+    HAL_OUTPUT_BRAKE = 1u << 2, /* high: released */
+    HAL_OUTPUTS = (1u << 3) - 1u
+};
+
 /* Words that a board with follow_control has for what is captured. */
 enum { HAL_CAPTURE_WORDS = 8 * 1024 };
 
@@ -103,6 +121,10 @@ struct hal {
     /* ADC code of the bridge's temperature, of the last S(k); asked for if facts.bridge_ntc_beta_K
        is above 0. < 1 us. */
     uint16_t (*bridge_temperature)(void *context);
+    /* Levels of the machine's inputs and outputs, HAL_INPUT_... and HAL_OUTPUT_...; an input that
+       nothing drives is high. Both NULL: the board has none. < 1 us. */
+    uint32_t (*inputs_read)(void *context);
+    void (*outputs_write)(void *context, uint32_t levels);
     /* Free-running, wraps at 2^32, facts.cycle_counter_Hz. < 1 us. */
     uint32_t (*cycle_count)(void *context);
     /* Time since start-up, never runs backwards. < 1 us. */

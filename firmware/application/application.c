@@ -23,6 +23,9 @@ static bool design(struct application *application, const struct drive_settings 
     if (!ESTIMATORS_READ_ENCODER && counts > 0u) {
         return design_refuse(error, "encoder_counts_per_turn: this board reads none, expected 0");
     }
+    if (!machine_io_start(application, starts, error)) {
+        return false;
+    }
     if (ESTIMATORS_READ_ENCODER && settings->feedback == DRIVE_FEEDBACK_ENCODER &&
         application->facts.encoder_counts_per_turn == 0u) {
         return design_refuse(error, "feedback = encoder, but none is known: set "
@@ -52,6 +55,7 @@ static void prepare(struct application *application, const struct hal *board)
     application->stored_refused = false;
     application->heard_in = 0;
     application->unheard = false;
+    application->io = (struct machine_io){.stop = MACHINE_STOP_NONE};
     console_init(&application->console);
     application->link = NULL;
 }
@@ -184,7 +188,8 @@ bool application_command(struct application *application, struct drive_command *
                          uint32_t asked_in, char error[DRIVE_ERROR_TEXT])
 {
     application_hear(application, asked_in);
-    return (command->kind != DRIVE_COMMAND_ENABLE ||
+    return (!MACHINE_IO_CARRIED || machine_io_allows(application, command, error)) &&
+           (command->kind != DRIVE_COMMAND_ENABLE ||
             prepare_enable(application, &command->at_period, error)) &&
            drive_command_asked_in(&application->drive, command, asked_in, error);
 }
@@ -207,6 +212,9 @@ CALLED_FROM_OUTSIDE void application_background(struct application *application)
     belt_watch_background(&application->drive);
     torque_constant_background(&application->drive);
     stop_if_unheard(application);
+    if (MACHINE_IO_CARRIED) {
+        machine_io_background(application);
+    }
     control_cycles_gather(&application->cycle_statistics, &application->cycles);
     console_background(application);
 }

@@ -15,6 +15,7 @@
 
 #include "firmware/application/console.h"
 #include "firmware/application/control_cycles.h"
+#include "firmware/application/machine_io.h"
 #include "firmware/drive/drive.h"
 #include "firmware/link/link.h"
 #include "hal/hal.h"
@@ -47,6 +48,7 @@ struct application {
     bool awaits_enable;                    /* `chosen` does, as it may differ from them */
     bool stored_refused;                   /* by the drive: the defaults are in force */
     char stored_refusal[DRIVE_ERROR_TEXT]; /* why */
+    struct machine_io io;
     struct console console;
     struct link *link; /* NULL: none */
 };

@@ -138,6 +138,20 @@ static bool announce_brake(const struct application *application,
     return text->length > 0u;
 }
 
+/* That an input has stopped the motion. */
+static bool announce_stop(const struct application *application,
+                          struct console_announced *announced, struct text *text)
+{
+    const uint8_t stop = MACHINE_IO_CARRIED ? application->io.stop : (uint8_t)MACHINE_STOP_NONE;
+
+    if (stop != announced->stop && stop != MACHINE_STOP_NONE) {
+        text_put(text, "warning: stop: ");
+        text_put(text, machine_stop_text((enum machine_stop)stop));
+    }
+    announced->stop = stop;
+    return text->length > 0u;
+}
+
 static bool announce(struct application *application)
 {
     struct console *console = &application->console;
@@ -155,6 +169,7 @@ static bool announce(struct application *application)
         text_put(&text, "warning: the reference rests: what continues it came too late");
     } else if (!announce_unheard(application, announced, &text) &&
                !announce_brake(application, announced, &text) &&
+               !announce_stop(application, announced, &text) &&
                !announce_state(application, announced, &text) &&
                !announce_dropped(application, announced, &text) &&
                !announce_heat(application, announced, &text) &&
@@ -176,6 +191,7 @@ void console_skip_announcements(struct application *application)
     announced->dropped = interrupt_view_commands_dropped(drive);
     announced->synchronism = interrupt_view_synchronism(drive);
     announced->unheard = application->unheard;
+    announced->stop = application->io.stop;
 }
 
 /* ---- commands ---- */

@@ -35,6 +35,7 @@ struct console_announced {
     bool start;
     bool refused_settings;
     bool unheard;
+    uint8_t stop; /* enum machine_stop */
     uint8_t heat; /* THERMAL_... of drive/thermal_watch.h */
     bool brake_rests;
     enum drive_state state;

@@ -105,6 +105,19 @@
          "share of time for which the brake resistor may be on for good")                          \
     REAL(0x215b, brake_pulse_s, "s", FIXED(1e-3), FIXED(30.0), FIXED(1.0), AT_ENABLE,              \
          "for which it may be on from cold; beyond it rests until half of the heat is gone")       \
+    COUNT(                                                                                         \
+        0x2160, inputs_used, "", FIXED(0.0), FIXED(31.0), FIXED(0.0), AT_ENABLE,                   \
+        "inputs that are wired, added up: 1 limit -, 2 limit +, 4 home, 8 enable, 16 quick stop; " \
+        "acts at once")                                                                            \
+    COUNT(0x2161, inputs_low, "", FIXED(0.0), FIXED(31.0), FIXED(0.0), AT_ENABLE,                  \
+          "of them those that are active while low; an open input is high; acts at once")          \
+    COUNT(                                                                                         \
+        0x2162, outputs_low, "", FIXED(0.0), FIXED(7.0), FIXED(0.0), AT_ENABLE,                    \
+        "outputs that are low while active, added up: 1 alarm, 2 in position, 4 brake released; "  \
+        "acts at once")                                                                            \
+    REAL(                                                                                          \
+        0x2163, holding_brake_s, "s", FIXED(0.0), FIXED(2.0), FIXED(0.0), AT_ENABLE,               \
+        "so long before `disable` takes the current the holding brake engages; 0: none is fitted") \
     REAL(0x2130, observer_bandwidth_rad_s, "rad/s", FIXED(1.0), FIXED(1e6), FOLLOWS, AT_ENABLE,    \
          "triple pole of the model observer: 1000, of the default law with an encoder 1400, of a " \
          "light rotor what its swings ask for, or what period and counts bear")                    \

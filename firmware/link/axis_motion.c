@@ -86,6 +86,19 @@ void axis_motion_put_defaults(struct application *application)
     put_default(&objects->quick_stop_deceleration, 0.5f * acceleration);
 }
 
+/* A steeper ramp ends as quickly as it began: by the jerk of a gentler one the speed would go on
+   rising. */
+static float jerk_to_end(struct axis_motion *motion, float jerk)
+{
+    const uint8_t steady_ms = 3; /* a command that begins takes less */
+
+    if (motion->steady_ms >= steady_ms || motion->jerk < jerk) {
+        motion->jerk = jerk;
+    }
+    motion->steady_ms = 0;
+    return motion->jerk;
+}
+
 /* Acceleration and jerk of a command that goes to `speed_rad_s`; false: the drive refuses it. */
 static bool post(struct application *application, struct drive_command *command, float speed_rad_s,
                  uint32_t acceleration_units)
@@ -98,7 +111,8 @@ static bool post(struct application *application, struct drive_command *command,
 
     command->speed_rad_s = (double)speed_rad_s;
     command->acceleration_rad_s2 = (double)acceleration;
-    command->jerk_rad_s3 = (double)(acceleration / (jerk_s > jerk_min_s ? jerk_s : jerk_min_s));
+    command->jerk_rad_s3 = (double)jerk_to_end(
+        motion_of(application), acceleration / (jerk_s > jerk_min_s ? jerk_s : jerk_min_s));
     return cia402_command(application, command);
 }
 
@@ -111,6 +125,7 @@ void axis_motion_brake(struct application *application, bool quickly)
 
     motion_of(application)->waits = false;
     motion_of(application)->speed_rad_s = 0.0f;
+    motion_of(application)->at_limit = false;
     if (!axis_motion_rests(application) && !post(application, &brake, 0.0f, deceleration)) {
         brake.kind = DRIVE_COMMAND_STOP;
         (void)cia402_command(application, &brake);
@@ -138,7 +153,7 @@ double axis_motion_target(struct application *application)
     struct axis_motion *motion = motion_of(application);
     const bool relative =
         link->axis.mode == CIA402_PROFILE_POSITION && (link->axis.controlword & RELATIVE) != 0u;
-    const double unit_rad = cia402_unit_rad(&link->objects);
+    const double unit_rad = cia402_turned_unit_rad(&link->objects, CIA402_POSITION_TURNED);
     const double from = relative ? motion->target_rad / unit_rad : 0.0;
     double target = from + (double)link->objects.target_position;
 
@@ -199,6 +214,69 @@ static bool slows(float before, float speed)
     return before > 0.0f ? speed < before : speed > before && before < 0.0f;
 }
 
+/* How far the reference may go on in the direction of a speed, rad. The limits' presets are none.
+ */
+static float room_rad(struct application *application, float speed, double *end_rad)
+{
+    const struct link_objects *objects = &application->link->objects;
+    const double unit_rad = cia402_turned_unit_rad(objects, CIA402_POSITION_TURNED);
+    const bool up = (speed > 0.0f) == (unit_rad > 0.0);
+    const int32_t end = up ? objects->position_most : objects->position_least;
+
+    *end_rad = unit_rad * (double)end;
+    if (end == (up ? INT32_MAX : INT32_MIN)) {
+        return 1e9f;
+    }
+    const float room = (float)(*end_rad - cia402_signals(application)->theta_ref_rad);
+
+    return speed > 0.0f ? room : -room;
+}
+
+/* More than it takes from a speed to rest, rad: a ramp still ends before, and commands take time.
+ */
+static float stopping_rad(struct application *application, float speed)
+{
+    const float command_s = 0.01f;
+    const float most = axis_motion_acceleration_limit(application);
+    const float asked = units(application) * (float)application->link->objects.profile_deceleration;
+    const float acceleration = asked < most ? asked : most;
+    const float ramp_s = speed / acceleration;
+
+    return speed * (0.5f * ramp_s + 1.5f * (jerk_share * ramp_s + jerk_min_s) + command_s);
+}
+
+/* Where a software limit is near, the motion ends there, as one to a position does; beyond it
+   `speed` becomes 0. true: nothing else is to be commanded. */
+static bool ends_at_limit(struct application *application, float *speed)
+{
+    struct axis_motion *motion = motion_of(application);
+    struct drive_command to_limit = {.kind = DRIVE_COMMAND_RETARGET};
+    const float asked = (float)magnitude((double)*speed);
+    const float present = (float)magnitude(cia402_signals(application)->omega_ref_rad_s);
+    const float most = asked > present ? asked : present;
+    const float room = room_rad(application, *speed, &to_limit.position_rad);
+
+    if (*speed == 0.0f || room > stopping_rad(application, most)) {
+        return false;
+    }
+    motion->limited = true;
+    if (motion->at_limit && motion->target_rad == to_limit.position_rad) {
+        return true;
+    }
+    if (room <= 0.0f) {
+        *speed = 0.0f;
+        return false;
+    }
+    if (!command_queue_holds_any(&application->drive.commands) &&
+        post(application, &to_limit, 0.98f * most, /* a plan at its own limit is a soft one */
+             application->link->objects.profile_deceleration)) {
+        motion->at_limit = true;
+        motion->target_rad = to_limit.position_rad;
+        motion->speed_rad_s = *speed;
+    }
+    return true;
+}
+
 static void go_at_speed(struct application *application)
 {
     const struct link_objects *objects = &application->link->objects;
@@ -210,14 +288,24 @@ static void go_at_speed(struct application *application)
 
     motion->limited = false;
     if (!motion->halted) {
-        speed = axis_motion_limited(
-            application, units(application) * (float)objects->target_velocity, -most, most);
+        speed = axis_motion_limited(application,
+                                    (float)cia402_turned_unit_rad(objects, CIA402_VELOCITY_TURNED) *
+                                        (float)objects->target_velocity,
+                                    -most, most);
     }
-    if (speed != motion->speed_rad_s && !command_queue_holds_any(&application->drive.commands) &&
-        post(application, &velocity, speed,
-             slows(before, speed) ? objects->profile_deceleration
-                                  : objects->profile_acceleration)) {
-        motion->speed_rad_s = speed;
+    if (ends_at_limit(application, &speed)) {
+        return;
+    }
+    if ((speed != motion->speed_rad_s || motion->at_limit) &&
+        !command_queue_holds_any(&application->drive.commands)) {
+        if (post(application, &velocity, speed,
+                 slows(before, speed) ? objects->profile_deceleration
+                                      : objects->profile_acceleration)) {
+            motion->speed_rad_s = speed;
+            motion->at_limit = false;
+        } else {
+            motion->limited = true;
+        }
     }
 }
 
@@ -227,7 +315,9 @@ static void home(struct application *application)
 {
     const struct link_objects *objects = &application->link->objects;
     struct drive_command here = {.kind = DRIVE_COMMAND_SET_POSITION,
-                                 .position_rad = cia402_unit_rad(objects) * objects->home_offset};
+                                 .position_rad =
+                                     cia402_turned_unit_rad(objects, CIA402_POSITION_TURNED) *
+                                     objects->home_offset};
 
     motion_of(application)->homed = cia402_command(application, &here);
     motion_of(application)->not_homed = !motion_of(application)->homed;
@@ -312,11 +402,16 @@ void axis_motion_look(struct application *application)
     struct axis_motion *motion = motion_of(application);
     const struct drive_signals *now = cia402_signals(application);
     const float unit_rad = units(application);
+    const float speed = (float)now->omega_ref_rad_s;
     const float off_rad = (float)magnitude(now->theta_ref_rad - now->theta_est_rad);
     const float away_rad = (float)magnitude(motion->target_rad - now->theta_est_rad);
     const bool there = !motion->waits && axis_motion_rests(application) &&
                        away_rad <= unit_rad * (float)link->objects.target_window;
 
+    motion->steady_ms = (uint8_t)(speed != motion->reference_rad_s ? 0
+                                  : motion->steady_ms < UINT8_MAX  ? motion->steady_ms + 1
+                                                                   : UINT8_MAX);
+    motion->reference_rad_s = speed;
     motion->reached = lasts(&motion->in_window_ms, there, link->objects.target_ms);
     motion->off = lasts(&motion->off_ms, off_rad > unit_rad * (float)link->objects.following_window,
                         link->objects.following_ms);

@@ -1,8 +1,8 @@
 /*
  * Cyclic synchronous position: the target that comes in each interval, by PDO as a rule, is a
- * set-point of the drive (motion/set_points.h), passed some 2.3 intervals later. Of up to three
- * that do not come, the motion's going on takes the place; then it comes to rest. What asks for
- * more than the drive's speed or acceleration is followed as closely as those allow.
+ * set-point of the drive (motion/set_points.h), passed three intervals and 1.3 ms after it came. Of
+ * up to three that do not come, the motion's going on takes the place; then it comes to rest. What
+ * asks for more than the drive's speed or acceleration is followed as closely as those allow.
  */
 #ifndef STEADYSTEP_AXIS_STREAM_H
 #define STEADYSTEP_AXIS_STREAM_H

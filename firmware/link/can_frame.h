@@ -17,7 +17,7 @@ static inline uint32_t can_get(const uint8_t *at, size_t bytes)
 {
     uint32_t value = 0;
 
-    memcpy(&value, at, bytes);
+    memcpy(&value, at, bytes < sizeof value ? bytes : sizeof value); /* a real number's are eight */
     return value;
 }
 

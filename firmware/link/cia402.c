@@ -27,7 +27,7 @@ enum request {
    5 and 6 as 1 and 2, and stays. */
 enum { OFF_AT_ONCE = 0, AS_PROFILE = 1, STAYS_IN_QUICK_STOP = 5 };
 
-static enum request request_of(uint16_t word)
+static enum request request_of(uint32_t word)
 {
     if ((word & ENABLE_VOLTAGE) == 0u) {
         return REQUEST_DISABLE_VOLTAGE;
@@ -81,6 +81,9 @@ static void switch_on(struct application *application, enum drive_state drive)
     struct drive_command enable = {.kind = DRIVE_COMMAND_ENABLE};
     struct cia402 *axis = &application->link->axis;
 
+    if (application->io.engages) {
+        return; /* on its way off */
+    }
     if (drive == DRIVE_SWITCH_ON_DISABLED && !axis->asked && !axis->refused) {
         axis->asked = cia402_command(application, &enable);
         axis->refused = !axis->asked;
@@ -196,7 +199,9 @@ void cia402_background(struct application *application)
 {
     struct cia402 *axis = &application->link->axis;
     const enum drive_state drive = interrupt_view_state(&application->drive);
-    const enum request request = request_of(axis->controlword);
+    const bool stops = (machine_io_active(application) & HAL_INPUT_QUICK_STOP) != 0u;
+    const enum request request =
+        request_of(stops ? axis->controlword & ~(uint32_t)NO_QUICK_STOP : axis->controlword);
 
     if (drive == DRIVE_OPERATION_ENABLED && !axis_motion_rests(application)) {
         axis->moved_in = interrupt_view_period(&application->drive);

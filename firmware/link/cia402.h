@@ -35,9 +35,12 @@ struct application;
 
 /* What the motion of a mode goes by: axis_motion.c. */
 struct axis_motion {
-    double target_rad; /* of the last set-point */
-    float speed_rad_s; /* as commanded last, of profile velocity */
+    double target_rad;     /* of the last set-point */
+    float speed_rad_s;     /* as commanded last, of profile velocity */
+    float reference_rad_s; /* a millisecond ago */
+    float jerk;            /* of what is in motion */
     uint16_t in_window_ms, off_ms;
+    uint8_t steady_ms; /* for so long the reference's speed has been constant */
     bool waits;        /* a set-point has not begun */
     bool at_once;      /* it preempts what is in motion */
     bool acknowledged; /* bit 12 of profile position */
@@ -47,6 +50,7 @@ struct axis_motion {
     bool homed;
     bool not_homed; /* the drive has refused to be */
     bool halted;
+    bool at_limit; /* of profile velocity: goes to a software limit, or is there */
 };
 
 struct cia402 {
@@ -82,8 +86,14 @@ void cia402_ask(struct application *application, const struct object *object, ui
 /* What the drive shows in the present period. */
 const struct drive_signals *cia402_signals(struct application *application);
 
-/* A position unit of the factor group in rad of the motor. */
+/* A position unit of the factor group in rad of the motor, without a sign. */
 double cia402_unit_rad(const struct link_objects *objects);
+
+/* Bits of 607eh: what is counted against the motor's own direction. */
+enum { CIA402_POSITION_TURNED = 0x80, CIA402_VELOCITY_TURNED = 0x40 };
+
+/* A unit of either in rad of the motor, negative where it is turned. */
+double cia402_turned_unit_rad(const struct link_objects *objects, uint8_t turned);
 
 /* Asks the drive for a command at once. false: refused. */
 bool cia402_command(struct application *application, struct drive_command *command);

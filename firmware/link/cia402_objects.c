@@ -28,6 +28,13 @@ double cia402_unit_rad(const struct link_objects *objects)
            ((double)objects->feed * (double)objects->gear_shaft);
 }
 
+double cia402_turned_unit_rad(const struct link_objects *objects, uint8_t turned)
+{
+    const double unit_rad = cia402_unit_rad(objects);
+
+    return (objects->polarity & turned) != 0u ? -unit_rad : unit_rad;
+}
+
 /* A whole number of 32 bits, rounded; the nearest one where it is beyond. */
 static int32_t rounded(double value)
 {
@@ -66,6 +73,7 @@ static double rated_share(struct application *application, uint16_t index)
 static double quantity(struct application *application, uint16_t index)
 {
     const struct drive_signals *now = cia402_signals(application);
+    uint8_t turned = CIA402_POSITION_TURNED;
     double value;
 
     switch (index) {
@@ -77,9 +85,11 @@ static double quantity(struct application *application, uint16_t index)
         break;
     case 0x606b:
         value = now->omega_ref_rad_s;
+        turned = CIA402_VELOCITY_TURNED;
         break;
     case 0x606c:
         value = now->omega_est_rad_s;
+        turned = CIA402_VELOCITY_TURNED;
         break;
     case 0x60f4:
         value = now->theta_ref_rad - now->theta_est_rad;
@@ -87,7 +97,21 @@ static double quantity(struct application *application, uint16_t index)
     default:
         return rated_share(application, index);
     }
-    return value / cia402_unit_rad(&application->link->objects);
+    return value / cia402_turned_unit_rad(&application->link->objects, turned);
+}
+
+/* Bits of 60fdh: the inputs, quick stop as the first of our own; of 60feh: "set brake", alarm, in
+   position. */
+static uint32_t wires(const struct application *application, uint16_t index)
+{
+    const struct machine_io *io = &application->io;
+    const uint32_t inputs = machine_io_active(application);
+
+    if (index == 0x60fdu) {
+        return (inputs & 0x0fu) | ((inputs & HAL_INPUT_QUICK_STOP) != 0u ? 1u << 16 : 0u);
+    }
+    return ((io->outputs & HAL_OUTPUT_BRAKE) == 0u ? 1u : 0u) |
+           (uint32_t)(io->outputs & (HAL_OUTPUT_ALARM | HAL_OUTPUT_IN_POSITION)) << 16;
 }
 
 void cia402_ask(struct application *application, const struct object *object, uint8_t *value)
@@ -103,6 +127,10 @@ void cia402_ask(struct application *application, const struct object *object, ui
         break;
     case 0x6061:
         can_put(value, (uint8_t)axis->mode, 1);
+        break;
+    case 0x60fd:
+    case 0x60fe:
+        can_put(value, wires(application, object->index), 4);
         break;
     default:
         can_put(value, (uint32_t)rounded(quantity(application, object->index)),

@@ -142,7 +142,6 @@ bool link_accepts(const struct application *application, const struct object *ob
 {
     const uint32_t number = can_get(value, object_bytes(object));
 
-    (void)application;
     switch (object->index) {
     case 0x1005:
         return pdo_may_have(number); /* it makes none, and has no identifiers of 29 bits */
@@ -158,6 +157,8 @@ bool link_accepts(const struct application *application, const struct object *ob
         return number <= 2u || number == 5u || number == 6u;
     case 0x605d:
         return number == 1u || number == 2u;
+    case 0x607e: /* the others have no meaning; nothing turns round in motion */
+        return (number & 0x3fu) == 0u && application->link->axis.state != CIA402_OPERATION_ENABLED;
     case 0x6081:
     case 0x6083:
     case 0x6084:

@@ -36,7 +36,8 @@
     GROUP(0x608f, "Position encoder resolution")                                                   \
     GROUP(0x6091, "Gear ratio")                                                                    \
     GROUP(0x6092, "Feed constant")                                                                 \
-    GROUP(0x60c2, "Interpolation time period")
+    GROUP(0x60c2, "Interpolation time period")                                                     \
+    GROUP(0x60fe, "Digital outputs")
 
 #define LINK_OBJECTS(STORED, ASKED)                                                                \
     STORED(0x1000, 0, U32, RO, device_type, 0x00040192, "Device type")                             \
@@ -129,8 +130,11 @@
     STORED(0x60c2, 1, U8, RW, interval, 4, "Interpolation time period value")                      \
     STORED(0x60c2, 2, I8, RW, interval_exponent, -3, "Interpolation time index")                   \
     ASKED(0x60f4, 0, I32, RO_T, 0, "Following error actual value")                                 \
+    ASKED(0x60fd, 0, U32, RO_T, 0, "Digital inputs")                                               \
+    ASKED(0x60fe, 1, U32, RO_T, 0, "Physical outputs")                                             \
     STORED(0x60ff, 0, I32, RW_R, target_velocity, 0, "Target velocity")                            \
     STORED(0x6502, 0, U32, RO, modes, 0x000000a5, "Supported drive modes")                         \
+    STORED(0x607e, 0, U8, RW, polarity, 0, "Polarity")                                             \
     STORED(0x1010, 0, U8, RO, store_highest, 1, "Highest sub-index supported")                     \
     STORED(0x1011, 0, U8, RO, restore_highest, 1, "Highest sub-index supported")                   \
     STORED(0x1016, 0, U8, RO, consumer_highest, 1, "Highest sub-index supported")                  \
@@ -142,6 +146,7 @@
     STORED(0x608f, 0, U8, RO, resolution_highest, 2, "Highest sub-index supported")                \
     STORED(0x6091, 0, U8, RO, gear_highest, 2, "Highest sub-index supported")                      \
     STORED(0x6092, 0, U8, RO, feed_highest, 2, "Highest sub-index supported")                      \
-    STORED(0x60c2, 0, U8, RO, interval_highest, 2, "Highest sub-index supported")
+    STORED(0x60c2, 0, U8, RO, interval_highest, 2, "Highest sub-index supported")                  \
+    STORED(0x60fe, 0, U8, RO, outputs_highest, 1, "Highest sub-index supported")
 
 #endif

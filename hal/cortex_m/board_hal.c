@@ -24,6 +24,20 @@ static uint16_t bridge_temperature(void *context)
     return port_bridge_temperature();
 }
 
+#ifndef STEADYSTEP_WITHOUT_MACHINE_IO
+static uint32_t inputs_read(void *context)
+{
+    (void)context;
+    return port_inputs_read();
+}
+
+static void outputs_write(void *context, uint32_t levels)
+{
+    (void)context;
+    port_outputs_write(levels);
+}
+#endif
+
 static uint32_t cycle_count(void *context)
 {
     (void)context;
@@ -92,6 +106,10 @@ const struct hal board_hal = {
     .bridge_enable = bridge_enable,
     .bridge_disable = bridge_disable,
     .bridge_temperature = bridge_temperature,
+#ifndef STEADYSTEP_WITHOUT_MACHINE_IO
+    .inputs_read = inputs_read,
+    .outputs_write = outputs_write,
+#endif
     .cycle_count = cycle_count,
     .time_us = time_us,
     .watchdog_feed = watchdog_feed,

@@ -35,6 +35,16 @@ static uint64_t time_us(void *context)
     return sil->period * period_ns / 1000u;
 }
 
+static uint32_t inputs_read(void *context)
+{
+    return ((const struct hal_sil *)context)->inputs;
+}
+
+static void outputs_write(void *context, uint32_t levels)
+{
+    ((struct hal_sil *)context)->outputs = levels;
+}
+
 static void watchdog_feed(void *context)
 {
     struct hal_sil *sil = context;
@@ -145,6 +155,7 @@ void hal_sil_init(struct hal_sil *sil, const struct hal_facts *facts)
     memset(sil, 0, sizeof *sil);
     memset(sil->parameters, 0xff, sizeof sil->parameters);
     sil->control_period = UINT32_MAX;
+    sil->inputs = HAL_INPUTS; /* nothing is wired */
     sil->facts = *facts;
     sil->facts.parameter_page_bytes = HAL_SIL_PAGE_BYTES;
     sil->facts.parameter_word_bytes = HAL_SIL_WORD_BYTES;
@@ -158,6 +169,8 @@ void hal_sil_init(struct hal_sil *sil, const struct hal_facts *facts)
     sil->board.bridge_enable = bridge_enable;
     sil->board.bridge_disable = bridge_disable;
     sil->board.bridge_temperature = bridge_temperature;
+    sil->board.inputs_read = inputs_read;
+    sil->board.outputs_write = outputs_write;
     sil->board.cycle_count = cycle_count;
     sil->board.time_us = time_us;
     sil->board.watchdog_feed = watchdog_feed;
@@ -179,6 +192,7 @@ static void empty(struct hal_sil_stream *stream)
 void hal_sil_restart(struct hal_sil *sil)
 {
     sil->restarted = true;
+    sil->outputs = 0;
     sil->follows = false;
     sil->control_period = UINT32_MAX;
     sil->bridge_allowed = false;

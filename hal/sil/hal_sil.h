@@ -33,12 +33,13 @@ struct hal_sil {
     struct hal board; /* what the firmware is given */
     struct hal_facts facts;
 
-    uint64_t period;         /* index k of the present S(k), since the first start */
-    uint32_t control_period; /* of the last control interrupt that has begun, since the last start;
-                                UINT32_MAX: none has */
-    bool follows;            /* application_follow_control, behind the control interrupt */
-    bool bridge_allowed;     /* between bridge_enable and bridge_disable */
-    bool trip_latched;       /* by hal_sil_trip, until bridge_disable */
+    uint64_t period;          /* index k of the present S(k), since the first start */
+    uint32_t control_period;  /* of the last control interrupt that has begun, since the last start;
+                                 UINT32_MAX: none has */
+    bool follows;             /* application_follow_control, behind the control interrupt */
+    bool bridge_allowed;      /* between bridge_enable and bridge_disable */
+    bool trip_latched;        /* by hal_sil_trip, until bridge_disable */
+    uint32_t inputs, outputs; /* levels of the machine's */
     uint16_t bridge_temperature; /* code of its sensor */
     bool restarted;              /* by hal_sil_restart */
     bool watchdog_running;

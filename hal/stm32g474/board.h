@@ -37,9 +37,13 @@
  *   BRIDGE_NTC_BETA_K     of the NTC resistor there, firmware/drive/thermal_model.h; 0: none
  *   HAS_BRAKE             1: an output BRAKE_PORT, BRAKE_PIN connects the brake resistor while it
  *                         is high; pulled down, here and outside. 0: none
- *   ENCODER_TIMER         4, 5 or 8: its channels 1 and 2; 0: none
- *   BAUD                  of LPUART1
- *   LED_PORT, LED_PIN
+ *   MACHINE_INPUTS_PORT, MACHINE_INPUTS_PIN
+ *                         the first of five pins, one behind the other: limit -, limit +, home,
+ *                         enable, quick stop (hal.h, HAL_INPUT_...); pulled up
+ *   MACHINE_OUTPUTS_PORT, MACHINE_OUTPUTS_PIN
+ *                         of three: alarm, in position, holding brake; pulled down, here and
+ * outside ENCODER_TIMER         4, 5 or 8: its channels 1 and 2; 0: none BAUD                  of
+ * LPUART1 LED_PORT, LED_PIN
  */
 #ifndef STEADYSTEP_STM32G474_BOARD_H
 #define STEADYSTEP_STM32G474_BOARD_H

@@ -78,6 +78,16 @@ REQUIRE(IS_CHANNEL(LEG_A_PLUS_CHANNEL) && IS_CHANNEL(LEG_A_MINUS_CHANNEL) &&
             LEG_A_PLUS_CHANNEL != LEG_A_MINUS_CHANNEL && LEG_B_PLUS_CHANNEL != LEG_B_MINUS_CHANNEL,
         "the legs of a phase need two channels, 1...18, of its converter");
 
+/* ---- Machine ---- */
+#if !defined MACHINE_INPUTS_PORT || !defined MACHINE_INPUTS_PIN ||                                 \
+    !defined MACHINE_OUTPUTS_PORT || !defined MACHINE_OUTPUTS_PIN
+#error pin map: the machine needs MACHINE_INPUTS_PORT, _PIN, MACHINE_OUTPUTS_PORT, _PIN
+#else
+REQUIRE(MACHINE_INPUTS_PIN >= 0 && MACHINE_INPUTS_PIN <= 11 && MACHINE_OUTPUTS_PIN >= 0 &&
+            MACHINE_OUTPUTS_PIN <= 13,
+        "MACHINE_INPUTS_PIN is the first of five of its port, MACHINE_OUTPUTS_PIN of three");
+#endif
+
 /* ---- Encoder, serial line ---- */
 REQUIRE(ENCODER_TIMER == 0 || ENCODER_TIMER == 4 || ENCODER_TIMER == 5 || ENCODER_TIMER == 8,
         "ENCODER_TIMER must be 4, 5 or 8 (TIM4, TIM5, TIM8), or 0: none");

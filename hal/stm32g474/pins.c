@@ -1,5 +1,6 @@
 #include "hal/stm32g474/pins.h"
 
+#include "hal/cortex_m/port.h"
 #include "hal/stm32g474/board.h"
 #include "hal/stm32g474/registers.h"
 
@@ -41,4 +42,16 @@ void pins_connect(void)
 void pins_led(int on)
 {
     LED_PORT->bsrr = on ? BIT(LED_PIN) : BIT(LED_PIN + 16);
+}
+
+uint32_t port_inputs_read(void)
+{
+    return MACHINE_INPUTS_PORT->idr >> MACHINE_INPUTS_PIN & HAL_INPUTS;
+}
+
+/* Sets and clears at once. */
+void port_outputs_write(uint32_t levels)
+{
+    MACHINE_OUTPUTS_PORT->bsrr = (levels & HAL_OUTPUTS) << MACHINE_OUTPUTS_PIN |
+                                 (~levels & HAL_OUTPUTS) << (MACHINE_OUTPUTS_PIN + 16u);
 }

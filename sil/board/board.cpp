@@ -178,6 +178,16 @@ void Board::stall_control_interrupt(double until_s)
     impl_->stalled = until_s > control_deadline_share * impl_->hal.facts.control_period_s;
 }
 
+void Board::put_inputs(std::uint32_t levels)
+{
+    impl_->hal.inputs = levels;
+}
+
+std::uint32_t Board::machine_outputs() const
+{
+    return impl_->hal.outputs;
+}
+
 void Board::send(const std::string &bytes)
 {
     impl_->typed += bytes;

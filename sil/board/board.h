@@ -41,6 +41,8 @@ class Board : public DriveBoard
     void power_cycle() override;
     void short_circuit(int leg, double current_A) override;
     void stall_control_interrupt(double until_s) override;
+    void put_inputs(std::uint32_t levels) override;
+    std::uint32_t machine_outputs() const override;
     void control() override;
     void advance() override;
     const drive_signals &signals() const override;

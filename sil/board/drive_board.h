@@ -55,6 +55,11 @@ class DriveBoard
        takes time its rest follows, and counts. */
     virtual void stall_control_interrupt(double until_s) = 0;
 
+    /* Levels of the machine's inputs from the coming control() on, HAL_INPUT_..., and of its
+       outputs. All inputs are high until then. */
+    virtual void put_inputs(std::uint32_t levels) = 0;
+    virtual std::uint32_t machine_outputs() const = 0;
+
     /* One PWM period: the control interrupt with the samples of the present S(k); signals() and
        plant().state() then both belong to S(k) until advance() takes the plant to S(k+1). */
     virtual void control() = 0;

@@ -48,6 +48,8 @@ void PlantEvents::act(const Event &event, std::uint32_t n)
 {
     if (event.shorted_leg) {
         board_.short_circuit(*event.shorted_leg, event.short_circuit_A);
+    } else if (event.inputs) {
+        board_.put_inputs(*event.inputs);
     } else if (event.stall_us) {
         board_.stall_control_interrupt(*event.stall_us * 1e-6);
     } else if (event.load) {

@@ -159,6 +159,10 @@ Event read_event(const Value &table, const std::string &path, double duration_s)
     const bool has_load = reader.any(load_torque_key) != nullptr;
     const bool has_vibration = reader.any(load_vibration_key) != nullptr;
     const bool has_short_circuit = reader.any("short_circuit") != nullptr;
+    std::int64_t inputs = 0;
+    if (reader.integer("inputs", inputs, 0, HAL_INPUTS)) {
+        event.inputs = static_cast<std::uint32_t>(inputs);
+    }
     double stall_us = 0;
     if (reader.number("stall_us", stall_us, shortest_stall_us, longest_stall_us)) {
         event.stall_us = stall_us;
@@ -180,10 +184,11 @@ Event read_event(const Value &table, const std::string &path, double duration_s)
     }
     if ((command != nullptr) + (plant != nullptr) + has_load + has_vibration +
             event.type.has_value() + event.expects.has_value() + has_short_circuit +
-            event.stall_us.has_value() + static_cast<bool>(event.fault) !=
+            event.stall_us.has_value() + event.inputs.has_value() +
+            static_cast<bool>(event.fault) !=
         1) {
         reader.fail("command", "expected exactly one of command, type, expect, load_torque_Nm, "
-                               "load_vibration_Nm, plant.<key>, short_circuit, stall_us, " +
+                               "load_vibration_Nm, plant.<key>, short_circuit, stall_us, inputs, " +
                                    listed(plant_fault_names()));
     }
     if (command != nullptr && command->kind == Value::Kind::text && command->text == power_cycle) {
@@ -194,7 +199,7 @@ Event read_event(const Value &table, const std::string &path, double duration_s)
             event.set_points_rad = read_set_points(reader, event.location);
             event.command->position_rad = event.set_points_rad.front();
         }
-    } else if (event.type || event.expects || event.stall_us || event.fault) {
+    } else if (event.type || event.expects || event.stall_us || event.inputs || event.fault) {
         reader.finish();
         return event;
     } else if (has_short_circuit) {

@@ -30,8 +30,9 @@ struct Event {
     std::optional<LoadChange> load;
     std::optional<int> shorted_leg; /* A+, A-, B+, B- */
     double short_circuit_A = 0;
-    std::optional<double> stall_us; /* holds the control interrupt up until then behind S(k) */
-    std::vector<Drift> drifts;      /* within drift_ramp_s */
+    std::optional<std::uint32_t> inputs; /* levels of the machine's, HAL_INPUT_... */
+    std::optional<double> stall_us;      /* holds the control interrupt up until then behind S(k) */
+    std::vector<Drift> drifts;           /* within drift_ramp_s */
     double drift_ramp_s = 0;
     PlantFault fault; /* of motor, winding or converters */
     Location location;

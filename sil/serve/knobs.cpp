@@ -36,10 +36,10 @@ std::string Knobs::state(std::uint32_t n) const
     const drive_signals &drive = board_.signals();
     return scenario::format(
         "ok time_s=%.4f theta_rad=%.9g omega_rad_s=%.6g load_torque_Nm=%.6g i_a_A=%.5g i_b_A=%.5g "
-        "bus_V=%.5g state=%s fault=%s\n",
+        "bus_V=%.5g state=%s fault=%s outputs=%u\n",
         n * scenario_.plant.bridge.period_s, motor.theta_rad, motor.omega_rad_s,
         motor.load_torque_Nm, motor.i_a_A, motor.i_b_A, motor.bus_V, drive_state_name(drive.state),
-        drive_fault_name(drive.fault));
+        drive_fault_name(drive.fault), board_.machine_outputs());
 }
 
 std::string Knobs::obey(const std::string &line, std::uint32_t n)

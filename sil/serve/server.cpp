@@ -16,7 +16,9 @@ namespace serve
 namespace
 {
 
-constexpr long nap_ns = 500000;             /* between two looks at the clock */
+constexpr long nap_ns = 500000;      /* between two looks at the clock */
+constexpr long short_nap_ns = 50000; /* while somebody waits for an answer */
+constexpr std::uint32_t answer_periods = 30;
 constexpr double bits_per_byte = 10;        /* 8N1 */
 constexpr std::size_t most_waiting = 65536; /* bytes for the drive; what comes beyond is lost */
 constexpr double shown_slow_s = 1;
@@ -59,13 +61,14 @@ void Server::wait()
     std::vector<pollfd> watched;
     serial_.watch(watched);
     knob_port_.watch(watched);
-    const timespec nap = {0, nap_ns};
+    const timespec nap = {0, period_ - heard_in_ < answer_periods ? short_nap_ns : nap_ns};
     ppoll(watched.data(), watched.size(), &nap, nullptr);
 }
 
 void Server::exchange()
 {
     const std::string bytes = serial_.read();
+    heard_in_ = bytes.empty() ? heard_in_ : period_;
     for (const std::unique_ptr<Station> &station : stations_) {
         if (station->to_drive.size() + bytes.size() <= most_waiting) {
             station->to_drive += bytes;

@@ -67,6 +67,7 @@ class Server
     std::vector<std::unique_ptr<Station>> stations_;
     std::string knob_line_; /* that has not ended */
     std::uint32_t period_ = 0;
+    std::uint32_t heard_in_ = 0; /* bytes have come from outside last */
     bool warned_slow_ = false;
 };
 

@@ -208,6 +208,27 @@ void VirtualBoard::Impl::run()
     }
 }
 
+/* As the reference board's pin map has them: PC8... and PA8... */
+constexpr unsigned machine_pins = 8;
+
+void VirtualBoard::put_inputs(std::uint32_t levels)
+{
+    Gpio &port = impl_->device.pins().port('C');
+    for (unsigned pin = 0; (HAL_INPUTS >> pin & 1u) != 0; ++pin) {
+        port.drive(machine_pins + pin, (levels >> pin & 1u) != 0);
+    }
+}
+
+std::uint32_t VirtualBoard::machine_outputs() const
+{
+    const Gpio &port = impl_->device.pins().port('A');
+    std::uint32_t levels = 0;
+    for (unsigned pin = 0; (HAL_OUTPUTS >> pin & 1u) != 0; ++pin) {
+        levels |= port.drives_high(machine_pins + pin) ? 1u << pin : 0u;
+    }
+    return levels;
+}
+
 void VirtualBoard::control()
 {
     Impl &board = *impl_;

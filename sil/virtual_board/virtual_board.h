@@ -49,6 +49,8 @@ class VirtualBoard : public sil::DriveBoard
     void power_cycle() override;
     void short_circuit(int leg, double current_A) override;
     void stall_control_interrupt(double until_s) override;
+    void put_inputs(std::uint32_t levels) override;
+    std::uint32_t machine_outputs() const override;
     /* These two throw virtual_board::Failure when the firmware misuses the hardware, is reset or
        stops controlling. */
     void control() override;

@@ -7,6 +7,11 @@ def without_comments(text):
     return re.sub(r"/\*.*?\*/", lambda m: re.sub(r"[^\n]", "", m.group()), text, flags=re.DOTALL)
 
 
+# one pin behind the other, as hal.h has their bits
+MACHINE = {"MACHINE_INPUTS": ("LIMIT_MINUS", "LIMIT_PLUS", "HOME", "ENABLE", "QUICK_STOP"),
+           "MACHINE_OUTPUTS": ("ALARM", "IN_POSITION", "HOLDING_BRAKE")}
+
+
 class PinMap:
     """pins: (pin, mode, alternate function, pull, peripheral, signal); comparators: (number,
     input); whatever else is defined, as text, by name: map["BAUD"]."""
@@ -46,7 +51,7 @@ class PinMap:
             yield f"{pin} has two uses"
         for pin, mode, function, _, peripheral, signal in self.pins:
             expected = function if mode == "ALTERNATE" else "-"
-            if mode != "OUTPUT" and (peripheral, pin, signal, expected) not in facts.pins:
+            if mode not in ("OUTPUT", "INPUT") and (peripheral, pin, signal, expected) not in facts.pins:
                 yield f"{pin}: no {peripheral} {signal} with function {expected} there"
         gates = [f"CH{n}" for n in (1, 2, 3, 4)]
         if not self.integrated():
@@ -62,6 +67,13 @@ class PinMap:
             port, number = self[f"{name}_PORT"], self[f"{name}_PIN"]
             if self.at.get((port, signal)) != f"P{port[-1]}{number}":
                 yield f"{name}_PORT, {name}_PIN: {port} {number} is no pin with signal {signal}"
+        for name, signals in MACHINE.items():
+            if name + "_PIN" not in self.defined:
+                continue
+            port, first = self[name + "_PORT"], int(self[name + "_PIN"])
+            for at, signal in enumerate(signals):
+                if self.at.get((port, signal)) != f"P{port[-1]}{first + at}":
+                    yield f"{name}_PIN: {port} {first + at} is no pin with signal {signal}"
 
     def channels_without_pin(self, converters):
         """`converters`: {name of a channel's definition: converter}"""

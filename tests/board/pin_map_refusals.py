@@ -47,6 +47,9 @@ REFUSED = [
     (GATES, "#define BRAKE_PIN  6", "", "a brake needs BRAKE_PORT and BRAKE_PIN"),
     (GATES, "#define HAS_BRAKE  1", "", "HAS_BRAKE must be 1, or 0"),
     (GATES, "BRAKE_PIN", "16", "BRAKE_PIN must be 0...15"),
+    (GATES, "MACHINE_INPUTS_PIN", "12", "the first of five"),
+    (GATES, "MACHINE_OUTPUTS_PIN", "14", "of three"),
+    (GATES, "#define MACHINE_INPUTS_PIN   8", "", "the machine needs"),
     (GATES, "ENCODER_TIMER", "3", "must be 4, 5 or 8"),
     (GATES, "BAUD", "300", "must be 9600...3000000"),
 ]

@@ -242,7 +242,7 @@ def changes(chosen):
     for at, (pin, mode, function, *rest) in enumerate(chosen.pins):
         other = copy.deepcopy(chosen)
         changed = str(int(function) ^ 1) if mode == "ALTERNATE" else function
-        mode = mode if mode == "ALTERNATE" else "INPUT"
+        mode = {"ALTERNATE": "ALTERNATE", "INPUT": "ANALOG"}.get(mode, "INPUT")
         other.pins[at] = (pin, mode, changed, *rest)
         yield pin, other
 

@@ -70,6 +70,29 @@ def knobs_do_what_events_do(served):
     knobs.close()
 
 
+def a_switch_on_the_wires_is_obeyed(served):
+    drive, knobs = Line(str(served.link)), Line(served.knobs[-1])
+    drive.send("set inputs_used 10\nset inputs_low 2\n")
+    drive.until("ok set inputs_low")
+    CHECKS.that(value_of(knobs.ask("state"), "outputs") == 0, "off: the brake holds")
+    drive.send("enable\n")
+    CHECKS.that(drive.until("ready:"), "it becomes ready")
+    time.sleep(0.1)
+    CHECKS.that(value_of(knobs.ask("state"), "outputs") == 6, "in position, the brake is released")
+    CHECKS.that(knobs.ask("inputs = 29").startswith("ok"), "a limit switch")
+    time.sleep(0.1)
+    CHECKS.that("limit switch + is active" in drive.ask("move 100"), "refuses")
+    CHECKS.that(knobs.ask("inputs = 23").startswith("ok"), "the enable switch")
+    time.sleep(0.2)
+    CHECKS.that(drive.ask("state").startswith("ok switch-on-disabled"), "switches off")
+    CHECKS.that(knobs.ask("inputs = 32").startswith("error: "), "there are five")
+    knobs.ask("inputs = 31")
+    drive.send("set inputs_used 0\n")
+    drive.until("ok set inputs_used")
+    drive.close()
+    knobs.close()
+
+
 def a_power_cycle_keeps_what_was_stored(served):
     drive, knobs = Line(str(served.link)), Line(served.knobs[-1])
     drive.send("disable\nset current_limit_A 2\nset law_bandwidth_rad_s 180\n")
@@ -112,6 +135,7 @@ with Served() as one:
     tcp_carries_the_same(one)
     knobs_do_what_events_do(one)
     a_power_cycle_keeps_what_was_stored(one)
+    a_switch_on_the_wires_is_obeyed(one)
 it_ends_in_order(signal.SIGTERM)
 it_ends_in_order(signal.SIGINT)
 what_cannot_be_had_is_said()

@@ -29,6 +29,7 @@ struct console_bench {
     uint8_t store[BENCH_PAGE * BENCH_PAGES];
     bool worn; /* the first page of each of the store's logs refuses to be programmed */
     size_t bytes_until_power_fails; /* of those that are programmed; then nothing is written */
+    uint32_t inputs, outputs;       /* levels of the machine's */
     struct hal_samples samples;
 };
 
@@ -80,6 +81,16 @@ static inline void bench_interrupts_between(struct console_bench *b)
     for (int i = 0; i < b->periods_between; i++) {
         b->bridge_was_on |= bench_interrupt()->bridge_on;
     }
+}
+
+static inline uint32_t bench_inputs_read(void *context)
+{
+    return ((const struct console_bench *)context)->inputs;
+}
+
+static inline void bench_outputs_write(void *context, uint32_t levels)
+{
+    ((struct console_bench *)context)->outputs = levels;
 }
 
 static inline void bench_watchdog_feed(void *context)
@@ -168,6 +179,8 @@ static inline struct hal bench_board(const struct hal_facts *facts)
         .version = "version",
         .bridge_enable = bench_bridge_enable,
         .bridge_disable = bench_bridge_disable,
+        .inputs_read = bench_inputs_read,
+        .outputs_write = bench_outputs_write,
         .time_us = bench_time_us,
         .watchdog_feed = bench_watchdog_feed,
         .start_cause = bench_start_cause,
@@ -195,6 +208,7 @@ static inline void bench_power_up(void)
     memset(&bench, 0, sizeof bench); /* no copy on the stack of a small core */
     bench.period = UINT32_MAX;
     bench.room = BENCH_STREAM;
+    bench.inputs = HAL_INPUTS;
     bench.bytes_until_power_fails = SIZE_MAX;
     bench.samples = (struct hal_samples){.current_a = 2048, .current_b = 2048, .bus_voltage = 3151};
     memset(bench.store, 0xff, sizeof bench.store);

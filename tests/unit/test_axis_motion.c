@@ -195,6 +195,26 @@ static void test_a_quick_stop_brakes_by_its_own_deceleration(void)
     TEST_ASSERT_EQUAL(DRIVE_SWITCH_ON_DISABLED, bench.application.drive.supervision.state);
 }
 
+/* As quickly as it has begun: the quick stop's jerk alone would let it go on for 90 ms. */
+static void test_a_quick_stop_ends_a_much_steeper_acceleration_at_once(void)
+{
+    double most = 0.0;
+
+    enable(3);
+    put(0x6083, 0, 4, 300 * TURN);
+    put(0x6085, 0, 4, 20 * TURN);
+    put(0x60ff, 0, 4, 8 * TURN);
+    while (speed_rad_s() < 4.0 * TWO_PI) {
+        bench_period();
+    }
+    control(0x0b);
+    for (int i = 0; i < 3000; i++) {
+        bench_period();
+        most = fmax(most, speed_rad_s());
+    }
+    TEST_ASSERT_TRUE(most < 6.0 * TWO_PI);
+}
+
 static void test_speed_and_acceleration_beyond_what_the_drive_can_are_cut_and_said(void)
 {
     int periods;
@@ -257,6 +277,143 @@ static void test_a_halt_of_a_speed_brakes_and_lets_it_go_on(void)
     control(0x0f);
     bench_periods(4000);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 2.0 * TWO_PI, speed_rad_s());
+}
+
+/* ---- a speed and the software limits ---- */
+
+static void begin_speed(int32_t units, int periods)
+{
+    put(0x60ff, 0, 4, (uint32_t)units);
+    bench_periods(periods);
+}
+
+static void test_a_speed_ends_at_either_software_limit_and_goes_back_from_it(void)
+{
+    enable(3);
+    put(0x6084, 0, 4, 20 * TURN);
+    put(0x607d, 1, 4, (uint32_t)(-TURN / 4));
+    put(0x607d, 2, 4, 3 * TURN);
+    begin_speed(4 * TURN, 4000);
+    TEST_ASSERT_EQUAL_HEX32(0, status(LIMITED));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 4 * TWO_PI, speed_rad_s());
+    bench_periods(8000);
+    TEST_ASSERT_TRUE(rests());
+    TEST_ASSERT_EQUAL_INT(3 * TURN, (int)get(0x6062));
+    TEST_ASSERT_EQUAL_HEX32(LIMITED, status(LIMITED | REACHED));
+    begin_speed(TURN, 2000); /* still beyond */
+    TEST_ASSERT_EQUAL_INT(3 * TURN, (int)get(0x6062));
+    begin_speed(-TURN, 8000);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, -TWO_PI, speed_rad_s());
+    TEST_ASSERT_EQUAL_HEX32(REACHED, status(LIMITED | REACHED));
+    begin_speed(-8 * TURN, 20000);
+    TEST_ASSERT_TRUE(rests());
+    TEST_ASSERT_EQUAL_INT(-TURN / 4, (int32_t)get(0x6062));
+}
+
+/* Whatever the speed, the ramps and what is in motion: never further than the limit. */
+static void test_no_speed_passes_a_software_limit(void)
+{
+    enable(3);
+    for (int i = 1; i <= 12; i++) {
+        const int32_t limit = i % 2 ? TURN + 999 * i : -TURN - 999 * i;
+
+        put(0x607d, 1, 4, (uint32_t)(limit < 0 ? limit : INT32_MIN));
+        put(0x607d, 2, 4, (uint32_t)(limit > 0 ? limit : INT32_MAX));
+        put(0x6083, 0, 4, (uint32_t)(i % 3 * 300 + 20) * TURN);
+        put(0x6084, 0, 4, (uint32_t)(i % 5 * 100 + 20) * TURN);
+        put(0x60ff, 0, 4, (uint32_t)(limit < 0 ? -i * TURN : i * TURN));
+        double furthest = 0.0;
+
+        for (int n = 0; n < 30000; n++) {
+            bench_period();
+            const double past = (reference_rad() / unit_rad - limit) * (limit < 0 ? -1 : 1);
+
+            furthest = n == 0 ? past : fmax(furthest, past);
+        }
+        TEST_ASSERT_TRUE(rests());
+        TEST_ASSERT_DOUBLE_WITHIN(0.5, 0.0, furthest);
+    }
+}
+
+static void test_a_limit_that_moves_is_gone_to_and_one_that_is_passed_stops(void)
+{
+    enable(3);
+    put(0x607d, 2, 4, TURN);
+    begin_speed(TURN / 2, 30000);
+    TEST_ASSERT_EQUAL_INT(TURN, (int)get(0x6062));
+    put(0x607d, 2, 4, TURN + 300); /* further off, but near */
+    bench_periods(15000);
+    TEST_ASSERT_EQUAL_INT(TURN + 300, (int)get(0x6062));
+    put(0x607d, 2, 4, INT32_MAX);
+    bench_periods(8000);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, TWO_PI / 2, speed_rad_s());
+    put(0x607d, 2, 4, 0);
+    bench_periods(8000);
+    TEST_ASSERT_TRUE(rests());
+    TEST_ASSERT_EQUAL_HEX32(LIMITED, status(LIMITED));
+}
+
+static void test_a_halt_before_a_limit_goes_on_to_it(void)
+{
+    enable(3);
+    put(0x6084, 0, 4, 2 * TURN);
+    put(0x607d, 2, 4, TURN);
+    begin_speed(TURN, 3000);
+    while (!bench_link.axis.motion.at_limit) {
+        bench_period();
+    }
+    control(0x10f);
+    bench_periods(15000);
+    TEST_ASSERT_TRUE(rests());
+    TEST_ASSERT_TRUE(get(0x6062) < TURN - 1000);
+    control(0x0f);
+    bench_periods(20000);
+    TEST_ASSERT_EQUAL_INT(TURN, (int)get(0x6062));
+}
+
+/* ---- polarity ---- */
+
+static void test_polarity_turns_positions_and_speeds_each_for_itself(void)
+{
+    put(0x607e, 0, 1, 0x80);
+    enable(1);
+    put(0x607a, 0, 4, 1000);
+    control(0x1f);
+    bench_periods(6000);
+    control(0x0f);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -1000 * unit_rad, reference_rad());
+    TEST_ASSERT_EQUAL_INT(1000, (int)get(0x6062));
+    put(0x607a, 0, 4, 500);
+    control(0x5f); /* relative */
+    bench_periods(6000);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -1500 * unit_rad, reference_rad());
+    put(0x6060, 0, 1, 3);
+    put(0x607d, 1, 4, (uint32_t)-TURN);
+    begin_speed(TURN / 2, 20);
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x607e, 0, 1, 0)); /* in operation */
+    bench_periods(30000);
+    TEST_ASSERT_EQUAL_INT(-TURN, (int32_t)get(0x6062)); /* the motor's way up */
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, TWO_PI, reference_rad());
+    control(0x00);
+    bench_periods(20);
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x607e, 0, 1, 0x20));
+    put(0x607e, 0, 1, 0x40);
+    enable(3);
+    put(0x607d, 1, 4, (uint32_t)INT32_MIN);
+    begin_speed(TURN / 2, 6000);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, -TWO_PI / 2, speed_rad_s());
+    TEST_ASSERT_INT_WITHIN(1, TURN / 2, (int32_t)get(0x606b));
+}
+
+static void test_homing_has_the_polarity_too(void)
+{
+    put(0x607e, 0, 1, 0x80);
+    enable(6);
+    put(0x607c, 0, 4, 1000);
+    control(0x1f);
+    bench_periods(20);
+    TEST_ASSERT_EQUAL_INT(1000, (int)get(0x6062));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -1000 * unit_rad, reference_rad());
 }
 
 /* ---- set-points ---- */
@@ -504,9 +661,16 @@ int main(void)
     RUN_TEST(test_quantities_are_shown_in_units_rounded);
     RUN_TEST(test_a_speed_is_reached_by_its_acceleration_and_jerk);
     RUN_TEST(test_a_quick_stop_brakes_by_its_own_deceleration);
+    RUN_TEST(test_a_quick_stop_ends_a_much_steeper_acceleration_at_once);
     RUN_TEST(test_speed_and_acceleration_beyond_what_the_drive_can_are_cut_and_said);
     RUN_TEST(test_the_speed_counts_as_reached_within_a_thousandth);
     RUN_TEST(test_a_halt_of_a_speed_brakes_and_lets_it_go_on);
+    RUN_TEST(test_a_speed_ends_at_either_software_limit_and_goes_back_from_it);
+    RUN_TEST(test_no_speed_passes_a_software_limit);
+    RUN_TEST(test_a_limit_that_moves_is_gone_to_and_one_that_is_passed_stops);
+    RUN_TEST(test_a_halt_before_a_limit_goes_on_to_it);
+    RUN_TEST(test_polarity_turns_positions_and_speeds_each_for_itself);
+    RUN_TEST(test_homing_has_the_polarity_too);
     RUN_TEST(test_a_move_has_the_profile_s_speed_and_acceleration);
     RUN_TEST(test_targets_are_cut_at_either_software_limit_and_free_of_it_in_between);
     RUN_TEST(test_a_relative_target_counts_from_the_last_one);

@@ -95,21 +95,33 @@ static uint32_t underruns(void)
     return bench.application.drive.planner.underruns;
 }
 
-/* In intervals, an interval after the last target has come. */
+/* From the coming of a target to its being passed, in intervals, asked an interval after the last
+   one has come. */
 static double lag(int32_t step)
 {
-    return (target - reference_units()) / step;
+    return 1.0 + (target - reference_units()) / step;
 }
 
 static void test_targets_are_passed_some_intervals_later(void)
 {
     stream(50, 400);
-    TEST_ASSERT_DOUBLE_WITHIN(0.01, 2.325, lag(400));
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 3.325, lag(400));
     stream(50, 400);
-    TEST_ASSERT_DOUBLE_WITHIN(0.01, 2.325, lag(400));
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 3.325, lag(400));
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 400 * unit_rad / 4e-3, speed_rad_s());
     TEST_ASSERT_EQUAL_UINT32(0, underruns());
     TEST_ASSERT_EQUAL_HEX32(OF_MODE, status(OF_MODE | LIMITED));
+}
+
+/* Three intervals, and what a command takes. */
+static void test_the_lag_is_three_intervals_and_1_3_ms(void)
+{
+    put(0x60c2, 1, 1, 20);
+    for (int i = 0; i < 50; i++) {
+        send(target + 800);
+        pass(200);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 3.0 + 1.3 / 20.0, lag(800));
 }
 
 static void test_an_interval_is_its_value_by_its_power_of_ten(void)
@@ -117,7 +129,7 @@ static void test_an_interval_is_its_value_by_its_power_of_ten(void)
     put(0x60c2, 1, 1, 40);
     put(0x60c2, 2, 1, 0xfc); /* 1e-4 s */
     stream(50, 400);
-    TEST_ASSERT_DOUBLE_WITHIN(0.01, 2.325, lag(400));
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 3.325, lag(400));
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 400 * unit_rad / 4e-3, speed_rad_s());
 }
 
@@ -132,7 +144,7 @@ static void test_targets_that_stay_move_nothing_and_the_same_twice_ends_a_motion
     TEST_ASSERT_TRUE(rests());
     TEST_ASSERT_EQUAL_UINT32(0, underruns());
     stream(50, -400); /* and begins anew */
-    TEST_ASSERT_DOUBLE_WITHIN(0.01, 2.325, lag(-400));
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 3.325, lag(-400));
     TEST_ASSERT_EQUAL_UINT32(0, underruns());
 }
 
@@ -149,7 +161,7 @@ static void test_three_targets_may_be_missing_and_a_fourth_not(void)
         TEST_ASSERT_EQUAL_UINT8(0, bench_link.axis.stream.owed);
         TEST_ASSERT_EQUAL_HEX32(OF_MODE, status(OF_MODE));
         stream(20, 400);
-        TEST_ASSERT_DOUBLE_WITHIN(0.2, 2.325, lag(400));
+        TEST_ASSERT_DOUBLE_WITHIN(0.2, 3.325, lag(400));
         TEST_ASSERT_EQUAL_UINT32(0, underruns());
     }
     pass(CYCLE * 4);
@@ -169,7 +181,7 @@ static void test_a_target_that_comes_late_is_not_followed_twice(void)
     pass(15);
     TEST_ASSERT_EQUAL_UINT8(0, bench_link.axis.stream.owed);
     stream(20, 400);
-    TEST_ASSERT_DOUBLE_WITHIN(0.01, 2.325, lag(400));
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 3.325, lag(400));
     TEST_ASSERT_EQUAL_UINT32(0, underruns());
 }
 
@@ -264,6 +276,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_targets_are_passed_some_intervals_later);
+    RUN_TEST(test_the_lag_is_three_intervals_and_1_3_ms);
     RUN_TEST(test_an_interval_is_its_value_by_its_power_of_ten);
     RUN_TEST(test_targets_that_stay_move_nothing_and_the_same_twice_ends_a_motion);
     RUN_TEST(test_three_targets_may_be_missing_and_a_fourth_not);

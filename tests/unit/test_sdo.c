@@ -95,6 +95,15 @@ static void test_what_is_no_request_of_eight_bytes_is_not_answered(void)
     TEST_ASSERT_EQUAL_STRING("z\r", link_bench_say("t60284000100000000000", 2)); /* another node */
 }
 
+/* Eight bytes, of an object that is stored as such: a sanitizer sees what is written beside it. */
+static void test_a_real_number_that_is_stored_comes_in_two_segments(void)
+{
+    asked("2100240408000000", "6000240400000000");
+    asked("00000000000000E0", "2000000000000000");
+    asked("1D3F000000000000", "3000000000000000");
+    TEST_ASSERT_EQUAL_DOUBLE(0.5, bench_link.objects.capture_level);
+}
+
 static void test_a_text_comes_in_segments_of_seven(void)
 {
     bench.application.facts.board_name = "a board of this name";
@@ -256,6 +265,7 @@ int main(void)
     RUN_TEST(test_segments_that_are_too_long_or_too_few_are_refused);
     RUN_TEST(test_an_abort_of_the_client_is_not_answered_and_ends_the_transfer);
     RUN_TEST(test_what_is_no_request_of_eight_bytes_is_not_answered);
+    RUN_TEST(test_a_real_number_that_is_stored_comes_in_two_segments);
     RUN_TEST(test_a_text_comes_in_segments_of_seven);
     RUN_TEST(test_segments_go_the_way_that_the_transfer_does);
     RUN_TEST(test_numbers_of_every_type_are_put_and_shown);

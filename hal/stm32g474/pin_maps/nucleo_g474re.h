@@ -42,6 +42,16 @@
     PIN(A, 3, ALTERNATE, 12, UP, LPUART1, RX)                                                      \
     /* switch of the brake resistor, on while high */                                              \
     PIN(C, 6, OUTPUT, 0, DOWN, GPIOC, BRAKE)                                                       \
+    /* machine: limit -, limit +, home, enable, quick stop */                                      \
+    PIN(C, 8, INPUT, 0, UP, GPIOC, LIMIT_MINUS)                                                    \
+    PIN(C, 9, INPUT, 0, UP, GPIOC, LIMIT_PLUS)                                                     \
+    PIN(C, 10, INPUT, 0, UP, GPIOC, HOME)                                                          \
+    PIN(C, 11, INPUT, 0, UP, GPIOC, ENABLE)                                                        \
+    PIN(C, 12, INPUT, 0, UP, GPIOC, QUICK_STOP)                                                    \
+    /* alarm, in position, holding brake */                                                        \
+    PIN(A, 8, OUTPUT, 0, DOWN, GPIOA, ALARM)                                                       \
+    PIN(A, 9, OUTPUT, 0, DOWN, GPIOA, IN_POSITION)                                                 \
+    PIN(A, 10, OUTPUT, 0, DOWN, GPIOA, HOLDING_BRAKE)                                              \
     /* light-emitting diode LD2 */                                                                 \
     PIN(A, 5, OUTPUT, 0, NONE, GPIOA, LED)
 
@@ -94,6 +104,11 @@
 #define HAS_BRAKE  1
 #define BRAKE_PORT GPIOC
 #define BRAKE_PIN  6
+
+#define MACHINE_INPUTS_PORT  GPIOC
+#define MACHINE_INPUTS_PIN   8
+#define MACHINE_OUTPUTS_PORT GPIOA
+#define MACHINE_OUTPUTS_PIN  8
 
 #define ENCODER_TIMER 4
 

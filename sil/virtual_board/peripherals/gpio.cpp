@@ -6,7 +6,7 @@ namespace virtual_board
 namespace
 {
 
-enum : std::uint32_t { IDR = 0x10, ODR = 0x14, BSRR = 0x18, BRR = 0x28 };
+enum : std::uint32_t { PUPDR = 0x0c, IDR = 0x10, ODR = 0x14, BSRR = 0x18, BRR = 0x28 };
 
 /* The debug port's pins are alternate functions after a reset, all others analog. */
 std::vector<Register> registers(char port)
@@ -17,7 +17,7 @@ std::vector<Register> registers(char port)
     return {{0x00, "MODER", 0xffffffff, mode},
             {0x04, "OTYPER", 0xffff},
             {0x08, "OSPEEDR", 0xffffffff, speed},
-            {0x0c, "PUPDR", 0xffffffff, pull},
+            {PUPDR, "PUPDR", 0xffffffff, pull},
             {IDR, "IDR", 0},
             {ODR, "ODR", 0xffff},
             {BSRR, "BSRR", 0xffffffff},
@@ -43,8 +43,9 @@ std::uint32_t Gpio::fetch(std::uint32_t offset, Master)
     std::uint32_t levels = 0;
     for (unsigned pin = 0; pin < 16; pin++) {
         const std::uint32_t mask = 1u << pin;
-        const bool driven = mode(pin) == 1;
-        levels |= mode(pin) == 3 ? 0u : (driven ? at(ODR) : inputs) & mask;
+        const bool pulled_up = field(at(PUPDR), 2 * pin, 2) == 1 && (driven_ & mask) == 0;
+        const std::uint32_t outside = pulled_up ? mask : inputs;
+        levels |= mode(pin) == 3 ? 0u : (mode(pin) == 1 ? at(ODR) : outside) & mask;
     }
     return levels;
 }

@@ -36,11 +36,20 @@ class Gpio : public RegisterBlock
     {
         return mode(pin) == 1 && output(pin);
     }
+    /* From outside; a pin that nothing drives follows its pull. */
+    void drive(unsigned pin, bool high)
+    {
+        driven_ |= 1u << pin;
+        inputs = (inputs & ~(1u << pin)) | (high ? 1u << pin : 0u);
+    }
     std::uint32_t inputs = 0; /* levels of the pins that are driven from outside */
 
   protected:
     std::uint32_t fetch(std::uint32_t offset, Master master) override;
     void put(std::uint32_t offset, std::uint32_t value, Master master) override;
+
+  private:
+    std::uint32_t driven_ = 0;
 };
 
 class Pins

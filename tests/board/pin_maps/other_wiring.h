@@ -30,6 +30,14 @@
     PIN(C, 7, ALTERNATE, 4, UP, TIM8, CH2)                                                         \
     PIN(A, 2, ALTERNATE, 12, NONE, LPUART1, TX)                                                    \
     PIN(A, 3, ALTERNATE, 12, UP, LPUART1, RX)                                                      \
+    PIN(B, 2, INPUT, 0, UP, GPIOB, LIMIT_MINUS)                                                    \
+    PIN(B, 3, INPUT, 0, UP, GPIOB, LIMIT_PLUS)                                                     \
+    PIN(B, 4, INPUT, 0, UP, GPIOB, HOME)                                                           \
+    PIN(B, 5, INPUT, 0, UP, GPIOB, ENABLE)                                                         \
+    PIN(B, 6, INPUT, 0, UP, GPIOB, QUICK_STOP)                                                     \
+    PIN(A, 4, OUTPUT, 0, DOWN, GPIOA, ALARM)                                                       \
+    PIN(A, 5, OUTPUT, 0, DOWN, GPIOA, IN_POSITION)                                                 \
+    PIN(A, 6, OUTPUT, 0, DOWN, GPIOA, HOLDING_BRAKE)                                               \
     PIN(C, 10, OUTPUT, 0, NONE, GPIOC, LED)
 
 #define BRIDGE                BRIDGE_OF_GATES
@@ -71,6 +79,11 @@
 #define BRIDGE_NTC_BETA_K        3950.0 /* 10 kOhm to ground, 10 kOhm to the supply; 0: none */
 
 #define HAS_BRAKE 0
+
+#define MACHINE_INPUTS_PORT  GPIOB
+#define MACHINE_INPUTS_PIN   2
+#define MACHINE_OUTPUTS_PORT GPIOA
+#define MACHINE_OUTPUTS_PIN  4
 
 #define ENCODER_TIMER 8
 
