@@ -101,12 +101,18 @@ function(carry_laws target)
   target_compile_definitions(${target} PRIVATE "STEADYSTEP_LAWS=${carried}")
 endfunction()
 
-# carry_link(<target of the firmware> <default>): CANopen on the serial line, or not.
-function(carry_link target default)
-  option(STEADYSTEP_LINK "Carry the CANopen link (firmware/link)" ${default})
-  if(NOT STEADYSTEP_LINK)
-    target_compile_definitions(${target} PUBLIC STEADYSTEP_WITHOUT_LINK)
+# carry(<target of the firmware> <part> <default> <what it is>): option STEADYSTEP_<part>.
+function(carry target part default what)
+  option(STEADYSTEP_${part} "Carry ${what}" ${default})
+  if(NOT STEADYSTEP_${part})
+    target_compile_definitions(${target} PUBLIC STEADYSTEP_WITHOUT_${part})
   endif()
+endfunction()
+
+# carry_operation(<target of the firmware> <default>): what a machine operates the drive by.
+function(carry_operation target default)
+  carry(${target} LINK ${default} "the CANopen link (firmware/link)")
+  carry(${target} MACHINE_IO ${default} "switches and lamps (firmware/application/machine_io.h)")
 endfunction()
 
 find_pin_map(${STEADYSTEP_PIN_MAP} pin_map)

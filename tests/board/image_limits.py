@@ -19,7 +19,7 @@ from arm_image.image import Image  # noqa: E402
 # flash and ccm: what is in use in November 2026, up to 1.2 KB more; ram: all but what is captured, less
 # 4 KB
 LIMITS_B = {"flash": 124_416, "ccm": 25 * 1024, "ram": (96 - 32 - 4) * 1024}
-FLASH_WITHOUT_LINK_B = 109_056
+FLASH_BY_CONSOLE_B = 107_520  # without what a machine operates the drive by
 RAM = 0x20000000
 SRAM2 = range(0x20014000, 0x20018000)
 DMA_BUFFERS = ("leg_sums", "receive", "transmit")
@@ -27,9 +27,9 @@ VECTORS = 0x10000000  # aligned to more than the table takes
 
 
 def limits_of(image):
-    if "link_background" in (function[2] for function in image.functions):
-        return LIMITS_B
-    return {**LIMITS_B, "flash": FLASH_WITHOUT_LINK_B}
+    functions = {function[2] for function in image.functions}
+    by_console = functions.isdisjoint(("link_background", "machine_io_active"))
+    return {**LIMITS_B, "flash": FLASH_BY_CONSOLE_B} if by_console else LIMITS_B
 
 
 def used(image):

@@ -102,15 +102,15 @@ def size_of_image(sources):
 
 
 FEWER_LAWS = "STEADYSTEP_LAWS=state-feedback;pid;feedback-linearisation"
-WITHOUT_LINK = "STEADYSTEP_LINK=OFF"
+BY_CONSOLE = ("STEADYSTEP_LINK=OFF", "STEADYSTEP_MACHINE_IO=OFF")
 
 
-def variant(sources, name, option):
-    """Sizes of the image with an option."""
+def variant(sources, name, *options):
+    """Sizes of the image with these options."""
     same_compiler(sources)
     folder = sources.build / f"figures-{name}"
     sources.text("cmake", "--preset", G474, "-B", folder, f"-DSTEADYSTEP_HOST_BUILD={sources.build}/sil",
-                 f"-D{option}", accepted=(0,))
+                 *(f"-D{option}" for option in options), accepted=(0,))
     sources.text("cmake", "--build", folder, "--target", "steadystep", accepted=(0,))
     flash_B, ccm_B = sizes(folder / "steadystep.elf")
     return {"flash": kilobytes(flash_B), "ccm": kilobytes(ccm_B)}
@@ -122,10 +122,10 @@ def fewer_laws(sources):
     return variant(sources, "fewer-laws", FEWER_LAWS)
 
 
-@entry("image-without-link", f"cmake --preset {G474} -B build/figures-without-link -D{WITHOUT_LINK}",
-       Cost.DEAR, probe=(size_of_image,))
-def without_link(sources):
-    return {"flash": variant(sources, "without-link", WITHOUT_LINK)["flash"]}
+@entry("image-by-console", f"cmake --preset {G474} -B build/figures-by-console "
+       + " ".join(f"-D{option}" for option in BY_CONSOLE), Cost.DEAR, probe=(size_of_image,))
+def by_console(sources):
+    return {"flash": variant(sources, "by-console", *BY_CONSOLE)["flash"]}
 
 
 @entry("picture-interrupt", "tools/interrupt_budget RUN... --longest-path FILE --plot FILE.png",
