@@ -140,6 +140,10 @@ struct hal {
        next one; NULL: it cannot. < 1 us. */
     void (*follow_control)(void *context, bool follows);
 
+    /* From true to false no interrupt comes, at most for 2 us: for what the control interrupt is to
+       find as a whole. NULL: none comes while the background runs. */
+    void (*defer_interrupts)(void *context, bool defers);
+
     /*
      * Bytes from the host, as they come: at most `capacity`, and none behind the first '\n'; the
      * number read. If the last one is '\n', `line_period` receives the index of the control period
@@ -165,6 +169,13 @@ struct hal {
     bool (*parameters_program)(void *context, uint32_t offset, const void *data, size_t count);
     bool (*parameters_read)(void *context, uint32_t offset, void *data, size_t count);
 };
+
+static inline void hal_defer_interrupts(const struct hal *board, bool defers)
+{
+    if (board->defer_interrupts != NULL) {
+        board->defer_interrupts(board->context, defers);
+    }
+}
 
 /* A byte that stands for those lost (ASCII CAN); no line may contain it. */
 #define HAL_STREAM_LOST 0x18u

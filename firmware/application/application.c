@@ -104,6 +104,7 @@ static bool design_anew(struct application *application, char error[DRIVE_ERROR_
 {
     struct learned_parameters learned;
     const bool learns = drive_learned(&application->drive, &learned);
+    const num_t torque_constant = application->drive.torque_constant.change;
     const bool accepted = design(application, &application->chosen, false, error);
 
     if (!accepted) {
@@ -115,6 +116,7 @@ static bool design_anew(struct application *application, char error[DRIVE_ERROR_
     if (learns) {
         drive_put_learned(&application->drive, &learned);
     }
+    torque_constant_put(&application->drive, torque_constant);
     return accepted;
 }
 

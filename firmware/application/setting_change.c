@@ -1,5 +1,7 @@
 #include "firmware/application/setting_change.h"
 
+#include <stddef.h>
+
 #include "firmware/application/application.h"
 #include "firmware/application/settings_record.h"
 #include "firmware/design/refusal.h"
@@ -11,6 +13,20 @@ bool setting_change_waits(const struct application *application)
     const uint32_t period = interrupt_view_period(&application->drive);
 
     return application_settings_wait(application, period + application_typed_delay(application));
+}
+
+/* What was learned of another motor is worth nothing; what is given, learning begins with. */
+static void begin_to_learn(struct application *application, const struct setting *of)
+{
+    struct drive_settings *chosen = &application->chosen;
+
+    if (of == NULL || setting_is_of_motor(of)) {
+        chosen->initial_torque_constant_change = 0.0;
+    } else if (of->offset != offsetof(struct drive_settings, initial_torque_constant_change)) {
+        return;
+    }
+    torque_constant_put(&application->drive,
+                        num_from_double(chosen->initial_torque_constant_change));
 }
 
 /* Puts `changed` in force, at the next enable or at once. */
@@ -53,8 +69,11 @@ enum setting_change setting_change(struct application *application, const struct
     if (!setting_check(&changed, setting, refusal)) {
         return SETTING_OUT_OF_RANGE;
     }
-    return accept(application, &changed, setting->in_motion, refusal) ? SETTING_CHANGED
-                                                                      : SETTING_NOT_NOW;
+    if (!accept(application, &changed, setting->in_motion, refusal)) {
+        return SETTING_NOT_NOW;
+    }
+    begin_to_learn(application, setting);
+    return SETTING_CHANGED;
 }
 
 bool settings_restore(struct application *application, char refusal[DRIVE_ERROR_TEXT])
@@ -62,7 +81,11 @@ bool settings_restore(struct application *application, char refusal[DRIVE_ERROR_
     struct drive_settings defaults;
 
     drive_settings_default(&defaults, &application->chosen.motor);
-    return accept(application, &defaults, false, refusal);
+    if (!accept(application, &defaults, false, refusal)) {
+        return false;
+    }
+    begin_to_learn(application, NULL);
+    return true;
 }
 
 enum record_writing settings_store(struct application *application, char refusal[DRIVE_ERROR_TEXT])
@@ -74,6 +97,8 @@ enum record_writing settings_store(struct application *application, char refusal
         !drive_command(drive, &learned, refusal)) {
         return RECORD_REFUSED;
     }
+    application->chosen.initial_torque_constant_change =
+        num_to_double(drive->torque_constant.change);
     drive_feed_watchdog(drive); /* one of the two may have erased a page, the other may, too */
     (void)design_refuse(refusal, "the board has no parameter store, or refused to write");
     return settings_record_write(&application->board, &application->chosen);

@@ -63,9 +63,12 @@ void belt_watch_background(struct drive *drive)
     }
     const double period_s = drive->board->facts->control_period_s;
 
-    /* An interrupt in between has one gain of each, for a period. */
-    drive->params.current_control = current_control_design(
+    const struct current_control_params widest = current_control_design(
         &drive->settings.motor, &drive->base, period_s, CURRENT_BANDWIDTH_PERIOD_MAX / period_s);
+
+    hal_defer_interrupts(drive->board, true);
+    drive->params.current_control = widest;
+    hal_defer_interrupts(drive->board, false);
     drive->belt_watch.watches = false;
     drive->belt_watch.seen = true;
 }

@@ -321,7 +321,7 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
     params->current_control = current_control_design(&settings->motor, &drive->base, period_s,
                                                      settings->current_bandwidth_rad_s);
     belt_watch_design(drive, given);
-    drive->torque_constant = (struct torque_constant){.in_force = 0.0};
+    drive->torque_constant = (struct torque_constant){.in_force = NUM(0.0)};
     params->modulator = modulator_design(facts->pwm_half_period_counts,
                                          modulation_max(facts->low_state_s, period_s));
     params->protection = protection_design(&drive->base, facts, &drive->settings);
@@ -358,7 +358,11 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
     }
     drive_feed_watchdog(drive);
     synchronism_design(drive, settings);
-    return design_law(drive, &drive->settings, period_s, error) &&
-           design_hold(drive, settings, period_s, error) &&
-           design_detection(drive, &drive->settings, period_s, error);
+    if (!design_law(drive, &drive->settings, period_s, error) ||
+        !design_hold(drive, settings, period_s, error) ||
+        !design_detection(drive, &drive->settings, period_s, error)) {
+        return false;
+    }
+    torque_constant_put(drive, num_from_double(settings->initial_torque_constant_change));
+    return true;
 }

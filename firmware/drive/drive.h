@@ -111,6 +111,7 @@ struct synchronism_supervision {
     struct synchronism_monitor_params params;
     enum drive_synchronism_policy policy;
     bool monitored;
+    uint8_t waits; /* on end, of the next step */
 };
 
 /* What the estimator gets instead of samples: prepared_input.h. */

@@ -64,10 +64,23 @@ void synchronism_start(struct drive *drive)
     }
     if (drive->synchronism.monitored) {
         drive->synchronism.step = TAKE;
+        drive->synchronism.block_began = drive->supervision.period;
         drive->synchronism.due =
             drive->supervision.period + drive->synchronism.params.block_periods;
         (void)invariant_ekf_take_innovation_sum(&drive->estimator.invariant_ekf);
     }
+}
+
+/* What steps that waited make a block longer by: mean of its sum, to within a quarter. */
+static num_t of_a_block(const struct drive *drive, num_t sum)
+{
+    const uint32_t block = drive->synchronism.params.block_periods;
+    const uint32_t lasted = drive->supervision.period - drive->synchronism.block_began;
+
+    if (lasted <= block + block / 4u) {
+        return sum;
+    }
+    return lasted <= 2u * block + block / 2u ? num_half(sum) : num_half(num_half(sum));
 }
 
 static enum synchronism judge_load_angle(struct drive *drive)
@@ -106,6 +119,19 @@ static enum synchronism judge_pull_out(struct drive *drive, const struct rotor *
     return verdict;
 }
 
+static void take(struct drive *drive)
+{
+    struct invariant_ekf *ekf = &drive->estimator.invariant_ekf;
+    const bool held = drive->hold.active;
+    const num_t sum = of_a_block(drive, invariant_ekf_take_innovation_sum(ekf));
+
+    drive->synchronism.block_began = drive->supervision.period;
+    if (held) {
+        invariant_ekf_watch_hold(ekf, &drive->params.estimator.invariant_ekf, drive->hold.leads);
+    }
+    synchronism_monitor_take(&drive->synchronism.monitor, &drive->synchronism.params, sum, held);
+}
+
 /* One of the steps of a block. */
 static enum synchronism step(struct drive *drive, const struct rotor *rotor)
 {
@@ -115,14 +141,7 @@ static enum synchronism step(struct drive *drive, const struct rotor *rotor)
     drive->synchronism.due = drive->supervision.period + 1u;
     switch (drive->synchronism.step++) {
     case TAKE:
-        drive->synchronism.block_began = drive->supervision.period;
-        if (drive->hold.active) {
-            invariant_ekf_watch_hold(&drive->estimator.invariant_ekf,
-                                     &drive->params.estimator.invariant_ekf, drive->hold.leads);
-        }
-        synchronism_monitor_take(monitor, params,
-                                 invariant_ekf_take_innovation_sum(&drive->estimator.invariant_ekf),
-                                 drive->hold.active);
+        take(drive);
         return SYNCHRONISM_SURE;
     case JUDGE_VOLTAGE:
         return synchronism_monitor_judge_voltage(monitor, params, rotor->speed,
@@ -186,6 +205,7 @@ static enum drive_fault follow(struct drive *drive, const struct rotor *rotor)
 
 enum drive_fault synchronism_watch(struct drive *drive)
 {
+    drive->synchronism.waits = 0u;
     if (drive->synchronism.step == FOLLOW) {
         return follow(drive, &drive->estimator.estimate.rotor);
     }

@@ -32,14 +32,19 @@ static inline bool synchronism_is_due(const struct drive *drive)
             !standstill_hold_leads_in(drive->supervision.period));
 }
 
+/* How often on end a step waits: a quick sine begins a phase in every period or two. */
+#define SYNCHRONISM_WAITS_MAX 3u
+
 /* In a period in which commands are looked at (1), or a phase of the reference begins, which takes
    its time in the next one, too (2). */
 static inline void synchronism_wait(struct drive *drive, uint32_t periods)
 {
     const uint32_t until = drive->supervision.period + periods;
 
-    if ((int32_t)(until - drive->synchronism.due) > 0) {
+    if ((int32_t)(until - drive->synchronism.due) > 0 &&
+        drive->synchronism.waits < SYNCHRONISM_WAITS_MAX) {
         drive->synchronism.due = until;
+        drive->synchronism.waits++;
     }
 }
 

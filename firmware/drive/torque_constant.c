@@ -6,31 +6,51 @@
 #define WINDOW_PERIODS 128u
 #define BACK_EMF_MIN   NUM(0.125) /* of the supply */
 #define SHARE          0.25       /* of its way to what a window shows */
-#define CHANGE_MAX     0.2
-#define CHANGE_MIN     0.03
+#define CHANGE_MIN     NUM(0.03)
 
-static void put_in_force(struct drive *drive, double change)
+/* Of what the interrupt reads, what goes by the torque constant. */
+static void renew(struct drive_params *params, const struct motor_model_params *model,
+                  coef_t reactance, const struct reference_params *reference)
 {
-    const double period_s = drive->board->facts->control_period_s;
-    struct motor_params motor = drive->settings.motor;
-    struct drive_params *params = &drive->params;
+    params->model = *model;
+    params->estimator.invariant_ekf.model = *model;
+    params->current_control.reactance = reactance;
+    params->reference.speed = reference->speed;
+    params->reference.speed_remainder = reference->speed_remainder;
+    params->reference.acceleration = reference->acceleration;
+    params->reference.jerk = reference->jerk;
+}
 
-    motor.torque_constant_Nm_A *= 1.0 + change;
+static void put_in_force(struct drive *drive, num_t change)
+{
+    const struct hal_facts *facts = drive->board->facts;
+    const double period_s = facts->control_period_s;
+    struct motor_params motor = drive->settings.motor;
+
+    motor.torque_constant_Nm_A *= 1.0 + num_to_double(change);
     drive->base = per_unit_base(&motor, period_s);
     drive->torque_constant.in_force = change;
 
+    const struct motor_model_params model =
+        motor_model_design(&motor, &drive->base, period_s, facts->bridge_resistance_ohm);
     const struct reference_params reference =
         reference_design(&drive->base, period_s, (struct creep_limits){0.0, 0.0});
+    const coef_t reactance = coef_from_double(per_unit_reactance(&drive->base, &motor));
 
-    /* An interrupt in between has some of both, for a period. */
-    params->model = motor_model_design(&motor, &drive->base, period_s,
-                                       drive->board->facts->bridge_resistance_ohm);
-    params->estimator.invariant_ekf.model = params->model;
-    params->current_control.reactance = coef_from_double(per_unit_reactance(&drive->base, &motor));
-    params->reference.speed = reference.speed;
-    params->reference.speed_remainder = reference.speed_remainder;
-    params->reference.acceleration = reference.acceleration;
-    params->reference.jerk = reference.jerk;
+    hal_defer_interrupts(drive->board, true);
+    renew(&drive->params, &model, reactance, &reference);
+    hal_defer_interrupts(drive->board, false);
+}
+
+void torque_constant_put(struct drive *drive, num_t change)
+{
+    const num_t off = change - drive->torque_constant.in_force;
+
+    drive->torque_constant.change = change;
+    if (num_abs(off) > CHANGE_MIN &&
+        estimator_is(&drive->params.estimator, ESTIMATOR_INVARIANT_EKF)) {
+        put_in_force(drive, change);
+    }
 }
 
 static void begin(struct torque_constant *constant, struct position at, uint32_t period)
@@ -42,20 +62,17 @@ static void begin(struct torque_constant *constant, struct position at, uint32_t
 
 static void learn(struct drive *drive, struct position at)
 {
-    struct torque_constant *constant = &drive->torque_constant;
+    const struct torque_constant *constant = &drive->torque_constant;
     const double turned = (double)position_distance(constant->from, at);
-    const double shown = (double)constant->travel / turned * (1.0 + constant->in_force) - 1.0;
+    const double shown =
+        (double)constant->travel / turned * (1.0 + num_to_double(constant->in_force)) - 1.0;
     const double learned = num_to_double(constant->change);
     const double change = learned + SHARE * (shown - learned);
-    const double within = change > CHANGE_MAX    ? CHANGE_MAX
-                          : change < -CHANGE_MAX ? -CHANGE_MAX
-                                                 : change;
-    const double off = within - constant->in_force;
+    const double within = change > TORQUE_CONSTANT_CHANGE_MAX    ? TORQUE_CONSTANT_CHANGE_MAX
+                          : change < -TORQUE_CONSTANT_CHANGE_MAX ? -TORQUE_CONSTANT_CHANGE_MAX
+                                                                 : change;
 
-    constant->change = num_from_double(within);
-    if (off > CHANGE_MIN || off < -CHANGE_MIN) {
-        put_in_force(drive, within);
-    }
+    torque_constant_put(drive, num_from_double(within));
 }
 
 void torque_constant_background(struct drive *drive)

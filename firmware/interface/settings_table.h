@@ -134,6 +134,8 @@
     FLAG(0x2134, encoder_zero_known, false, AT_ENABLE,                                             \
          "absolute encoder or indexed: the rotor's angle follows from the count, else it is "      \
          "initial_angle_rad at the end of the hold")                                               \
+    REAL(0x2135, initial_torque_constant_change, "", FIXED(-0.2), FIXED(0.2), FIXED(0.0),          \
+         AT_ENABLE, "where torque_constant_change begins: store keeps here what was learned")      \
     FLAG(0x2140, calibrate_offsets, true, AT_ENABLE,                                               \
          "step of enabling, with the bridge off, then on")                                         \
     FLAG(0x2141, hold_on_enable, true, AT_ENABLE,                                                  \

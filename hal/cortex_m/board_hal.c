@@ -70,6 +70,12 @@ static void follow_control(void *context, bool follows)
 }
 #endif
 
+static void defer_interrupts(void *context, bool defers)
+{
+    (void)context;
+    port_defer_interrupts(defers);
+}
+
 static size_t stream_read(void *context, uint8_t *bytes, size_t capacity, uint32_t *line_period)
 {
     (void)context;
@@ -117,6 +123,7 @@ const struct hal board_hal = {
 #ifndef STEADYSTEP_WITHOUT_LINK
     .follow_control = follow_control,
 #endif
+    .defer_interrupts = defer_interrupts,
     .stream_read = stream_read,
     .stream_write = stream_write,
     .parameters_erase = parameters_erase,

@@ -22,6 +22,7 @@ void port_outputs_write(uint32_t levels);
 uint32_t port_cycle_count(void);
 uint64_t port_time_us(void);
 void port_watchdog_feed(void);
+void port_defer_interrupts(bool defers);
 void port_follow_control(bool follows); /* of ports that carry the link */
 
 #define PORT_NOT_STARTED UINT32_MAX

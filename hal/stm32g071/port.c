@@ -1,6 +1,7 @@
 /* What this port gives the module of all Cortex-M ports. */
 #include "hal/cortex_m/port.h"
 
+#include "hal/cortex_m/interrupts.h"
 #include "hal/cortex_m/parameter_flash.h"
 #include "hal/stm32g071/board.h"
 #include "hal/stm32g071/bridge.h"
@@ -59,6 +60,15 @@ uint64_t port_time_us(void)
 
     cycles += (uint32_t)(clock_cycles() - (uint32_t)cycles);
     return cycles / CORE_CYCLES_PER_us;
+}
+
+void port_defer_interrupts(bool defers)
+{
+    if (defers) {
+        __disable_irq();
+    } else {
+        __enable_irq();
+    }
 }
 
 void port_watchdog_feed(void)

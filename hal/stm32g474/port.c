@@ -70,6 +70,15 @@ uint64_t port_time_us(void)
     return all * CONTROL_PERIOD_us;
 }
 
+void port_defer_interrupts(bool defers)
+{
+    if (defers) {
+        __disable_irq();
+    } else {
+        __enable_irq();
+    }
+}
+
 void port_watchdog_feed(void)
 {
     parameter_flash_forget_corrected();

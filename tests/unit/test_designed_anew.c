@@ -53,6 +53,7 @@ void setUp(void)
     d[4].standstill_pulses = true;
     d[4].balance_phases = true;
     d[4].initial_angle_rad = 1.0;
+    d[4].initial_torque_constant_change = 0.1;
 }
 
 void tearDown(void)
@@ -138,6 +139,8 @@ static void the_designs_are_the_same(void)
     SAME(params.enabling.detects_position);
     SAME(params.enabling.encoder_zero_known);
     SAME(params.detent);
+    SAME(torque_constant.change);
+    SAME(torque_constant.in_force);
     SAME(params.bridge_loss);
     SAME(params.following);
     SAME_UP_TO(phase_watch_params, struct phase_watch_params, noise_codes);

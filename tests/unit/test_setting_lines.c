@@ -315,6 +315,52 @@ static void test_store_keeps_what_was_learned_by_a_drive_that_learns(void)
     TEST_ASSERT_DOUBLE_WITHIN(2e-6, -0.02, found.detent_torque_Nm[1]);
 }
 
+static void has_torque_constant_change(double expected)
+{
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, expected, num_to_double(drive->torque_constant.change));
+}
+
+static void test_store_keeps_the_torque_constant_that_motion_has_shown(void)
+{
+    torque_constant_put(drive, NUM(-0.08));
+    begins("set hold_ramp_s 0.02", "ok set "); /* and designed anew it is not forgotten */
+    choose_quick_start();
+    enable();
+    has_torque_constant_change(-0.08);
+    begins("disable", "ok disable ");
+    bench_periods(12);
+    answers("store", "ok store\n");
+    bench.period = UINT32_MAX;
+    start();
+    has_torque_constant_change(-0.08);
+    TEST_ASSERT_TRUE(drive->base.speed_rad_s >
+                     1.08 * per_unit_base(&bench_params, facts.control_period_s).speed_rad_s);
+}
+
+/* The defaults do, and another motor; and what is given counts. */
+static void test_what_was_learned_of_the_torque_constant_is_forgotten(void)
+{
+    static const char *const lines[] = {"defaults", "set torque_constant_Nm_A 0.15",
+                                        "set resistance_ohm 0.4",
+                                        "set initial_torque_constant_change 0"};
+
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        setUp();
+        torque_constant_put(drive, NUM(0.1));
+        answers("store", "ok store\n");
+        begins(lines[i], "ok ");
+        has_torque_constant_change(0.0);
+        answers("store", "ok store\n");
+        bench.period = UINT32_MAX;
+        start();
+        has_torque_constant_change(0.0);
+    }
+    begins("set initial_torque_constant_change 0.05", "ok set ");
+    has_torque_constant_change(0.05);
+    begins("set initial_torque_constant_change 0.21", "error: ");
+    has_torque_constant_change(0.05);
+}
+
 /* A drive that has learned 0.01 Nm and kept it, has 0.02 Nm now, and a ramp that was set. */
 static void learn_and_set(void)
 {
@@ -524,6 +570,8 @@ int main(void)
     RUN_TEST(test_an_enable_acts_in_its_period_if_the_design_is_done_by_then);
     RUN_TEST(test_what_was_learned_survives_a_design);
     RUN_TEST(test_store_keeps_what_was_learned_by_a_drive_that_learns);
+    RUN_TEST(test_store_keeps_the_torque_constant_that_motion_has_shown);
+    RUN_TEST(test_what_was_learned_of_the_torque_constant_is_forgotten);
     RUN_TEST(test_store_survives_a_loss_of_power_at_any_step);
     RUN_TEST(test_most_settings_are_refused_while_the_drive_is_not_disabled);
     RUN_TEST(test_a_drive_in_fault_takes_settings);

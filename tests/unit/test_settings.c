@@ -90,6 +90,7 @@ static const struct {
     {"hold_bandwidth_rad_s", 1.0, 1e4, "rad/s", true},
     {"encoder_zero_rad", -1e4, 1e4, "rad", false},
     {"initial_load_torque_Nm", -100.0, 100.0, "N m", false},
+    {"initial_torque_constant_change", -0.2, 0.2, "", false},
     {"current_limit_A", 0.01 * 3.0, 2.0 * 3.0, "A", false},
     {"overcurrent_trip_A", 0.1 * 3.0, 6.0 * 3.0, "A", true},
     {"speed_limit_rad_s", 0.1, 1e4, "rad/s", false},

@@ -41,10 +41,78 @@ static void test_one_as_the_settings_say_changes_nothing(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.0, base, drive.base.speed_rad_s);
 }
 
+/* What the interrupt has by the torque constant, seen as often as interrupts are held back. */
+static struct {
+    struct drive_params before, after;
+    int begun, ended;
+} deferral;
+
+static void look(void *context, bool defers)
+{
+    (void)context;
+    if (defers) {
+        deferral.before = drive.params;
+        deferral.begun++;
+    } else {
+        deferral.after = drive.params;
+        deferral.ended++;
+    }
+}
+
+/* Of those that go by it, without padding. */
+static bool same(const struct drive_params *a, const struct drive_params *b)
+{
+    return memcmp(&a->model, &b->model, sizeof a->model) == 0 &&
+           memcmp(&a->estimator.invariant_ekf.model, &b->estimator.invariant_ekf.model,
+                  sizeof a->model) == 0 &&
+           memcmp(&a->current_control, &b->current_control, sizeof a->current_control) == 0 &&
+           memcmp(&a->reference, &b->reference, sizeof a->reference) == 0;
+}
+
+/* No interrupt finds a part of it. */
+static void test_it_is_put_in_force_while_interrupts_are_held_back(void)
+{
+    memset(&deferral, 0, sizeof deferral);
+    board.defer_interrupts = look;
+    power_up();
+    const struct drive_params designed = drive.params;
+
+    torque_constant_put(&drive, NUM(0.02)); /* too little to matter */
+    TEST_ASSERT_EQUAL_INT(0, deferral.begun);
+    TEST_ASSERT_TRUE(same(&designed, &drive.params));
+    torque_constant_put(&drive, NUM(-0.1));
+    TEST_ASSERT_EQUAL_INT(1, deferral.begun);
+    TEST_ASSERT_EQUAL_INT(1, deferral.ended);
+    TEST_ASSERT_TRUE(same(&designed, &deferral.before));
+    TEST_ASSERT_FALSE(same(&designed, &deferral.after));
+    TEST_ASSERT_TRUE(same(&deferral.after, &drive.params));
+}
+
+/* Of one that was learned in motion nothing else is in force. */
+static void test_a_drive_that_begins_with_it_is_as_one_that_has_learned_it(void)
+{
+    power_up();
+    torque_constant_put(&drive, NUM(-0.1));
+
+    const struct drive_params learned_ones = drive.params;
+    const double base = drive.base.speed_rad_s;
+
+    settings.initial_torque_constant_change = -0.1;
+    power_up();
+    TEST_ASSERT_TRUE(same(&learned_ones, &drive.params));
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, base, drive.base.speed_rad_s);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, -0.1, num_to_double(drive.torque_constant.change));
+    torque_constant_put(&drive, NUM(0.0));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, per_unit_base(&settings.motor, PERIOD_S).speed_rad_s,
+                              drive.base.speed_rad_s);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_magnet_ten_per_cent_off_is_learned_in_a_move_and_put_in_force);
     RUN_TEST(test_one_as_the_settings_say_changes_nothing);
+    RUN_TEST(test_it_is_put_in_force_while_interrupts_are_held_back);
+    RUN_TEST(test_a_drive_that_begins_with_it_is_as_one_that_has_learned_it);
     return UNITY_END();
 }

@@ -1,0 +1,53 @@
+"""README.md, sil/README.md: boards and motors as they leave their factories, beside `bench`."""
+from readme_figures.campaigns import campaign
+from readme_figures.reading import mrad, spelled, up
+from readme_figures.registry import Cost, entry
+from readme_figures.sensorless import RESTS
+
+AS_BUILT = {"plant.model": "as-built"}
+ON_IT = ("--set", "plant=as-built")
+
+
+@entry("as-built-draws", "steadystep-sil campaign as-built --seeds 1-1000", Cost.CAMPAIGN,
+       probe=("campaign as-built --seeds 1-18 --json",
+              "campaign as-built --seeds 1-18 --numeric fixed --json"))
+def draws(sources):
+    found = {}
+    for name, numeric in (("", "float"), ("-fixed", "fixed")):
+        run = campaign(sources, "as-built", "1-1000", numeric=numeric)
+        angle = run["figures"]["estimate_error_max_deg_electrical"]
+        found |= {f"held{name}": f"{run['verdicts'].get('held', 0):,}",
+                  f"median{name}": spelled(angle["median"], 1),
+                  f"most{name}": up(angle["percentile_95"], 0), f"worst{name}": up(angle["worst"], 0)}
+    return found
+
+
+@entry("as-built-corners", "steadystep-sil campaign as-built-corners --seeds 1-36", Cost.DEAR,
+       probe=("campaign as-built-corners --seeds 1-4 --json",))
+def corners(sources):
+    run = campaign(sources, "as-built-corners", "1-36")
+    return {"held": f"{run['verdicts'].get('held', 0)}",
+            "worst": up(run["figures"]["estimate_error_max_deg_electrical"]["worst"], 0)}
+
+
+@entry("as-built-long", "steadystep-sil campaign long-run --seeds 1-100 --set plant=as-built",
+       Cost.CAMPAIGN, probe=("campaign long-run --seeds 1-4 --duration 10 --json --set plant=as-built",))
+def long_run(sources):
+    run = campaign(sources, "long-run", "1-100", *ON_IT)
+    angle = run["figures"]["estimate_error_max_deg_electrical"]
+    return {"held": f"{run['verdicts'].get('held', 0)}", "most": up(angle["percentile_95"], 0)}
+
+
+@entry("as-built", "steadystep-sil run bendjedia-fig12 hold-transition hold-transition-loaded "
+       "--seeds 1-32 --set plant=as-built", Cost.DEAR,
+       probe=("run bendjedia-fig12 hold-transition --json --set plant=as-built",))
+def of_the_first_page(sources):
+    def most(scenario, windows, metric="position_error_max_rad"):
+        runs = sources.run(scenario, settings=AS_BUILT)
+        return max((mrad(runs, metric, window) for window in windows), key=float)
+
+    return {"estimate": most("bendjedia-fig12", ("move",), "estimate_error_max_rad"),
+            "rest": most("hold-transition", RESTS[1:2]),
+            "departure": most("hold-transition", RESTS[2:]),
+            "transition": max((most(name, RESTS) for name in
+                               ("hold-transition", "hold-transition-loaded")), key=float)}
