@@ -32,7 +32,8 @@ static void end_aligning(struct drive *drive)
     begin_operation(drive);
 }
 
-static void align_encoder(struct drive *drive)
+/* Apart: rare. */
+__attribute__((noinline)) static void align_encoder(struct drive *drive)
 {
     const enum encoder_aligning aligning = encoder_aligning_step(drive);
 
@@ -54,20 +55,30 @@ static void balance_phases(struct drive *drive, const struct hal_samples *sample
     }
 }
 
+/* The first hold has lasted for so many periods longer than it has to. Apart: rare. */
+__attribute__((noinline)) static void end_first_hold(struct drive *drive,
+                                                     const struct hal_samples *samples,
+                                                     uint32_t longer)
+{
+    if (drive->params.enabling.balance_periods == 0u) {
+        end_aligning(drive);
+    } else if (longer == 0u) {
+        phase_balancing_start(drive);
+    } else {
+        balance_phases(drive, samples);
+    }
+}
+
 /* The first hold: without an encoder, and with one whose zero is known, it calibrates. */
-static void align(struct drive *drive, const struct hal_samples *samples)
+static inline void align(struct drive *drive, const struct hal_samples *samples)
 {
     const uint32_t held = drive->supervision.period - drive->supervision.state_since;
     const uint32_t enough = drive->params.enabling.hold_on_enable_periods + 1u;
 
     if (drive->supervision.aligns) {
         align_encoder(drive);
-    } else if (held >= enough && drive->params.enabling.balance_periods == 0u) {
-        end_aligning(drive);
-    } else if (held == enough) {
-        phase_balancing_start(drive);
-    } else if (held > enough) {
-        balance_phases(drive, samples);
+    } else if (held >= enough) {
+        end_first_hold(drive, samples, held - enough);
     }
 }
 
@@ -304,21 +315,6 @@ struct hal_outputs state_machine_resting_bridge(const struct drive *drive)
     return (struct hal_outputs){.high_counts = {half, half, half, half}, .bridge_on = on};
 }
 
-/* The states other than operation; true: the bridge is on, and the control runs. */
-__attribute__((noinline)) static bool step_outside_operation(struct drive *drive,
-                                                             const struct hal_samples *samples)
-{
-    if (drive->supervision.state == DRIVE_CALIBRATING_OFFSETS) {
-        calibrate_offsets(drive, samples);
-    } else if (drive->supervision.state == DRIVE_ALIGNING) {
-        align(drive, samples);
-    }
-    if (drive->supervision.state == DRIVE_DETECTING_POSITION) {
-        state_machine_fault(drive, protection_check_samples(&drive->params.protection, samples));
-    }
-    return state_machine_powered(drive);
-}
-
 void state_machine_check_samples(struct drive *drive, const struct hal_samples *samples)
 {
     const enum drive_fault fault = protection_check_samples(&drive->params.protection, samples);
@@ -343,7 +339,12 @@ __attribute__((noinline)) static void step_unpowered(struct drive *drive,
     if (command_queue_is_due(&drive->commands, drive->supervision.period)) {
         take_commands(drive);
     }
-    if (step_outside_operation(drive, samples)) {
+    if (drive->supervision.state == DRIVE_CALIBRATING_OFFSETS) {
+        calibrate_offsets(drive, samples);
+    } else if (drive->supervision.state == DRIVE_ALIGNING) {
+        align(drive, samples);
+    }
+    if (drive->supervision.state == DRIVE_DETECTING_POSITION || state_machine_powered(drive)) {
         /* the control has only been reset; a fault is entered at once */
         state_machine_check_samples(drive, samples);
     }
@@ -359,5 +360,8 @@ bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
     if (command_queue_is_due(&drive->commands, drive->supervision.period)) {
         take_commands(drive);
     }
-    return step_outside_operation(drive, samples);
+    if (drive->supervision.state == DRIVE_ALIGNING) {
+        align(drive, samples);
+    }
+    return state_machine_powered(drive);
 }

@@ -243,10 +243,16 @@ static inline void reference_pass_acceleration(struct reference *r)
     }
 }
 
+/* It rests, and has not only just begun to. */
+static inline bool reference_is_still(const struct reference *r)
+{
+    return r->course == REFERENCE_STILL;
+}
+
 /* One control period at rest; false: it does not rest, or has only just begun to. */
 static inline bool reference_keeps_still(struct reference *r)
 {
-    if (r->course != REFERENCE_STILL) {
+    if (!reference_is_still(r)) {
         return false;
     }
     reference_count_slow(r);
