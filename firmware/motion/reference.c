@@ -66,7 +66,7 @@ bool reference_load(struct reference *r, struct profile *profile)
     r->at.speed = profile->rounding_speed;
     r->creeps = profile->creeps;
     r->stopped = false;
-    r->course = REFERENCE_TURNS;
+    r->course = reference_is_still(r) ? REFERENCE_STARTS : REFERENCE_TURNS;
     return true;
 }
 
@@ -338,7 +338,17 @@ static bool begins(const struct reference *r)
     return (r->periods_left <= 1u || r->stop_requested) && r->phase != REFERENCE_REST;
 }
 
-bool reference_turn(struct reference *r, const struct reference_params *params, bool held)
+/* What the sample shows of a phase as it begins. */
+static void show_turn(struct reference *r, const struct reference_params *params)
+{
+    r->course = REFERENCE_TURNS;
+    reference_show(r, params);
+    reference_show_acceleration(r, params);
+}
+
+/* One period on, but for the phase that begins; true: one does. Apart: it needs many registers. */
+__attribute__((noinline)) static bool turn(struct reference *r,
+                                           const struct reference_params *params, bool held)
 {
     if (is_slow(r, params, held)) {
         reference_count_slow(r);
@@ -354,14 +364,23 @@ bool reference_turn(struct reference *r, const struct reference_params *params, 
     if (r->periods_left > 0u) {
         advance(r);
     }
+    return true;
+}
+
+bool reference_turn(struct reference *r, const struct reference_params *params, bool held)
+{
+    if (r->course == REFERENCE_TURNS && !turn(r, params, held)) {
+        return false;
+    }
+    if (r->course == REFERENCE_STARTS) {
+        reference_count_slow(r);
+    }
     if (r->periods_left == 0u) {
         begin_next_phase(r);
     } else { /* a stop has been asked for */
         cut_short(r);
         r->stop_requested = false;
     }
-    r->course = REFERENCE_TURNS;
-    reference_show(r, params);
-    reference_show_acceleration(r, params);
+    show_turn(r, params);
     return true;
 }

@@ -58,7 +58,8 @@ enum reference_phase {
 
 /* What a step has to do. Chosen anew by each that does not just go on. */
 enum reference_course {
-    REFERENCE_TURNS, /* a phase begins or ends, it creeps, or something has been asked for */
+    REFERENCE_TURNS,  /* a phase begins or ends, it creeps, or something has been asked for */
+    REFERENCE_STARTS, /* a profile begins from rest */
     REFERENCE_STILL,
     REFERENCE_STEADY, /* a phase of constant acceleration */
     REFERENCE_JERKS
@@ -259,7 +260,8 @@ static inline bool reference_keeps_still(struct reference *r)
     return true;
 }
 
-/* One control period on; false: it does not just go on, reference_turn is to follow. */
+/* One control period on; false: it does not just go on, reference_turn is to follow, or a phase has
+   ended, and reference_turn begins the next. */
 static inline bool reference_step(struct reference *r, const struct reference_params *params)
 {
     const enum reference_course course = r->course;
@@ -267,7 +269,7 @@ static inline bool reference_step(struct reference *r, const struct reference_pa
     if (reference_keeps_still(r)) {
         return true;
     }
-    if (RARE(course == REFERENCE_TURNS || r->periods_left <= 1u)) {
+    if (RARE(course <= REFERENCE_STARTS)) {
         return false;
     }
     reference_pass(r);
@@ -279,7 +281,7 @@ static inline bool reference_step(struct reference *r, const struct reference_pa
         reference_advance(r);
     }
     reference_show(r, params);
-    return true;
+    return !RARE(r->periods_left == 0u);
 }
 
 #endif
