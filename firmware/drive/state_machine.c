@@ -180,28 +180,31 @@ static void set_position(struct drive *drive, const struct queued_command *comma
     }
 }
 
-/* true: done with the command; false: it waits for its period or for the reference to rest. */
-static bool obey(struct drive *drive, struct queued_command *command)
+/* Outside operation, or of an axis at rest. Apart: rare. */
+__attribute__((noinline)) static void obey_at_rest(struct drive *drive,
+                                                   const struct queued_command *command)
 {
-    const bool ahead = command->at_period == drive->supervision.period + 1u;
-    const bool moves = queued_command_is_move(command);
-
-    if (ahead && !moves) {
-        return false;
-    }
     if (drive->supervision.state == DRIVE_SWITCH_ON_DISABLED &&
         command->kind == DRIVE_COMMAND_ENABLE) {
         start_enabling(drive);
-        return true;
-    }
-    if (command->kind == DRIVE_COMMAND_SET_POSITION) {
+    } else if (command->kind == DRIVE_COMMAND_SET_POSITION) {
         set_position(drive, command);
-        return true;
+    } else if (!command_rules_obeyed(command->kind, drive->supervision.state)) {
+        command_queue_count_dropped(&drive->commands, command);
     }
-    if (drive->supervision.state != DRIVE_OPERATION_ENABLED) {
-        if (!command_rules_obeyed(command->kind, drive->supervision.state)) {
-            command_queue_count_dropped(&drive->commands, command);
-        }
+}
+
+/* true: done with the command; false: it waits for its period or for the reference to rest. */
+static inline bool obey(struct drive *drive, struct queued_command *command)
+{
+    const bool moves = queued_command_is_move(command);
+
+    if (!moves && command->at_period == drive->supervision.period + 1u) {
+        return false; /* it has been looked at ahead */
+    }
+    if (drive->supervision.state != DRIVE_OPERATION_ENABLED ||
+        command->kind == DRIVE_COMMAND_SET_POSITION) {
+        obey_at_rest(drive, command);
         return true;
     }
     if (reference_busy(&drive->reference)) {
@@ -230,6 +233,26 @@ static void preempt(struct drive *drive, const struct motion_plan *plan)
     }
 }
 
+/* A disable or stop: periods until one is to be looked at again, 0 if one has acted. Apart: rare. */
+__attribute__((noinline)) static uint32_t take_urgent(struct drive *drive)
+{
+    struct command_queue *queue = &drive->commands;
+    const uint32_t period = drive->supervision.period;
+    uint32_t wait = COMMAND_QUEUE_NEVER;
+
+    if (command_queue_take_urgent(queue, &queue->disable, period, &wait)) {
+        disable(drive);
+        return 0u;
+    }
+    if (command_queue_take_urgent(queue, &queue->stop, period + 1u, &wait)) {
+        reference_stop(&drive->reference);
+        command_queue_stop_acted(queue, period + 1u);
+        command_queue_rest_if_empty(queue, period, wait);
+        return 0u;
+    }
+    return wait;
+}
+
 /*
  * One command a period, and in the next the rest is looked at: short worst case. The reference has
  * been moved to S(k+1): what is asked of it for the period that follows is put to it now.
@@ -238,8 +261,8 @@ __attribute__((noinline)) static void take_commands(struct drive *drive)
 {
     struct command_queue *queue = &drive->commands;
     const uint32_t period = drive->supervision.period;
-    uint32_t wait = COMMAND_QUEUE_NEVER;
-    uint32_t urgent_wait;
+    uint32_t urgent_wait = COMMAND_QUEUE_NEVER;
+    uint32_t wait;
     const struct motion_plan *plan;
     struct queued_command *command;
 
@@ -249,17 +272,13 @@ __attribute__((noinline)) static void take_commands(struct drive *drive)
         enter_fault_asked_for(drive);
         return;
     }
-    if (command_queue_take_urgent(queue, &queue->disable, period, &wait)) {
-        disable(drive);
-        return;
+    if (command_queue_holds_urgent(queue)) {
+        urgent_wait = take_urgent(drive);
+        if (urgent_wait == 0u) {
+            return;
+        }
     }
-    if (command_queue_take_urgent(queue, &queue->stop, period + 1u, &wait)) {
-        reference_stop(&drive->reference);
-        command_queue_stop_acted(queue, period + 1u);
-        command_queue_rest_if_empty(queue, period, wait);
-        return;
-    }
-    urgent_wait = wait;
+    wait = urgent_wait;
     command = command_queue_due(queue, period + 1u, &wait);
     if (command != NULL && obey(drive, command)) {
         command_queue_drop(queue);
