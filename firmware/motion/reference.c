@@ -44,7 +44,7 @@ void reference_reset(struct reference *r, struct position position)
     r->jerks = false;
     r->jerk = 0;
     r->jerk_sixth = 0;
-    r->course = REFERENCE_TURNS;
+    r->course = REFERENCE_STILL;
     r->epoch++;
     place(r, position);
 }
@@ -70,41 +70,30 @@ bool reference_load(struct reference *r, struct profile *profile)
     return true;
 }
 
-void reference_stop(struct reference *r)
-{
-    if (r->phase == REFERENCE_LOADED) {
-        r->phase = REFERENCE_REST;
-        r->at.speed = 0;
-        r->next.speed = NUM(0.0);
-    }
-    r->stop_requested = r->phase != REFERENCE_REST;
-    r->course = REFERENCE_TURNS;
-}
-
 /*
  * The ramp down mirrors the ramp up, so cutting the ramp up short where it stands leaves a profile
- * that ends at rest: the phases already behind keep the length they had. One period of the present
- * phase is left, so that the next phase begins in an interrupt of its own.
+ * that ends at rest: the phases already behind keep the length they had. So many periods of the
+ * present phase are left, so that the next phase begins in an interrupt of its own.
  */
-static void cut_short(struct reference *r)
+static void cut_short(struct reference *r, uint32_t left)
 {
     struct profile *profile = r->profile;
-    const uint32_t surplus = r->periods_left - 1u;
+    const uint32_t surplus = r->periods_left - left;
 
     switch (r->phase) {
     case REFERENCE_JERK_TO_ACCELERATE:
         profile->jerk_periods -= surplus;
         profile->acceleration_periods = 0;
-        r->periods_left = 1;
+        r->periods_left = left;
         break;
     case REFERENCE_ACCELERATE:
         profile->acceleration_periods -= surplus;
-        r->periods_left = 1;
+        r->periods_left = left;
         break;
     case REFERENCE_JERK_TO_CRUISE:
         break;
     case REFERENCE_CRUISE:
-        r->periods_left = 1;
+        r->periods_left = left;
         break;
     case REFERENCE_PLANNED:
         r->epoch++;
@@ -114,6 +103,21 @@ static void cut_short(struct reference *r)
     }
     profile->cruise_periods = 0;
     r->stopped = true;
+}
+
+void reference_stop(struct reference *r)
+{
+    if (r->phase == REFERENCE_LOADED) {
+        r->phase = REFERENCE_REST;
+        r->at.speed = 0;
+        r->next.speed = NUM(0.0);
+    }
+    if (r->phase < REFERENCE_PLANNED && r->periods_left > 1u) {
+        cut_short(r, 2u); /* of the next step, too */
+        return;
+    }
+    r->stop_requested = r->phase != REFERENCE_REST;
+    r->course = REFERENCE_TURNS;
 }
 
 static void begin(struct reference *r, enum reference_phase phase, uint32_t periods,
@@ -378,7 +382,7 @@ bool reference_turn(struct reference *r, const struct reference_params *params, 
     if (r->periods_left == 0u) {
         begin_next_phase(r);
     } else { /* a stop has been asked for */
-        cut_short(r);
+        cut_short(r, 1u);
         r->stop_requested = false;
     }
     show_turn(r, params);
