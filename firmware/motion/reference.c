@@ -147,6 +147,7 @@ static void come_to_rest(struct reference *r)
     begin(r, REFERENCE_REST, 0, 0);
     r->stop_requested = false;
     r->at.speed = 0;
+    r->next.speed = NUM(0.0);
     place(r, r->stopped ? (struct position){r->at.turns, (angle_t)(r->at.fraction >> 32)}
                         : r->profile->target);
 }
@@ -342,14 +343,6 @@ static bool begins(const struct reference *r)
     return (r->periods_left <= 1u || r->stop_requested) && r->phase != REFERENCE_REST;
 }
 
-/* What the sample shows of a phase as it begins. */
-static void show_turn(struct reference *r, const struct reference_params *params)
-{
-    r->course = REFERENCE_TURNS;
-    reference_show(r, params);
-    reference_show_acceleration(r, params);
-}
-
 /* One period on, but for the phase that begins; true: one does. Apart: it needs many registers. */
 __attribute__((noinline)) static bool turn(struct reference *r,
                                            const struct reference_params *params, bool held)
@@ -367,24 +360,38 @@ __attribute__((noinline)) static bool turn(struct reference *r,
     }
     if (r->periods_left > 0u) {
         advance(r);
+        reference_show(r, params);
     }
     return true;
 }
 
+/* Of a phase as it begins. In motion one with jerk just goes on from here. */
+static enum reference_course first_course_of(const struct reference *r)
+{
+    return r->jerks && r->now.moving && !r->creeps ? REFERENCE_JERKS : REFERENCE_TURNS;
+}
+
 bool reference_turn(struct reference *r, const struct reference_params *params, bool held)
 {
+    bool jumps; /* the speed, by what rounding or a plan adds to it */
+
     if (r->course == REFERENCE_TURNS && !turn(r, params, held)) {
         return false;
     }
     if (r->course == REFERENCE_STARTS) {
         reference_count_slow(r);
     }
+    jumps = r->phase == REFERENCE_LOADED || r->phase == REFERENCE_PLANNED;
     if (r->periods_left == 0u) {
         begin_next_phase(r);
     } else { /* a stop has been asked for */
         cut_short(r, 1u);
         r->stop_requested = false;
     }
-    show_turn(r, params);
+    if (jumps) {
+        reference_show(r, params);
+    }
+    reference_show_acceleration(r, params);
+    r->course = first_course_of(r);
     return true;
 }
