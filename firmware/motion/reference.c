@@ -368,7 +368,8 @@ __attribute__((noinline)) static bool turn(struct reference *r,
 /* Of a phase as it begins. In motion one with jerk just goes on from here. */
 static enum reference_course first_course_of(const struct reference *r)
 {
-    return r->jerks && r->now.moving && !r->creeps ? REFERENCE_JERKS : REFERENCE_TURNS;
+    return r->jerks && r->now.moving && !r->creeps && !r->stop_requested ? REFERENCE_JERKS
+                                                                         : REFERENCE_TURNS;
 }
 
 bool reference_turn(struct reference *r, const struct reference_params *params, bool held)
