@@ -245,7 +245,6 @@ __attribute__((noinline)) static void enter_hold(struct drive *drive)
                              position_difference(reference, rotor->position), rotor->speed);
     if (drive->hold.active) {
         estimator_begin_hold(&drive->estimator, &drive->params.estimator);
-        synchronism_wait(drive, 1u);
         leave_or_lead_hold(drive);
     }
 }
