@@ -103,7 +103,7 @@ static bool end_stage(struct offset_calibration *calibration,
     return true;
 }
 
-static inline num_t mean_offset(int32_t sum, coef_t per_code)
+__attribute__((noinline)) static num_t mean_offset(int32_t sum, coef_t per_code)
 {
     return num_mul(num_from_code(sum, per_code), NUM(1.0 / OFFSET_SAMPLES));
 }

@@ -326,19 +326,8 @@ static inline void advance(struct reference *r)
     }
 }
 
-/* Rests, creeps, or is in the first period of a phase. */
-static bool go_on(struct reference *r, const struct reference_params *params)
-{
-    if (r->phase != REFERENCE_REST) {
-        advance(r);
-        reference_show(r, params);
-        reference_show_acceleration(r, params);
-    }
-    r->course = course_of(r);
-    return false;
-}
-
-static bool begins(const struct reference *r)
+/* A phase ends with this period, or is to be cut short. */
+static bool ends_phase(const struct reference *r)
 {
     return (r->periods_left <= 1u || r->stop_requested) && r->phase != REFERENCE_REST;
 }
@@ -347,6 +336,8 @@ static bool begins(const struct reference *r)
 __attribute__((noinline)) static bool turn(struct reference *r,
                                            const struct reference_params *params, bool held)
 {
+    const bool ends = ends_phase(r);
+
     if (is_slow(r, params, held)) {
         reference_count_slow(r);
     } else {
@@ -355,14 +346,18 @@ __attribute__((noinline)) static bool turn(struct reference *r,
     reference_pass(r);
     reference_pass_acceleration(r);
     r->now.moving = r->next.moving;
-    if (!begins(r)) {
-        return go_on(r, params);
-    }
     if (r->periods_left > 0u) {
         advance(r);
         reference_show(r, params);
     }
-    return true;
+    if (ends) {
+        return true;
+    }
+    if (r->phase != REFERENCE_REST) {
+        reference_show_acceleration(r, params);
+    }
+    r->course = course_of(r);
+    return false;
 }
 
 /* Of a phase as it begins. In motion one with jerk just goes on from here. */
