@@ -56,9 +56,8 @@ static void balance_phases(struct drive *drive, const struct hal_samples *sample
 }
 
 /* The first hold has lasted for so many periods longer than it has to. Apart: rare. */
-__attribute__((noinline)) static void end_first_hold(struct drive *drive,
-                                                     const struct hal_samples *samples,
-                                                     uint32_t longer)
+__attribute__((noinline)) static void
+end_first_hold(struct drive *drive, const struct hal_samples *samples, uint32_t longer)
 {
     if (drive->params.enabling.balance_periods == 0u) {
         end_aligning(drive);
@@ -233,7 +232,8 @@ static void preempt(struct drive *drive, const struct motion_plan *plan)
     }
 }
 
-/* A disable or stop: periods until one is to be looked at again, 0 if one has acted. Apart: rare. */
+/* A disable or stop: periods until one is to be looked at again, 0 if one has acted. Apart: rare.
+ */
 __attribute__((noinline)) static uint32_t take_urgent(struct drive *drive)
 {
     struct command_queue *queue = &drive->commands;

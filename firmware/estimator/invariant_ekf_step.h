@@ -170,10 +170,10 @@ invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_params 
     if (RARE(hold.active)) {
         invariant_ekf_step_in_hold(ekf, params, &innovation, hold);
     } else {
-        invariant_ekf_correct(ekf, &params->moving, &innovation,
-                              invariant_ekf_correct_in_motion(params, ekf->estimate.next.speed,
-                                                              innovation.in_frame),
-                              ekf->estimate.next.frame);
+        invariant_ekf_correct(
+            ekf, &params->moving, &innovation,
+            invariant_ekf_correct_in_motion(params, ekf->estimate.next.speed, innovation.in_frame),
+            ekf->estimate.next.frame);
     }
     return invariant_ekf_look_ahead(ekf, params, in_force);
 }
