@@ -276,7 +276,9 @@ static inline bool reference_step(struct reference *r, const struct reference_pa
     if (RARE(course == REFERENCE_JERKS)) {
         reference_pass_acceleration(r);
         reference_advance_with_jerk(r);
-        reference_show_acceleration(r, params);
+        if (!RARE(r->periods_left == 0u)) {
+            reference_show_acceleration(r, params);
+        }
     } else {
         reference_advance(r);
     }
