@@ -27,8 +27,8 @@ struct modulator {
 
 /* Times high per half period of the two legs of a phase, timer counts. */
 struct leg_pair {
-    uint16_t plus;
-    uint16_t minus;
+    int32_t plus;
+    int32_t minus;
 };
 
 struct modulation {
@@ -90,7 +90,7 @@ static inline int32_t modulator_swing(const struct modulator *modulator,
 static inline struct leg_pair modulator_legs(const struct modulator_params *params, int32_t swing)
 {
     const int32_t plus = params->middle_counts + swing;
-    const struct leg_pair legs = {(uint16_t)plus, (uint16_t)(params->half_period_counts - plus)};
+    const struct leg_pair legs = {plus, params->half_period_counts - plus};
 
     return legs;
 }

@@ -75,8 +75,11 @@ void standstill_hold_follow(struct standstill_hold *hold, angle_t reference, num
 
 void standstill_hold_leave(struct standstill_hold *hold, uint32_t slow_periods, bool moving)
 {
-    hold->active = hold->active && slow_periods > 0u;
-    hold->leads = hold->leads || moving;
+    if (slow_periods == 0u) {
+        hold->active = false;
+    } else if (moving) {
+        hold->leads = true;
+    }
 }
 
 void standstill_hold_consider(struct standstill_hold *hold,

@@ -168,6 +168,12 @@ const struct motion_plan *command_queue_preemption(struct command_queue *queue, 
 /* Interrupt: the reference has accepted it; its command leaves the queue. */
 void command_queue_accept_preemption(struct command_queue *queue);
 
+/* Whether a disable or a stop waits. */
+static inline bool command_queue_holds_urgent(const struct command_queue *queue)
+{
+    return queue->disable.posted || queue->stop.posted;
+}
+
 /* Whether commands wait in the queue; those that are urgent do not count. */
 static inline bool command_queue_holds_any(const struct command_queue *queue)
 {

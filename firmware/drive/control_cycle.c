@@ -253,7 +253,9 @@ __attribute__((noinline)) static void enter_hold(struct drive *drive)
 IN_PLACE void enter_or_leave_hold(struct drive *drive, bool held)
 {
     if (RARE(held)) {
-        leave_or_lead_hold(drive);
+        if (!reference_is_still(&drive->reference) || drive->hold.leads) {
+            leave_or_lead_hold(drive);
+        }
     } else if (standstill_hold_waits(&drive->params.hold, drive->reference.slow_periods)) {
         enter_hold(drive);
     }

@@ -11,10 +11,10 @@ modulate(struct drive *drive, struct phases command, struct hal_outputs *outputs
     const struct modulation out =
         modulator_step(&drive->modulator, &drive->params.modulator, command);
 
-    outputs->high_counts[HAL_LEG_A_PLUS] = out.a.plus;
-    outputs->high_counts[HAL_LEG_A_MINUS] = out.a.minus;
-    outputs->high_counts[HAL_LEG_B_PLUS] = out.b.plus;
-    outputs->high_counts[HAL_LEG_B_MINUS] = out.b.minus;
+    outputs->high_counts[HAL_LEG_A_PLUS] = (uint16_t)out.a.plus;
+    outputs->high_counts[HAL_LEG_A_MINUS] = (uint16_t)out.a.minus;
+    outputs->high_counts[HAL_LEG_B_PLUS] = (uint16_t)out.b.plus;
+    outputs->high_counts[HAL_LEG_B_MINUS] = (uint16_t)out.b.minus;
     outputs->bridge_on = true;
     actuation_commit(&drive->actuation, out.voltage);
 }

@@ -32,7 +32,8 @@ static void end_aligning(struct drive *drive)
     begin_operation(drive);
 }
 
-static void align_encoder(struct drive *drive)
+/* Apart: rare. */
+__attribute__((noinline)) static void align_encoder(struct drive *drive)
 {
     const enum encoder_aligning aligning = encoder_aligning_step(drive);
 
@@ -54,20 +55,29 @@ static void balance_phases(struct drive *drive, const struct hal_samples *sample
     }
 }
 
+/* The first hold has lasted for so many periods longer than it has to. Apart: rare. */
+__attribute__((noinline)) static void
+end_first_hold(struct drive *drive, const struct hal_samples *samples, uint32_t longer)
+{
+    if (drive->params.enabling.balance_periods == 0u) {
+        end_aligning(drive);
+    } else if (longer == 0u) {
+        phase_balancing_start(drive);
+    } else {
+        balance_phases(drive, samples);
+    }
+}
+
 /* The first hold: without an encoder, and with one whose zero is known, it calibrates. */
-static void align(struct drive *drive, const struct hal_samples *samples)
+static inline void align(struct drive *drive, const struct hal_samples *samples)
 {
     const uint32_t held = drive->supervision.period - drive->supervision.state_since;
     const uint32_t enough = drive->params.enabling.hold_on_enable_periods + 1u;
 
     if (drive->supervision.aligns) {
         align_encoder(drive);
-    } else if (held >= enough && drive->params.enabling.balance_periods == 0u) {
-        end_aligning(drive);
-    } else if (held == enough) {
-        phase_balancing_start(drive);
-    } else if (held > enough) {
-        balance_phases(drive, samples);
+    } else if (held >= enough) {
+        end_first_hold(drive, samples, held - enough);
     }
 }
 
@@ -169,28 +179,31 @@ static void set_position(struct drive *drive, const struct queued_command *comma
     }
 }
 
-/* true: done with the command; false: it waits for its period or for the reference to rest. */
-static bool obey(struct drive *drive, struct queued_command *command)
+/* Outside operation, or of an axis at rest. Apart: rare. */
+__attribute__((noinline)) static void obey_at_rest(struct drive *drive,
+                                                   const struct queued_command *command)
 {
-    const bool ahead = command->at_period == drive->supervision.period + 1u;
-    const bool moves = queued_command_is_move(command);
-
-    if (ahead && !moves) {
-        return false;
-    }
     if (drive->supervision.state == DRIVE_SWITCH_ON_DISABLED &&
         command->kind == DRIVE_COMMAND_ENABLE) {
         start_enabling(drive);
-        return true;
-    }
-    if (command->kind == DRIVE_COMMAND_SET_POSITION) {
+    } else if (command->kind == DRIVE_COMMAND_SET_POSITION) {
         set_position(drive, command);
-        return true;
+    } else if (!command_rules_obeyed(command->kind, drive->supervision.state)) {
+        command_queue_count_dropped(&drive->commands, command);
     }
-    if (drive->supervision.state != DRIVE_OPERATION_ENABLED) {
-        if (!command_rules_obeyed(command->kind, drive->supervision.state)) {
-            command_queue_count_dropped(&drive->commands, command);
-        }
+}
+
+/* true: done with the command; false: it waits for its period or for the reference to rest. */
+static inline bool obey(struct drive *drive, struct queued_command *command)
+{
+    const bool moves = queued_command_is_move(command);
+
+    if (!moves && command->at_period == drive->supervision.period + 1u) {
+        return false; /* it has been looked at ahead */
+    }
+    if (drive->supervision.state != DRIVE_OPERATION_ENABLED ||
+        command->kind == DRIVE_COMMAND_SET_POSITION) {
+        obey_at_rest(drive, command);
         return true;
     }
     if (reference_busy(&drive->reference)) {
@@ -219,6 +232,27 @@ static void preempt(struct drive *drive, const struct motion_plan *plan)
     }
 }
 
+/* A disable or stop: periods until one is to be looked at again, 0 if one has acted. Apart: rare.
+ */
+__attribute__((noinline)) static uint32_t take_urgent(struct drive *drive)
+{
+    struct command_queue *queue = &drive->commands;
+    const uint32_t period = drive->supervision.period;
+    uint32_t wait = COMMAND_QUEUE_NEVER;
+
+    if (command_queue_take_urgent(queue, &queue->disable, period, &wait)) {
+        disable(drive);
+        return 0u;
+    }
+    if (command_queue_take_urgent(queue, &queue->stop, period + 1u, &wait)) {
+        reference_stop(&drive->reference);
+        command_queue_stop_acted(queue, period + 1u);
+        command_queue_rest_if_empty(queue, period, wait);
+        return 0u;
+    }
+    return wait;
+}
+
 /*
  * One command a period, and in the next the rest is looked at: short worst case. The reference has
  * been moved to S(k+1): what is asked of it for the period that follows is put to it now.
@@ -227,8 +261,8 @@ __attribute__((noinline)) static void take_commands(struct drive *drive)
 {
     struct command_queue *queue = &drive->commands;
     const uint32_t period = drive->supervision.period;
-    uint32_t wait = COMMAND_QUEUE_NEVER;
-    uint32_t urgent_wait;
+    uint32_t urgent_wait = COMMAND_QUEUE_NEVER;
+    uint32_t wait;
     const struct motion_plan *plan;
     struct queued_command *command;
 
@@ -238,17 +272,13 @@ __attribute__((noinline)) static void take_commands(struct drive *drive)
         enter_fault_asked_for(drive);
         return;
     }
-    if (command_queue_take_urgent(queue, &queue->disable, period, &wait)) {
-        disable(drive);
-        return;
+    if (command_queue_holds_urgent(queue)) {
+        urgent_wait = take_urgent(drive);
+        if (urgent_wait == 0u) {
+            return;
+        }
     }
-    if (command_queue_take_urgent(queue, &queue->stop, period + 1u, &wait)) {
-        reference_stop(&drive->reference);
-        command_queue_stop_acted(queue, period + 1u);
-        command_queue_rest_if_empty(queue, period, wait);
-        return;
-    }
-    urgent_wait = wait;
+    wait = urgent_wait;
     command = command_queue_due(queue, period + 1u, &wait);
     if (command != NULL && obey(drive, command)) {
         command_queue_drop(queue);
@@ -304,21 +334,6 @@ struct hal_outputs state_machine_resting_bridge(const struct drive *drive)
     return (struct hal_outputs){.high_counts = {half, half, half, half}, .bridge_on = on};
 }
 
-/* The states other than operation; true: the bridge is on, and the control runs. */
-__attribute__((noinline)) static bool step_outside_operation(struct drive *drive,
-                                                             const struct hal_samples *samples)
-{
-    if (drive->supervision.state == DRIVE_CALIBRATING_OFFSETS) {
-        calibrate_offsets(drive, samples);
-    } else if (drive->supervision.state == DRIVE_ALIGNING) {
-        align(drive, samples);
-    }
-    if (drive->supervision.state == DRIVE_DETECTING_POSITION) {
-        state_machine_fault(drive, protection_check_samples(&drive->params.protection, samples));
-    }
-    return state_machine_powered(drive);
-}
-
 void state_machine_check_samples(struct drive *drive, const struct hal_samples *samples)
 {
     const enum drive_fault fault = protection_check_samples(&drive->params.protection, samples);
@@ -343,7 +358,12 @@ __attribute__((noinline)) static void step_unpowered(struct drive *drive,
     if (command_queue_is_due(&drive->commands, drive->supervision.period)) {
         take_commands(drive);
     }
-    if (step_outside_operation(drive, samples)) {
+    if (drive->supervision.state == DRIVE_CALIBRATING_OFFSETS) {
+        calibrate_offsets(drive, samples);
+    } else if (drive->supervision.state == DRIVE_ALIGNING) {
+        align(drive, samples);
+    }
+    if (drive->supervision.state == DRIVE_DETECTING_POSITION || state_machine_powered(drive)) {
         /* the control has only been reset; a fault is entered at once */
         state_machine_check_samples(drive, samples);
     }
@@ -359,5 +379,8 @@ bool state_machine_step(struct drive *drive, const struct hal_samples *samples)
     if (command_queue_is_due(&drive->commands, drive->supervision.period)) {
         take_commands(drive);
     }
-    return step_outside_operation(drive, samples);
+    if (drive->supervision.state == DRIVE_ALIGNING) {
+        align(drive, samples);
+    }
+    return state_machine_powered(drive);
 }

@@ -35,8 +35,7 @@ static inline bool state_machine_powered(const struct drive *drive)
  * enabling. true: the bridge was on before and stays on. The period that powers up only resets the
  * blocks, so that no interrupt pays for both.
  */
-__attribute__((noinline)) bool state_machine_step(struct drive *drive,
-                                                  const struct hal_samples *samples);
+bool state_machine_step(struct drive *drive, const struct hal_samples *samples);
 
 /* In operation, when a command is due; true: it goes on. */
 bool state_machine_obey(struct drive *drive, const struct hal_samples *samples);

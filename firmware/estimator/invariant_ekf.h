@@ -122,9 +122,8 @@ __attribute__((noinline)) void invariant_ekf_follow_step(struct invariant_ekf *e
  * of a rotor which is led and passes its detent torque, or one that has made several steps on end.
  * Without a monitor both stay as the hold began with them.
  */
-__attribute__((noinline)) void invariant_ekf_watch_hold(struct invariant_ekf *ekf,
-                                                        const struct invariant_ekf_params *params,
-                                                        bool leads);
+void invariant_ekf_watch_hold(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
+                              bool leads);
 
 /* At S(k): corrects what was predicted for it, and predicts S(k+1). The default path does not come
    here: invariant_ekf_step.h. */

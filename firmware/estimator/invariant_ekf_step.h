@@ -47,34 +47,38 @@ static inline num_t invariant_ekf_away_from_settled_load(const struct invariant_
     return ekf->estimate.rotor.load_torque - ekf->settled_load;
 }
 
-/* Returns the innovation in the estimated rotor frame. */
-__attribute__((always_inline)) static inline struct dq
-invariant_ekf_correct(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                      const struct invariant_ekf_gain_set *gain, struct phases measured,
-                      struct phases surprise, struct rotor_hold hold)
+/* What the sample shows beside what was expected of it. */
+struct invariant_ekf_innovation {
+    struct phases current; /* as it was expected */
+    struct phases error;   /* measured minus expected */
+    struct dq in_frame;    /* the error in the estimated rotor frame */
+};
+
+static inline struct invariant_ekf_innovation
+invariant_ekf_innovate(const struct estimate *x, struct phases measured, struct phases surprise)
 {
-    const bool holding = hold.active;
+    const struct phases current = forced_current(&x->winding, x->next.current, surprise);
+    const struct phases error = {measured.a - current.a, measured.b - current.b};
+
+    return (struct invariant_ekf_innovation){current, error, park(error, x->next.frame)};
+}
+
+/* `bias_frame`: in which the offset is corrected along q. */
+__attribute__((always_inline)) static inline void
+invariant_ekf_correct(struct invariant_ekf *ekf, const struct invariant_ekf_gain_set *gain,
+                      const struct invariant_ekf_innovation *innovation,
+                      struct invariant_ekf_correction by, struct sincos bias_frame)
+{
     struct estimate *x = &ekf->estimate;
     const struct outlook *expected = &x->next;
-    const struct sincos frame = expected->frame;
-    const struct phases current = forced_current(&x->winding, expected->current, surprise);
-    const struct phases error = {measured.a - current.a, measured.b - current.b};
-    const struct dq innovation = park(error, frame);
-    const struct invariant_ekf_correction by =
-        RARE(holding) ? invariant_ekf_correct_in_hold(gain, innovation,
-                                                      invariant_ekf_away_from_settled_load(ekf))
-                      : invariant_ekf_correct_in_motion(params, expected->speed, innovation);
 
-    x->current.a = current.a + num_mul_coef(error.a, gain->current);
-    x->current.b = current.b + num_mul_coef(error.b, gain->current);
-    x->rotor.speed = expected->speed + num_mul_coef(innovation.q, gain->speed_q);
+    x->current.a = innovation->current.a + num_mul_coef(innovation->error.a, gain->current);
+    x->current.b = innovation->current.b + num_mul_coef(innovation->error.b, gain->current);
+    x->rotor.speed = expected->speed + num_mul_coef(innovation->in_frame.q, gain->speed_q);
     x->rotor.position = position_add(expected->position, angle_from_any_turns(by.turns));
     x->rotor.load_torque += by.load_torque;
-    const struct sincos bias_frame = RARE(holding) ? *hold.frame : frame;
-
     ekf->bias.a -= num_mul_unit_nearest(by.bias_q, bias_frame.sin);
     ekf->bias.b += num_mul_unit_nearest(by.bias_q, bias_frame.cos);
-    return innovation;
 }
 
 static inline void invariant_ekf_adapt_resistance(struct invariant_ekf *ekf,
@@ -120,6 +124,22 @@ invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_p
     return &params->following;
 }
 
+__attribute__((always_inline)) static inline void
+invariant_ekf_step_in_hold(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
+                           const struct invariant_ekf_innovation *innovation,
+                           struct rotor_hold hold)
+{
+    const struct invariant_ekf_gain_set *gain = invariant_ekf_hold_gains(ekf, params);
+    const num_t away = invariant_ekf_away_from_settled_load(ekf);
+
+    invariant_ekf_correct(ekf, gain, innovation,
+                          invariant_ekf_correct_in_hold(gain, innovation->in_frame, away),
+                          *hold.frame);
+    if (!*hold.leads) { /* a led rotor's lag behind its frame shows in nu_d, too */
+        invariant_ekf_adapt_resistance(ekf, params, gain, innovation->in_frame.d);
+    }
+}
+
 /* From S(k) to S(k+1), under this mean voltage. */
 __attribute__((always_inline)) static inline struct passage
 invariant_ekf_look_ahead(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
@@ -143,14 +163,17 @@ invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_params 
                    struct phases current, struct phases surprise, struct phases in_force,
                    struct rotor_hold hold)
 {
-    const bool holding = hold.active;
-    const struct invariant_ekf_gain_set *gain =
-        RARE(holding) ? invariant_ekf_hold_gains(ekf, params) : &params->moving;
-    const struct dq innovation = invariant_ekf_correct(ekf, params, gain, current, surprise, hold);
+    const struct invariant_ekf_innovation innovation =
+        invariant_ekf_innovate(&ekf->estimate, current, surprise);
 
-    ekf->innovation_sum = num_add_around(ekf->innovation_sum, innovation.d);
-    if (RARE(holding) && !*hold.leads) { /* a led rotor's lag behind its frame shows in nu_d, too */
-        invariant_ekf_adapt_resistance(ekf, params, gain, innovation.d);
+    ekf->innovation_sum = num_add_around(ekf->innovation_sum, innovation.in_frame.d);
+    if (RARE(hold.active)) {
+        invariant_ekf_step_in_hold(ekf, params, &innovation, hold);
+    } else {
+        invariant_ekf_correct(
+            ekf, &params->moving, &innovation,
+            invariant_ekf_correct_in_motion(params, ekf->estimate.next.speed, innovation.in_frame),
+            ekf->estimate.next.frame);
     }
     return invariant_ekf_look_ahead(ekf, params, in_force);
 }

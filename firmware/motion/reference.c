@@ -44,7 +44,7 @@ void reference_reset(struct reference *r, struct position position)
     r->jerks = false;
     r->jerk = 0;
     r->jerk_sixth = 0;
-    r->course = REFERENCE_TURNS;
+    r->course = REFERENCE_STILL;
     r->epoch++;
     place(r, position);
 }
@@ -66,45 +66,34 @@ bool reference_load(struct reference *r, struct profile *profile)
     r->at.speed = profile->rounding_speed;
     r->creeps = profile->creeps;
     r->stopped = false;
-    r->course = REFERENCE_TURNS;
+    r->course = reference_is_still(r) ? REFERENCE_STARTS : REFERENCE_TURNS;
     return true;
-}
-
-void reference_stop(struct reference *r)
-{
-    if (r->phase == REFERENCE_LOADED) {
-        r->phase = REFERENCE_REST;
-        r->at.speed = 0;
-        r->next.speed = NUM(0.0);
-    }
-    r->stop_requested = r->phase != REFERENCE_REST;
-    r->course = REFERENCE_TURNS;
 }
 
 /*
  * The ramp down mirrors the ramp up, so cutting the ramp up short where it stands leaves a profile
- * that ends at rest: the phases already behind keep the length they had. One period of the present
- * phase is left, so that the next phase begins in an interrupt of its own.
+ * that ends at rest: the phases already behind keep the length they had. So many periods of the
+ * present phase are left, so that the next phase begins in an interrupt of its own.
  */
-static void cut_short(struct reference *r)
+static void cut_short(struct reference *r, uint32_t left)
 {
     struct profile *profile = r->profile;
-    const uint32_t surplus = r->periods_left - 1u;
+    const uint32_t surplus = r->periods_left - left;
 
     switch (r->phase) {
     case REFERENCE_JERK_TO_ACCELERATE:
         profile->jerk_periods -= surplus;
         profile->acceleration_periods = 0;
-        r->periods_left = 1;
+        r->periods_left = left;
         break;
     case REFERENCE_ACCELERATE:
         profile->acceleration_periods -= surplus;
-        r->periods_left = 1;
+        r->periods_left = left;
         break;
     case REFERENCE_JERK_TO_CRUISE:
         break;
     case REFERENCE_CRUISE:
-        r->periods_left = 1;
+        r->periods_left = left;
         break;
     case REFERENCE_PLANNED:
         r->epoch++;
@@ -114,6 +103,21 @@ static void cut_short(struct reference *r)
     }
     profile->cruise_periods = 0;
     r->stopped = true;
+}
+
+void reference_stop(struct reference *r)
+{
+    if (r->phase == REFERENCE_LOADED) {
+        r->phase = REFERENCE_REST;
+        r->at.speed = 0;
+        r->next.speed = NUM(0.0);
+    }
+    if (r->phase < REFERENCE_PLANNED && r->periods_left > 1u) {
+        cut_short(r, 2u); /* of the next step, too */
+        return;
+    }
+    r->stop_requested = r->phase != REFERENCE_REST;
+    r->course = REFERENCE_TURNS;
 }
 
 static void begin(struct reference *r, enum reference_phase phase, uint32_t periods,
@@ -143,6 +147,7 @@ static void come_to_rest(struct reference *r)
     begin(r, REFERENCE_REST, 0, 0);
     r->stop_requested = false;
     r->at.speed = 0;
+    r->next.speed = NUM(0.0);
     place(r, r->stopped ? (struct position){r->at.turns, (angle_t)(r->at.fraction >> 32)}
                         : r->profile->target);
 }
@@ -321,25 +326,18 @@ static inline void advance(struct reference *r)
     }
 }
 
-/* Rests, creeps, or is in the first period of a phase. */
-static bool go_on(struct reference *r, const struct reference_params *params)
-{
-    if (r->phase != REFERENCE_REST) {
-        advance(r);
-        reference_show(r, params);
-        reference_show_acceleration(r, params);
-    }
-    r->course = course_of(r);
-    return false;
-}
-
-static bool begins(const struct reference *r)
+/* A phase ends with this period, or is to be cut short. */
+static bool ends_phase(const struct reference *r)
 {
     return (r->periods_left <= 1u || r->stop_requested) && r->phase != REFERENCE_REST;
 }
 
-bool reference_turn(struct reference *r, const struct reference_params *params, bool held)
+/* One period on, but for the phase that begins; true: one does. Apart: it needs many registers. */
+__attribute__((noinline)) static bool turn(struct reference *r,
+                                           const struct reference_params *params, bool held)
 {
+    const bool ends = ends_phase(r);
+
     if (is_slow(r, params, held)) {
         reference_count_slow(r);
     } else {
@@ -348,20 +346,48 @@ bool reference_turn(struct reference *r, const struct reference_params *params, 
     reference_pass(r);
     reference_pass_acceleration(r);
     r->now.moving = r->next.moving;
-    if (!begins(r)) {
-        return go_on(r, params);
-    }
     if (r->periods_left > 0u) {
         advance(r);
+        reference_show(r, params);
     }
+    if (ends) {
+        return true;
+    }
+    if (r->phase != REFERENCE_REST) {
+        reference_show_acceleration(r, params);
+    }
+    r->course = course_of(r);
+    return false;
+}
+
+/* Of a phase as it begins. In motion one with jerk just goes on from here. */
+static enum reference_course first_course_of(const struct reference *r)
+{
+    return r->jerks && r->now.moving && !r->creeps && !r->stop_requested ? REFERENCE_JERKS
+                                                                         : REFERENCE_TURNS;
+}
+
+bool reference_turn(struct reference *r, const struct reference_params *params, bool held)
+{
+    bool jumps; /* the speed, by what rounding or a plan adds to it */
+
+    if (r->course == REFERENCE_TURNS && !turn(r, params, held)) {
+        return false;
+    }
+    if (r->course == REFERENCE_STARTS) {
+        reference_count_slow(r);
+    }
+    jumps = r->phase == REFERENCE_LOADED || r->phase == REFERENCE_PLANNED;
     if (r->periods_left == 0u) {
         begin_next_phase(r);
     } else { /* a stop has been asked for */
-        cut_short(r);
+        cut_short(r, 1u);
         r->stop_requested = false;
     }
-    r->course = REFERENCE_TURNS;
-    reference_show(r, params);
+    if (jumps) {
+        reference_show(r, params);
+    }
     reference_show_acceleration(r, params);
+    r->course = first_course_of(r);
     return true;
 }

@@ -58,7 +58,8 @@ enum reference_phase {
 
 /* What a step has to do. Chosen anew by each that does not just go on. */
 enum reference_course {
-    REFERENCE_TURNS, /* a phase begins or ends, it creeps, or something has been asked for */
+    REFERENCE_TURNS,  /* a phase begins or ends, it creeps, or something has been asked for */
+    REFERENCE_STARTS, /* a profile begins from rest */
     REFERENCE_STILL,
     REFERENCE_STEADY, /* a phase of constant acceleration */
     REFERENCE_JERKS
@@ -243,17 +244,24 @@ static inline void reference_pass_acceleration(struct reference *r)
     }
 }
 
+/* It rests, and has not only just begun to. */
+static inline bool reference_is_still(const struct reference *r)
+{
+    return r->course == REFERENCE_STILL;
+}
+
 /* One control period at rest; false: it does not rest, or has only just begun to. */
 static inline bool reference_keeps_still(struct reference *r)
 {
-    if (r->course != REFERENCE_STILL) {
+    if (!reference_is_still(r)) {
         return false;
     }
     reference_count_slow(r);
     return true;
 }
 
-/* One control period on; false: it does not just go on, reference_turn is to follow. */
+/* One control period on; false: it does not just go on, reference_turn is to follow, or a phase has
+   ended, and reference_turn begins the next. */
 static inline bool reference_step(struct reference *r, const struct reference_params *params)
 {
     const enum reference_course course = r->course;
@@ -261,19 +269,21 @@ static inline bool reference_step(struct reference *r, const struct reference_pa
     if (reference_keeps_still(r)) {
         return true;
     }
-    if (RARE(course == REFERENCE_TURNS || r->periods_left <= 1u)) {
+    if (RARE(course <= REFERENCE_STARTS)) {
         return false;
     }
     reference_pass(r);
     if (RARE(course == REFERENCE_JERKS)) {
         reference_pass_acceleration(r);
         reference_advance_with_jerk(r);
-        reference_show_acceleration(r, params);
+        if (!RARE(r->periods_left == 0u)) {
+            reference_show_acceleration(r, params);
+        }
     } else {
         reference_advance(r);
     }
     reference_show(r, params);
-    return true;
+    return !RARE(r->periods_left == 0u);
 }
 
 #endif
