@@ -12,7 +12,9 @@ from .image import SHF_WRITE
 INTERRUPTS = ["control_interrupt", "deadline_guard_interrupt"]
 # And what they alone call.
 ENABLING = {
+    "align_encoder",
     "encoder_aligning_step",
+    "end_first_hold",
     "find_position_or_power_up",
     "position_detecting_cycle",
     "offset_calibration_step",
