@@ -1,4 +1,6 @@
 /* Switches on wires, and what the drive does for them; on the console and on the bus. */
+#include <stdlib.h>
+
 #include "firmware/application/machine_io.h"
 #include "firmware/link/axis_motion.h"
 #include "tests/unit/link_bench.h"
@@ -51,11 +53,12 @@ static struct drive_signals now(void)
     return signals;
 }
 
-static void go(double speed_rad_s, int periods)
+/* Whole: the cores' library prints no doubles. */
+static void go(int speed_rad_s, int periods)
 {
     char line[100];
 
-    snprintf(line, sizeof line, "velocity speed_rad_s=%g acceleration_rad_s2=200 jerk_rad_s3=20000",
+    snprintf(line, sizeof line, "velocity speed_rad_s=%d acceleration_rad_s2=200 jerk_rad_s3=20000",
              speed_rad_s);
     is_heard("ok velocity", say(line, periods));
 }
@@ -79,7 +82,7 @@ static void enable_on_bus(int mode)
 
 /* ---- limit switches ---- */
 
-static void moves_until_the_limit(double speed_rad_s, uint32_t limit, const char *said)
+static void moves_until_the_limit(int speed_rad_s, uint32_t limit, const char *said)
 {
     is_heard("ok enable", say("enable", 40));
     go(speed_rad_s, 2000);
@@ -87,7 +90,7 @@ static void moves_until_the_limit(double speed_rad_s, uint32_t limit, const char
     (void)bench_heard();
     bench.inputs |= limit;
     bench_periods(30);
-    TEST_ASSERT_TRUE(fabs(now().omega_ref_rad_s) < fabs(speed_rad_s));
+    TEST_ASSERT_TRUE(fabs(now().omega_ref_rad_s) < abs(speed_rad_s));
     bench_periods(2000);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, now().omega_ref_rad_s);
     is_heard(said, bench_heard());
@@ -95,24 +98,23 @@ static void moves_until_the_limit(double speed_rad_s, uint32_t limit, const char
 
 static void test_a_limit_switch_stops_and_lets_back_alone(void)
 {
-    moves_until_the_limit(5.0, HAL_INPUT_LIMIT_PLUS,
-                          "warning: stop: the limit switch + is active\n");
+    moves_until_the_limit(5, HAL_INPUT_LIMIT_PLUS, "warning: stop: the limit switch + is active\n");
     is_heard("error: the limit switch + is active",
              say("velocity speed_rad_s=1 acceleration_rad_s2=200 jerk_rad_s3=20000", 20));
     is_heard("error: the limit switch + is active", say("move 100", 20));
     is_heard("error: the limit switch + is active",
              say("sine amplitude_rad=0.1 frequency_Hz=1", 20));
-    go(-5.0, 2000);
+    go(-5, 2000);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, -5.0, now().omega_ref_rad_s);
     bench.inputs &= ~(uint32_t)HAL_INPUT_LIMIT_PLUS;
     bench_periods(30);
-    go(5.0, 2000);
+    go(5, 2000);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 5.0, now().omega_ref_rad_s);
 }
 
 static void test_the_other_limit_switch_stops_the_other_way(void)
 {
-    moves_until_the_limit(-5.0, HAL_INPUT_LIMIT_MINUS,
+    moves_until_the_limit(-5, HAL_INPUT_LIMIT_MINUS,
                           "warning: stop: the limit switch - is active\n");
     is_heard("error: the limit switch - is active", say("move -100", 20));
     is_heard("ok move", say("move 1", 20));
@@ -121,8 +123,8 @@ static void test_the_other_limit_switch_stops_the_other_way(void)
 /* It turns round in mid-motion: towards the other one, which is active, too. */
 static void test_both_limit_switches_stop_a_motion_that_turns_round(void)
 {
-    moves_until_the_limit(5.0, HAL_INPUT_LIMIT_PLUS, "limit switch +");
-    go(-5.0, 2000);
+    moves_until_the_limit(5, HAL_INPUT_LIMIT_PLUS, "limit switch +");
+    go(-5, 2000);
     bench.inputs |= LIMITS;
     bench_periods(2000);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, now().omega_ref_rad_s);
@@ -132,7 +134,7 @@ static void test_both_limit_switches_stop_a_motion_that_turns_round(void)
 static void test_a_level_counts_when_it_lasts(void)
 {
     is_heard("ok enable", say("enable", 40));
-    go(5.0, 2000);
+    go(5, 2000);
     bench.inputs |= LIMITS;
     bench_periods(9);
     bench.inputs &= ~(uint32_t)LIMITS;
@@ -146,7 +148,7 @@ static void test_what_is_not_wired_is_not_obeyed_and_levels_have_their_polarity(
     bench.inputs = LIMITS | HAL_INPUT_QUICK_STOP;
     bench_periods(40);
     is_heard("ok enable", say("enable", 40));
-    go(5.0, 2000);
+    go(5, 2000);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 5.0, now().omega_ref_rad_s);
     start(HAL_INPUT_LIMIT_PLUS, 0.0);
     bench.application.chosen.inputs_low = HAL_INPUT_LIMIT_PLUS;
@@ -190,7 +192,7 @@ static void test_a_limit_switch_on_the_bus_is_said_and_shown(void)
 
 static void test_a_quick_stop_input_stops_and_refuses_to_move(void)
 {
-    moves_until_the_limit(5.0, HAL_INPUT_QUICK_STOP,
+    moves_until_the_limit(5, HAL_INPUT_QUICK_STOP,
                           "warning: stop: the quick stop input is active\n");
     is_heard("error: the quick stop input is active", say("move -1", 20));
     TEST_ASSERT_EQUAL(DRIVE_OPERATION_ENABLED, now().state);
@@ -238,7 +240,7 @@ static void test_nothing_is_enabled_without_the_enable_input(void)
 static void test_an_enable_input_that_goes_stops_then_switches_off(void)
 {
     is_heard("ok enable", say("enable", 40));
-    go(5.0, 2000);
+    go(5, 2000);
     bench.inputs = 0;
     bench_periods(40);
     TEST_ASSERT_EQUAL(DRIVE_OPERATION_ENABLED, now().state);
@@ -282,7 +284,7 @@ static void test_outputs_show_alarm_and_position(void)
     is_heard("ok enable", say("enable", 200));
     is_heard("ok step", say("step 0.016", 200));
     TEST_ASSERT_EQUAL_HEX32(HAL_OUTPUT_IN_POSITION | HAL_OUTPUT_BRAKE, outputs());
-    go(5.0, 500);
+    go(5, 500);
     TEST_ASSERT_EQUAL_HEX32(HAL_OUTPUT_BRAKE, outputs());
     bench.samples.bus_voltage = 0;
     TEST_ASSERT_EQUAL_HEX32(HAL_OUTPUT_ALARM, outputs());
