@@ -170,7 +170,8 @@ function(interrupt_sections)
   file(TOUCH ${no_sections}/interrupt_sections.ld)
   add_executable(unplaced)
   board_program(unplaced ${pin_map})
-  target_link_options(unplaced PRIVATE -L ${no_sections})
+  # It is never packed, nor flashed: where flash is scarce, memory.ld gives it more.
+  target_link_options(unplaced PRIVATE -L ${no_sections} -Wl,--defsym=unpacked=1)
   file(GLOB image_readers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tools/arm_image/*.py)
   add_custom_command(OUTPUT ${sections}
     COMMAND ${PROJECT_SOURCE_DIR}/tools/interrupt_sections

@@ -112,7 +112,7 @@ def check_memory(root, facts):
     script = without_comments((root / PORT / "memory.ld").read_text(encoding="utf-8"))
     store = 4 * 1024  # behind the program
     for name, memory, kept in (("FLASH", "BANK_1", store), ("RAM", "SRAM", 0)):
-        pattern = rf"{name}\s+\(\w+\)\s*: ORIGIN = (0x\w+), LENGTH = (\d+)K"
+        pattern = rf"{name}\s+\(\w+\)\s*: ORIGIN = (0x\w+), LENGTH = (?:DEFINED\(unpacked\) \? \d+K : )?(\d+)K"
         origin, length = re.search(pattern, script).groups()
         start, size = facts.memories[memory]
         if int(origin, 16) != start or int(length) * 1024 + kept != size:
@@ -160,7 +160,7 @@ check.PLANTED = [
     (PIN_MAP, "PIN(C, 8, ALTERNATE, 2,", "PIN(C, 8, ALTERNATE, 6,"),
     (PIN_MAP, "#define BUS_CHANNEL 10", "#define BUS_CHANNEL 12"),
     (PIN_MAP, "#define BRIDGE_RESET_PIN 13", "#define BRIDGE_RESET_PIN 12"),
-    ("memory.ld", "LENGTH = 124K", "LENGTH = 128K"),
+    ("memory.ld", ": 124K", ": 128K"),
 ]
 
 if __name__ == "__main__":
