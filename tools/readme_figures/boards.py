@@ -172,7 +172,7 @@ def g071_memory(sources):
     from arm_image import memory
     elf = image(sources, G071)
     sections = section_sizes(elf)
-    flash = 1024 * int(re.search(r"FLASH .*LENGTH = (\d+)K",
+    flash = 1024 * int(re.search(r"FLASH .* (\d+)K\n",
                                  (ROOT / "hal/stm32g071/memory.ld").read_text(encoding="utf-8"))[1])
     used = re.search(r"stack: (\d+) bytes used",
                      sources.text(sources.built("sil/tests/stm32g071_run", "sil"), elf))[1]
