@@ -365,9 +365,9 @@ PLANTED = [
     (PIN_MAP, "#define ENCODER_TIMER 4", "#define ENCODER_TIMER 8"),
     (PIN_MAP, "#define LED_PIN 5", "#define LED_PIN 6"),
     ("memory.ld", "ORIGIN = 0x10000000", "ORIGIN = 0x10001000"),
-    ("memory.ld", "ORIGIN = 0x20016000, LENGTH = 8K", "ORIGIN = 0x20016000, LENGTH = 9K"),
-    ("memory.ld", "ORIGIN = 0x20016000", "ORIGIN = 0x20013000"),
-    ("memory.ld", "ORIGIN = 0x20013000, LENGTH = 12K", "ORIGIN = 0x20013000, LENGTH = 13K"),
+    ("memory.ld", "ORIGIN = 0x20016400, LENGTH = 7K", "ORIGIN = 0x20016400, LENGTH = 8K"),
+    ("memory.ld", "ORIGIN = 0x20016400", "ORIGIN = 0x20012C00"),
+    ("memory.ld", "ORIGIN = 0x20012C00, LENGTH = 14K", "ORIGIN = 0x20012C00, LENGTH = 15K"),
 ]
 
 
