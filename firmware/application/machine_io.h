@@ -11,8 +11,8 @@
  *   alarm              a fault has opened the bridge
  *   in position        the reference rests, and the rotor is within 0.01 rad of it
  *   brake              a holding brake is released, once a current holds the rotor; it engages
- *                      holding_brake_s before a `disable` takes the current away, with a fault at
- * once
+ *                      holding_brake_s before a `disable` takes the current away, and at once
+ *                      with a fault
  *
  * Which inputs there are and which levels are active: settings inputs_used, inputs_low,
  * outputs_low.

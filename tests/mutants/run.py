@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Proves that the unit tests can fail: breaks the firmware in one place at a time.
 
-usage: run.py ROOT UNITY [--compiler CC] [--jobs N] [--only TEXT] [--one-per-file]
+usage: run.py ROOT UNITY [--compiler CC] [--jobs N] [--only TEXT] [--one-per-folder]
 
 Each mutant of mutants.py replaces one text of one firmware file in a copy and must make the tests
 it names fail; unbroken, they must pass. exit 1 with one line per mutant that survives, does not
@@ -87,7 +87,7 @@ def main():
     parser.add_argument("--compiler", default="cc")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--only", default="", help="mutants whose file or test contains this")
-    parser.add_argument("--one-per-file", action="store_true", help="of each file the first only")
+    parser.add_argument("--one-per-folder", action="store_true", help="of each folder the first only")
     arguments = parser.parse_args()
 
     stale = list(outdated(arguments.root, MUTANTS))
@@ -96,8 +96,8 @@ def main():
         return 1
     mutants = [mutant for mutant in MUTANTS
                if arguments.only in mutant.file or arguments.only in mutant.test]
-    if arguments.one_per_file:
-        first = {mutant.file: mutant for mutant in reversed(mutants)}
+    if arguments.one_per_folder:
+        first = {pathlib.PurePath(mutant.file).parent: mutant for mutant in reversed(mutants)}
         mutants = list(first.values())
     wanted = sorted({(mutant.numeric, mutant.test) for mutant in mutants})
     with tempfile.TemporaryDirectory() as scratch, \

@@ -68,6 +68,8 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
        OR name MATCHES "^(axis|encoder_alignment)$")
       list(APPEND labels full)
       set(timeout_s 600) # closed loops: minutes under QEMU
+    elseif(name MATCHES "^(axis_motion|initial_position|thermal_watch)$" AND numeric STREQUAL float)
+      list(APPEND labels full) # ten seconds each; in fixed point they run
     endif()
     set_tests_properties(target.unit.${name}.${numeric}
       PROPERTIES LABELS "${labels}" TIMEOUT ${timeout_s})
@@ -91,8 +93,12 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
     add_test(NAME target.longest-path.${case}.${numeric}
       COMMAND ${PROJECT_SOURCE_DIR}/tools/longest_path --executed
               $<TARGET_FILE:replay_${case}_${numeric}>)
+    set(labels target)
+    if(NOT case STREQUAL references) # which leaves nothing out
+      list(APPEND labels full)
+    endif()
     set_tests_properties(target.longest-path.${case}.${numeric}
-      PROPERTIES LABELS target TIMEOUT 120)
+      PROPERTIES LABELS "${labels}" TIMEOUT 120)
   endforeach()
 
   add_test(NAME target.interrupt-is-clean.${numeric}
