@@ -150,6 +150,11 @@ class Moves(unittest.TestCase):
             runs = simulator.Simulator(PROGRAM).run(list(files.values()))
         self.assertEqual([run["motor"] for run in runs], ["kim-2016"] * 2)
 
+    def test_another_motor_takes_a_parameter_set_whole(self):
+        foc, stmms = results.entries_of(["foc", "stmms"], experiment.read_motor("kim-2016"))
+        self.assertEqual((foc.parameters.parent.name, foc.settings), (experiment.HOME_MOTOR, {}))
+        self.assertEqual(list(stmms.settings), ["drive.speed_limit_rad_s"])
+
     def test_a_file_that_is_no_motor_is_refused_with_its_name(self):
         with self.assertRaisesRegex(simulator.Refused, "compare-step.toml: not a motor file"):
             experiment.read_motor(ROOT / "sil/scenarios/compare-step.toml")

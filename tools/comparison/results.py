@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from comparison.experiment import parameters_for, scenarios_for
 from comparison.simulator import Refused
-from comparison.tuning import figures_of, fixed_settings, is_lost
+from comparison.tuning import figures_of, is_lost, settings_by_motor
 
 
 class Entry(NamedTuple):
@@ -31,7 +31,7 @@ def entries_of(laws, motor, folder=None):
     for law in laws:
         file, note = parameters_for(law, motor, folder)
         tuned_for_this_motor = file is not None and not note
-        settings = {} if tuned_for_this_motor else fixed_settings(law, motor)
+        settings = {} if tuned_for_this_motor else settings_by_motor(law, motor)
         entries.append(Entry(law, law, file, note, settings))
     return entries
 

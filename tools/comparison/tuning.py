@@ -50,14 +50,19 @@ def tunables_of(law, period_s):
 WITHOUT_ENCODER = ("microstepping",)
 
 
-def fixed_settings(law, motor, learning=True):
-    """What a law has to be given besides. `learning`: whether it learns the detent torque."""
-    settings = {} if law in WITHOUT_ENCODER else {"drive.detent_learning": learning}
+def settings_by_motor(law, motor):
+    """What a law has to be given besides, whoever's parameter set it has."""
     if law == "stmms":  # without current control it refuses speeds of N w L / R > 4
-        settings["drive.speed_limit_rad_s"] = float(f"{3.999 * motor.electrical_corner_rad_s:.4g}")
+        return {"drive.speed_limit_rad_s": float(f"{3.999 * motor.electrical_corner_rad_s:.4g}")}
     if law == "csmc-servo":  # the sine's
-        settings["drive.law_gains.servo_frequency_rad_s"] = float(f"{2 * math.pi * SINE_Hz:.6g}")
-    return settings
+        return {"drive.law_gains.servo_frequency_rad_s": float(f"{2 * math.pi * SINE_Hz:.6g}")}
+    return {}
+
+
+def fixed_settings(law, motor, learning):
+    """What it is tuned with. `learning`: whether it learns the detent torque."""
+    learns = {} if law in WITHOUT_ENCODER else {"drive.detent_learning": learning}
+    return {**learns, **settings_by_motor(law, motor)}
 
 
 def settings_at(point, tunables):
