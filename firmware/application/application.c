@@ -64,6 +64,9 @@ CALLED_FROM_OUTSIDE void application_put_link(struct application *application, s
 {
     link_init(link);
     application->link = link;
+    if (LINK_CARRIED && application->chosen.modbus_rtu) {
+        link_open_modbus(application);
+    }
 }
 
 static bool start_with_stored(struct application *application)

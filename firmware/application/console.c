@@ -448,10 +448,7 @@ static void carry_frames(struct application *application)
     }
     refill(application);
     while (!ended && link_has_room(application, 2) && console->taken < console->received_count) {
-        const char character = (char)console->received[console->taken++];
-
-        link_take(application, character);
-        ended = character == '\r';
+        ended = link_take(application, (char)console->received[console->taken++]);
     }
     link_background(application);
     (void)send(application);

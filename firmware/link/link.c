@@ -3,6 +3,7 @@
 #include "firmware/application/application.h"
 #include "firmware/drive/interrupt_view.h"
 #include "firmware/interface/dictionary.h"
+#include "firmware/link/modbus.h"
 #include "firmware/link/sdo_block.h"
 #include "firmware/link/slcan.h"
 #include "firmware/linkage.h"
@@ -18,7 +19,9 @@ enum nmt_command {
     NMT_RESET_COMMUNICATION = 0x82
 };
 
-enum { MILLISECOND_us = 1000, ERRORS_KEPT = 4 };
+/* A silence ends what has come of a request: longer than a host's driver puts between two pieces.
+ */
+enum { MILLISECOND_us = 1000, MODBUS_SILENCE_us = 5000, ERRORS_KEPT = 4 };
 
 void link_init(struct link *link)
 {
@@ -53,7 +56,7 @@ void link_send(struct application *application, const struct can_frame *frame)
 {
     struct console *console = &application->console;
 
-    if (link_has_room(application, 1)) {
+    if (!application->link->modbus && link_has_room(application, 1)) {
         console->answer_length += slcan_write(frame, &console->answer[console->answer_length]);
     }
 }
@@ -263,6 +266,11 @@ static void receive(struct application *application, const struct can_frame *fra
 
 /* ---- the channel ---- */
 
+static bool is_text(const char *line, size_t length, const char *text)
+{
+    return length == strlen(text) && memcmp(line, text, length) == 0;
+}
+
 static void open_channel(struct application *application, bool listens_only)
 {
     struct link *link = application->link;
@@ -283,7 +291,15 @@ static void close_channel(struct application *application)
         cia402_lose(application);
     }
     link->open = false;
+    link->modbus = false;
     console_skip_announcements(application);
+}
+
+CALLED_FROM_OUTSIDE void link_open_modbus(struct application *application)
+{
+    application->link->modbus = true;
+    application->link->byte_came = false;
+    open_channel(application, false);
 }
 
 static bool obey(struct application *application, const char *line, size_t length)
@@ -314,21 +330,82 @@ bool link_obey_line(struct application *application, const char *line, size_t le
         return false;
     }
     link->now_us = (uint32_t)application->board.time_us(application->board.context);
+    if (is_text(line, length, "modbus")) {
+        put_text(application, "ok modbus\n");
+        link_open_modbus(application);
+        return true;
+    }
     return obey(application, line, length);
 }
 
-void link_take(struct application *application, char byte)
+static bool take_character(struct application *application, char character)
 {
     struct console *console = &application->console;
 
-    if (byte == '\r') {
+    if (character == '\r') {
         if (!obey(application, console->line, console->line_length) && console->line_length > 0u) {
             put_text(application, "\a");
         }
         console->line_length = 0;
-    } else if (byte != '\n' && console->line_length <= SLCAN_LINE_BYTES) {
+    } else if (character != '\n' && console->line_length <= SLCAN_LINE_BYTES) {
+        console->line[console->line_length++] = character;
+    }
+    return character == '\r';
+}
+
+/* ---- Modbus ---- */
+
+static void serve_modbus(struct application *application)
+{
+    struct console *console = &application->console;
+    uint8_t *response = (uint8_t *)&console->answer[console->answer_length];
+
+    if (console->answer_length + MODBUS_RESPONSE_BYTES <= sizeof console->answer) {
+        console->answer_length +=
+            modbus_serve(application, application->link->node, (const uint8_t *)console->line,
+                         console->line_length, response);
+    }
+    console->line_length = 0;
+}
+
+static bool take_modbus(struct application *application, char byte)
+{
+    struct console *console = &application->console;
+
+    application->link->byte_came = true;
+    if (console->line_length < MODBUS_REQUEST_BYTES) {
         console->line[console->line_length++] = byte;
     }
+    if (!modbus_is_whole((const uint8_t *)console->line, console->line_length)) {
+        return false;
+    }
+    serve_modbus(application);
+    return true;
+}
+
+/* What has come is all of it where nothing follows. */
+static void end_modbus_request(struct application *application)
+{
+    struct link *link = application->link;
+    struct console *console = &application->console;
+
+    if (link->byte_came) {
+        link->byte_came = false;
+        link->byte_us = link->now_us;
+    } else if (console->line_length > 0u && link_since(link, link->byte_us) >= MODBUS_SILENCE_us) {
+        if (is_text(console->line, console->line_length, "C\r")) {
+            close_channel(application);
+        } else {
+            serve_modbus(application);
+        }
+        console->line_length = 0;
+    }
+}
+
+bool link_take(struct application *application, char byte)
+{
+    return application->link->modbus ? take_modbus(application, byte)
+                                     : take_character(application, byte);
 }
 
 void link_finish(struct application *application)
@@ -343,6 +420,9 @@ void link_background(struct application *application)
     struct link *link = application->link;
 
     link->now_us = (uint32_t)application->board.time_us(application->board.context);
+    if (link->modbus) {
+        end_modbus_request(application);
+    }
     cia402_background(application);
     sdo_block_send(application);
     if (link_since(link, link->looked_us) < MILLISECOND_us) {

@@ -3,6 +3,8 @@
  * (slcan.h) by the board's serial line. While the channel is open, from the line "O" to "C", the
  * console is silent and the line carries frames alone; what the drive does goes on when it closes.
  *
+ * Or as a server of Modbus RTU on the same dictionary, from the line "modbus" on, or from power-up.
+ *
  * A slave: NMT, heartbeat, emergencies, SYNC, one SDO server (sdo.h), four PDOs each way (pdo.h),
  * and the drive profile (cia402.h). All of it runs in the background, as the console does.
  */
@@ -34,6 +36,8 @@ struct link {
     bool synced;               /* SYNC has come, at least once */
     bool unheard;              /* either no more: an emergency said so */
     bool listens_only;         /* the client does: it sends nothing */
+    bool modbus;               /* the line carries Modbus RTU (modbus.h), not frames */
+    bool byte_came;            /* of Modbus, in this pass */
     uint8_t node;              /* its number: the setting's when communication began */
     uint8_t nmt;               /* enum link_nmt */
     uint8_t errors;            /* in the field 1003h */
@@ -42,6 +46,7 @@ struct link {
     uint32_t beaten_us;        /* last heartbeat */
     uint32_t looked_us;        /* last millisecond's look */
     uint32_t heard_us, synced_us;
+    uint32_t byte_us; /* last byte of Modbus */
     struct link_objects objects;
     struct sdo_server sdo;
     struct pdos pdos;
@@ -56,11 +61,14 @@ void link_init(struct link *link);
 /* Behind it: so much memory for the capture, of a board that follows the control (hal.h). */
 void link_put_memory(struct link *link, uint32_t *memory, size_t words);
 
-/* The console, closed: obeys the line if it is one of slcan. false: it is none. */
+/* The line carries Modbus RTU from now on, until the two bytes "C\r" stand alone in it. */
+void link_open_modbus(struct application *application);
+
+/* The console, closed: obeys the line if it is "modbus" or one of slcan. false: it is none. */
 bool link_obey_line(struct application *application, const char *line, size_t length);
 
-/* A byte that has come while the channel is open. */
-void link_take(struct application *application, char byte);
+/* A byte that has come while the channel is open. true: it ends a frame. */
+bool link_take(struct application *application, char byte);
 
 /* Background, while the channel is open: what nobody asked for, and what time brings. */
 void link_background(struct application *application);

@@ -1,0 +1,299 @@
+/* Modbus RTU: objects as registers, what is refused, and where a request begins and ends. */
+#include "firmware/link/modbus.h"
+#include "tests/unit/link_bench.h"
+
+enum { SILENCE = 60 /* periods */ };
+
+void setUp(void)
+{
+    link_bench_start();
+    TEST_ASSERT_EQUAL_STRING("ok modbus\n", link_bench_say("modbus", 1));
+    bench_periods(SILENCE);
+}
+
+void tearDown(void)
+{
+}
+
+static size_t bytes_of(const char *digits, uint8_t *bytes)
+{
+    size_t count = 0;
+    unsigned byte;
+
+    while (sscanf(digits, "%2x", &byte) == 1) {
+        bytes[count++] = (uint8_t)byte;
+        digits += digits[2] == ' ' ? 3 : 2;
+    }
+    return count;
+}
+
+static size_t with_crc(const char *digits, uint8_t *frame)
+{
+    const size_t count = bytes_of(digits, frame);
+    const uint16_t crc = modbus_crc(frame, count);
+
+    frame[count] = (uint8_t)crc;
+    frame[count + 1u] = (uint8_t)(crc >> 8);
+    return count + 2u;
+}
+
+static void send(const uint8_t *bytes, size_t count)
+{
+    (void)bench_heard();
+    bench_type_bytes((const char *)bytes, count);
+    bench_periods(8);
+}
+
+/* The frame without its checksum, which must be right. */
+static const char *heard(void)
+{
+    static char digits[600];
+    const size_t count = bench.written_count;
+    const uint8_t *frame = (const uint8_t *)bench_heard();
+
+    digits[0] = '\0';
+    if (count >= 2u) {
+        TEST_ASSERT_EQUAL_HEX16(0, modbus_crc(frame, count));
+    }
+    for (size_t i = 0; i + 2u < count; i++) {
+        snprintf(&digits[2u * i], sizeof digits - 2u * i, "%02x", frame[i]);
+    }
+    return digits;
+}
+
+static void asked(const char *request, const char *response)
+{
+    uint8_t frame[300];
+
+    send(frame, with_crc(request, frame));
+    TEST_ASSERT_EQUAL_STRING_MESSAGE(response, heard(), request);
+}
+
+static void test_the_checksum_is_that_of_the_standard(void)
+{
+    uint8_t frame[16];
+    const size_t count = bytes_of("01 03 00 00 00 0a", frame);
+
+    TEST_ASSERT_EQUAL_HEX16(0xcdc5, modbus_crc(frame, count));
+}
+
+static void test_an_object_is_read_as_registers_highest_first(void)
+{
+    asked("01 03 1000 0002", "01030400040192");
+    asked("01 04 1000 0002", "01040400040192");
+    asked("01 03 605a 0001", "0103020002");
+    asked("01 03 6060 0001", "0103020001");
+    asked("01 03 2120 0004", "0103084008000000000000"); /* current_limit_A, 3 A */
+}
+
+static void test_an_array_is_read_from_its_first_value_on(void)
+{
+    asked("01 03 607d 0002", "01030480000000");
+    asked("01 03 607d 0004", "010308800000007fffffff");
+    asked("01 03 607d 0003", "018303");
+    asked("01 03 607d 0006", "018302");
+}
+
+static void test_a_text_ends_with_zeros(void)
+{
+    uint8_t frame[64];
+
+    send(frame, with_crc("01 03 1008 0010", frame));
+    const char *digits = heard();
+
+    TEST_ASSERT_EQUAL_STRING_LEN("010320", digits, 6);
+    TEST_ASSERT_EQUAL_STRING("00", &digits[6 + 62]);
+    TEST_ASSERT_TRUE(strncmp("00", &digits[6], 2) != 0);
+}
+
+static void test_registers_are_written_one_or_several(void)
+{
+    asked("01 06 6060 0003", "010660600003");
+    asked("01 03 6060 0001", "0103020003");
+    asked("01 06 60c2 0005", "010660c20005");
+    asked("01 10 60c2 0002 04 0002 fffd", "011060c20002"); /* 2, 10^-3 */
+    asked("01 03 60c2 0002", "0103040002fffd");
+    asked("01 10 607a 0002 04 fffe 7960", "0110607a0002");
+    TEST_ASSERT_EQUAL(-100000, bench_link.objects.target_position);
+    asked("01 10 2120 0004 08 3ff8 0000 0000 0000", "011021200004");
+    TEST_ASSERT_TRUE(bench.application.chosen.current_limit_A == 1.5);
+}
+
+static void test_what_cannot_be_is_an_exception(void)
+{
+    asked("01 03 1234 0001", "018302"); /* no object */
+    asked("01 06 6041 0000", "018602"); /* read only */
+    asked("01 03 2200 0001", "018302"); /* write only */
+    asked("01 03 2402 0001", "018302"); /* a domain */
+    asked("01 03 1000 0001", "018303"); /* half of a value */
+    asked("01 03 1000 0000", "018303");
+    asked("01 03 1008 007e", "018303");
+    asked("01 06 6060 0004", "018603"); /* no such mode */
+    asked("01 06 6060 0103", "018603"); /* more than a byte */
+    asked("01 06 6060 ff03", "018603");
+    asked("01 10 607a 0002 02 0000", "019003");
+    asked("01 10 1010 0002 04 0000 0001", "019003"); /* not "save" */
+    asked("01 06 2200 0003", "018604");              /* a command that the drive refuses */
+    asked("01 08 0001 0000", "018801");
+}
+
+static void test_an_unknown_function_is_answered_behind_the_silence(void)
+{
+    uint8_t frame[16];
+
+    send(frame, with_crc("01 2b 0e 01 00", frame));
+    TEST_ASSERT_EQUAL_STRING("", heard());
+    bench_periods(SILENCE);
+    TEST_ASSERT_EQUAL_STRING("01ab01", heard());
+}
+
+static void test_an_echo_comes_back(void)
+{
+    asked("01 08 0000 a5c3", "01080000a5c3");
+}
+
+static void test_others_and_all_are_not_answered(void)
+{
+    asked("02 06 6060 0003", "");
+    asked("01 03 6060 0001", "0103020001");
+    asked("00 06 6060 0003", "");
+    asked("01 03 6060 0001", "0103020003");
+}
+
+static void test_a_request_may_come_in_pieces_and_not_too_slowly(void)
+{
+    uint8_t frame[16];
+    const size_t count = with_crc("01 03 605a 0001", frame);
+
+    send(frame, 3);
+    send(&frame[3], count - 3u);
+    TEST_ASSERT_EQUAL_STRING("0103020002", heard());
+    send(frame, 3);
+    bench_periods(SILENCE);
+    send(&frame[3], count - 3u);
+    TEST_ASSERT_EQUAL_STRING("", heard());
+    bench_periods(SILENCE);
+    asked("01 03 605a 0001", "0103020002");
+}
+
+static void test_rubbish_is_over_with_the_silence(void)
+{
+    uint8_t frame[300];
+
+    memset(frame, 0xa5, sizeof frame);
+    send(frame, sizeof frame);
+    bench_periods(SILENCE);
+    TEST_ASSERT_EQUAL_STRING("", heard());
+    send(frame, with_crc("01 03 605a 0001", frame) - 1u);
+    bench_periods(SILENCE);
+    TEST_ASSERT_EQUAL_STRING("", heard());
+    asked("01 03 605a 0001", "0103020002");
+}
+
+static void test_the_drive_is_operated(void)
+{
+    asked("01 06 6040 0006", "010660400006");
+    bench_periods(20);
+    asked("01 03 6041 0001", "0103020221");
+    asked("01 06 6040 0007", "010660400007");
+    bench_periods(20);
+    asked("01 03 6041 0001", "0103020233");
+}
+
+/* A client that asks is heard: a motion goes on as long as command_timeout_s lets it. */
+static void test_a_request_is_heard(void)
+{
+    bench_periods(100);
+    asked("02 03 6041 0001", "");
+    TEST_ASSERT_TRUE(bench.period - bench.application.heard_in > 100u);
+    asked("01 03 605a 0001", "0103020002");
+    TEST_ASSERT_TRUE(bench.period - bench.application.heard_in < 10u);
+}
+
+/* No frame of CANopen comes between, a fault's emergency included. */
+static void test_nothing_is_sent_unasked(void)
+{
+    asked("01 06 1017 000a", "01061017000a"); /* heartbeat, 10 ms */
+    (void)bench_heard();
+    bench_periods(400);
+    TEST_ASSERT_EQUAL_STRING("", bench_heard());
+}
+
+static void test_the_console_comes_back(void)
+{
+    (void)bench_heard();
+    bench_type("C\r");
+    bench_periods(2 * SILENCE);
+    TEST_ASSERT_EQUAL_STRING_LEN("ok ", bench_ask("state"), 3);
+}
+
+static void test_a_setting_makes_it_so_from_power_up(void)
+{
+    bench.application.chosen.modbus_rtu = true;
+    application_put_link(&bench.application, &bench_link);
+    asked("01 03 605a 0001", "0103020002");
+    bench.application.chosen.modbus_rtu = false;
+    application_put_link(&bench.application, &bench_link);
+    TEST_ASSERT_FALSE(bench_link.open);
+}
+
+static uint32_t draw(uint32_t below)
+{
+    static uint32_t state = 1;
+
+    state = state * 1664525u + 1013904223u;
+    return (state >> 8) % below;
+}
+
+/* Requests with a valid checksum, of any content. */
+static void test_whatever_comes_the_node_goes_on(void)
+{
+    static const uint8_t functions[] = {3, 4, 6, 8, 16, 16};
+    static const uint8_t indexes[] = {0x10, 0x14, 0x16, 0x18, 0x1a, 0x20,
+                                      0x21, 0x22, 0x23, 0x24, 0x60};
+
+    for (int i = 0; i < 5000; i++) {
+        uint8_t frame[MODBUS_REQUEST_BYTES] = {
+            1, functions[draw(6)], indexes[draw(11)], (uint8_t)draw(256), 0, (uint8_t)draw(12)};
+        const size_t more = frame[1] == 16u ? 1u + 2u * frame[5] : 0u;
+
+        if (draw(8) == 0u) {
+            frame[1] = (uint8_t)draw(256);
+        }
+        for (size_t n = 0; n < more; n++) {
+            frame[6u + n] = (uint8_t)draw(256);
+        }
+        frame[6] = (uint8_t)(more > 0u ? more - 1u : 0u);
+
+        const uint16_t crc = modbus_crc(frame, 6u + more);
+
+        frame[6u + more] = (uint8_t)crc;
+        frame[7u + more] = (uint8_t)(crc >> 8);
+        send(frame, 8u + more);
+    }
+    bench_periods(SILENCE);
+    asked("01 03 1000 0002", "01030400040192");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_the_checksum_is_that_of_the_standard);
+    RUN_TEST(test_an_object_is_read_as_registers_highest_first);
+    RUN_TEST(test_an_array_is_read_from_its_first_value_on);
+    RUN_TEST(test_a_text_ends_with_zeros);
+    RUN_TEST(test_registers_are_written_one_or_several);
+    RUN_TEST(test_what_cannot_be_is_an_exception);
+    RUN_TEST(test_an_unknown_function_is_answered_behind_the_silence);
+    RUN_TEST(test_an_echo_comes_back);
+    RUN_TEST(test_others_and_all_are_not_answered);
+    RUN_TEST(test_a_request_may_come_in_pieces_and_not_too_slowly);
+    RUN_TEST(test_rubbish_is_over_with_the_silence);
+    RUN_TEST(test_the_drive_is_operated);
+    RUN_TEST(test_a_request_is_heard);
+    RUN_TEST(test_nothing_is_sent_unasked);
+    RUN_TEST(test_the_console_comes_back);
+    RUN_TEST(test_a_setting_makes_it_so_from_power_up);
+    RUN_TEST(test_whatever_comes_the_node_goes_on);
+    return UNITY_END();
+}
