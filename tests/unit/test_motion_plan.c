@@ -596,6 +596,7 @@ static void test_the_jerk_shown_is_the_change_of_the_acceleration_shown(void)
 
 static double jerk_shown(int64_t jerk)
 {
+    reference.jerks = true;
     reference.jerk = jerk;
     return num_to_double(reference_jerk(&reference, &params));
 }
