@@ -182,8 +182,9 @@ static void learn_all(struct detent_compensation *detent,
     num_t pace_of_harmonic = pace;
 
     detent->mean += num_mul(num_mul_unit(residual, MEAN_PACE), travel);
-    for (num_t *c = detent->coefficient; c != detent->coefficient + DETENT_COEFFICIENTS; c += 2) {
-        learn(c, then, faded(step, pace_of_harmonic, &params->learning), params->limit);
+    for (int i = 0; i < DETENT_COEFFICIENTS; i += 2) {
+        learn(&detent->coefficient[i], then, faded(step, pace_of_harmonic, &params->learning),
+              params->limit);
         then = doubled(then);
         pace_of_harmonic += pace_of_harmonic;
     }
@@ -201,8 +202,8 @@ void detent_compensation_step(struct detent_compensation *detent,
     if (gone > 0) {
         learn_all(detent, params, angle, speed, pace_of_harmonic, gone, load_torque);
     }
-    for (num_t *c = detent->coefficient; c != detent->coefficient + DETENT_COEFFICIENTS; c += 2) {
-        torque += faded(played(c, now), pace_of_harmonic, &params->playing);
+    for (int i = 0; i < DETENT_COEFFICIENTS; i += 2) {
+        torque += faded(played(&detent->coefficient[i], now), pace_of_harmonic, &params->playing);
         now = doubled(now);
         pace_of_harmonic += pace_of_harmonic;
     }

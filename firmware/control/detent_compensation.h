@@ -92,8 +92,9 @@ void detent_compensation_reset(struct detent_compensation *detent);
  * to act; `load_torque` is the estimate without the detent. detent->torque is then that of `angle`.
  * `learns`: this period has time for it.
  */
-void detent_compensation_step(struct detent_compensation *detent,
-                              const struct detent_compensation_params *params, angle_t angle,
-                              struct sincos frame, num_t speed, num_t load_torque, bool learns);
+__attribute__((noinline)) void
+detent_compensation_step(struct detent_compensation *detent,
+                         const struct detent_compensation_params *params, angle_t angle,
+                         struct sincos frame, num_t speed, num_t load_torque, bool learns);
 
 #endif

@@ -103,7 +103,7 @@ static inline num_t position_law_current(enum position_law law, union position_l
     return NUM(0.0);
 }
 
-/* One period of a voltage law. */
+/* One period of a voltage law; here, too, each gets a copy of its own. */
 static inline struct voltage_demand position_law_voltage(enum position_law law,
                                                          union position_law_state *state,
                                                          const union position_law_params *params,
@@ -111,7 +111,8 @@ static inline struct voltage_demand position_law_voltage(enum position_law law,
 {
 #define POSITION_LAW_VOLTAGE(constant, function, text)                                             \
     if (position_law_is_carried(POSITION_LAW_##constant) && law == POSITION_LAW_##constant) {      \
-        return function##_law_step(&state->function, &params->function, input);                    \
+        const struct voltage_law_input own = *input;                                               \
+        return function##_law_step(&state->function, &params->function, &own);                     \
     }
     VOLTAGE_LAWS(POSITION_LAW_VOLTAGE)
 #undef POSITION_LAW_VOLTAGE

@@ -194,8 +194,8 @@ static void act_at_once(struct drive *drive)
 
 /* The detent torque at the instant of action, learned from what the observer has left of it. A
    period in which a motion begins or ends has no time to learn. */
-__attribute__((noinline, cold)) static void
-compensate_detent(struct drive *drive, const struct estimate *estimate, struct prediction *next)
+IN_PLACE void compensate_detent(struct drive *drive, const struct estimate *estimate,
+                                struct prediction *next)
 {
     const num_t before = drive->detent.torque;
 
@@ -261,28 +261,39 @@ IN_PLACE void enter_or_leave_hold(struct drive *drive, bool held)
     }
 }
 
-/* Bumpless: between hold and voltage law nothing of the past of the one that begins is left. */
+/* Bumpless: the hold begins with the voltage that its current takes. */
+static void preset_hold(struct drive *drive, const struct estimate *estimate)
+{
+    const num_t resistance = estimate->winding.resistance;
+    const struct dq drop = {num_mul(resistance, drive->current.d),
+                            num_mul(resistance, drive->current.q)};
+
+    current_control_preset(&drive->current_control, drop);
+}
+
+/* Bumpless, too: of a voltage law that begins nothing of the past is left. */
 IN_PLACE void transfer(struct drive *drive, const struct estimate *estimate, bool held)
 {
     enter_or_leave_hold(drive, held);
-    if (drive->hold.active && !held) {
-        const num_t resistance = estimate->winding.resistance;
-        const struct dq drop = {num_mul(resistance, drive->current.d),
-                                num_mul(resistance, drive->current.q)};
-
-        current_control_preset(&drive->current_control, drop);
-    } else if (held && !drive->hold.active &&
-               position_law_gives_voltage(drive->params.position_law)) {
-        position_law_reset(&drive->law);
+    if (RARE(drive->hold.active != held)) {
+        if (!held) {
+            preset_hold(drive, estimate);
+        } else if (position_law_gives_voltage(drive->params.position_law)) {
+            position_law_reset(&drive->law);
+        }
     }
 }
 
 /* What the estimator gets instead of what is measured. */
-static void prepare_input(struct drive *drive, struct channels *winding)
+IN_PLACE struct channels estimator_channels(struct drive *drive, struct channels measured)
 {
-    if (drive->params.path.prepares_input) {
-        prepared_input_make(drive, winding);
+    if (RARE(drive->params.path.prepares_input)) {
+        struct channels prepared = measured;
+
+        prepared_input_make(drive, &prepared);
+        return prepared;
     }
+    return measured;
 }
 
 /* The voltage in force until S(k+1): as was found before a pulse, where one holds. */
@@ -296,18 +307,20 @@ static struct phases voltage_in_force(struct drive *drive)
 
 static struct passage observe(struct drive *drive, const struct sample_set *now)
 {
-    struct estimator_input input = {
-        .winding = now->winding,
+    modulator_track_bus(&drive->modulator, now->bus);
+
+    const struct channels winding = estimator_channels(drive, now->winding);
+    const struct phases surprise = actuation_observe(&drive->actuation, winding.voltage);
+    const struct estimator_input input = {
+        .winding = winding,
+        .surprise = surprise,
+        .in_force = voltage_in_force(drive),
         .encoder_count = now->encoder_count,
         .hold = {.active = drive->hold.active,
                  .leads = &drive->hold.leads,
                  .frame = &drive->hold.frame},
     };
 
-    modulator_track_bus(&drive->modulator, now->bus);
-    prepare_input(drive, &input.winding);
-    input.surprise = actuation_observe(&drive->actuation, input.winding.voltage);
-    input.in_force = voltage_in_force(drive);
     return estimator_observe(&drive->estimator, &drive->params.estimator, &input);
 }
 
@@ -365,13 +378,23 @@ __attribute__((noinline)) static void watch_synchronism(struct drive *drive,
     }
 }
 
+/* Apart, so that the voltage of drives without pulses stays in registers. */
+__attribute__((noinline, cold)) static struct phases with_pulses(struct drive *drive,
+                                                                 const struct estimate *estimate,
+                                                                 struct current_control before,
+                                                                 struct phases voltage)
+{
+    standstill_angle_step(drive, estimate, &before, &voltage);
+    return voltage;
+}
+
 /* A law or the hold, with all that only some drives have. */
 static void control_with_all(struct drive *drive, const struct estimate *estimate,
                              struct passage passage, struct hal_outputs *outputs)
 {
     const struct drive_params *params = &drive->params;
     const bool held = drive->hold.active;
-    const struct current_control before = drive->current_control;
+    struct current_control before; /* this period; for pulses alone */
     struct prediction next;
     struct phases voltage;
 
@@ -384,11 +407,14 @@ static void control_with_all(struct drive *drive, const struct estimate *estimat
     if (ESTIMATORS_READ_ENCODER && params->path.detent_learning && !drive->supervision.aligns) {
         compensate_detent(drive, estimate, &next);
     }
-    voltage = !drive->hold.active && position_law_gives_voltage(params->position_law)
+    if (RARE(params->path.standstill_pulses)) {
+        before = drive->current_control;
+    }
+    voltage = !held && position_law_gives_voltage(params->position_law)
                   ? regulate_voltage(drive, estimate, &next)
                   : regulate_current(drive, &next, held, params->path.feed_forward);
-    if (params->path.standstill_pulses) {
-        standstill_angle_step(drive, estimate, &before, &voltage);
+    if (RARE(params->path.standstill_pulses)) {
+        voltage = with_pulses(drive, estimate, before, voltage);
     }
     remember_demand(drive, estimate, &next, passage.mid_period, voltage);
     modulate(drive,

@@ -64,12 +64,12 @@ void encoder_observer_place(struct encoder_observer *observer, struct position p
 /*
  * At S(k): corrects what was predicted for it, and predicts S(k+1). `surprise`: by how much the
  * mean voltage over S(k-1)...S(k) was another than expected; `in_force`: what is expected over
- * S(k)...S(k+1). Not inlined: its registers cost the sensorless interrupt nothing.
+ * S(k)...S(k+1).
  */
-__attribute__((noinline)) struct passage
-encoder_observer_step(struct encoder_observer *observer,
-                      const struct encoder_observer_params *params, struct phases current,
-                      struct phases surprise, struct phases in_force, int32_t count, bool holding);
+struct passage encoder_observer_step(struct encoder_observer *observer,
+                                     const struct encoder_observer_params *params,
+                                     struct phases current, struct phases surprise,
+                                     struct phases in_force, int32_t count, bool holding);
 
 /* Predicts S(k+1) once more, under this mean voltage. Apart: rare. */
 __attribute__((noinline)) struct passage

@@ -3,12 +3,15 @@
 /* Named, so that the image can place it beside the code. */
 static const struct passage at_rest = {{UNIT(1.0), UNIT(0.0)}, {UNIT(1.0), UNIT(0.0)}};
 
+/* Each gets a copy of its own, so that the one compiled into its place keeps its input in
+   registers. */
 struct passage estimator_observe(struct estimator *estimator, const struct estimator_params *params,
                                  const struct estimator_input *input)
 {
 #define ESTIMATOR_OBSERVE(constant, name)                                                          \
     if (estimator_is(params, ESTIMATOR_##constant)) {                                              \
-        return name##_observe(&estimator->name, &params->name, input);                             \
+        const struct estimator_input own = *input;                                                 \
+        return name##_observe(&estimator->name, &params->name, &own);                              \
     }
     ESTIMATORS(ESTIMATOR_OBSERVE)
 #undef ESTIMATOR_OBSERVE

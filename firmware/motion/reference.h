@@ -105,12 +105,14 @@ reference_design(const struct per_unit *base, double period_s, struct creep_limi
 static inline num_t reference_jerk(const struct reference *reference,
                                    const struct reference_params *params)
 {
-    /* 2^-42 turn in 32 bits */
-    const int64_t jerk = reference->jerk >> REFERENCE_JERK_SHIFT;
-    const int32_t limited = jerk > INT32_MAX    ? INT32_MAX
-                            : jerk < -INT32_MAX ? -INT32_MAX
-                                                : (int32_t)jerk;
+    /* 2^-42 turn in 32 bits; one comparison: what is below them wraps to a large number */
+    const int32_t high = (int32_t)(reference->jerk >> 32);
+    const uint32_t range = 1u << (REFERENCE_JERK_SHIFT - 1);
+    int32_t limited = (int32_t)(uint32_t)(reference->jerk >> REFERENCE_JERK_SHIFT);
 
+    if (RARE((uint32_t)high + range >= 2u * range)) {
+        limited = high < 0 ? -INT32_MAX : INT32_MAX;
+    }
     return num_mul_coef(turns_from_angle(limited), params->jerk);
 }
 

@@ -594,6 +594,29 @@ static void test_the_jerk_shown_is_the_change_of_the_acceleration_shown(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.0, num_to_double(reference_jerk(&reference, &params)));
 }
 
+static double jerk_shown(int64_t jerk)
+{
+    reference.jerks = true;
+    reference.jerk = jerk;
+    return num_to_double(reference_jerk(&reference, &params));
+}
+
+/* 2^-11 turn, 61e6 rad/s^3: 61e6 x 1e-4 s of 6000 rad/s^2 in a period. */
+static void test_a_jerk_beyond_its_range_is_shown_as_the_end_of_it(void)
+{
+    const int64_t range = (int64_t)1 << 53;
+    const double most = two_pi / 50.0 / 2048.0 / 1e-12 * 1e-4 / 6000.0;
+
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, most, jerk_shown(range - 1));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, most, jerk_shown(range));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, most, jerk_shown(INT64_MAX));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, -most, jerk_shown(-range));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, -most, jerk_shown(-range - 1));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, -most, jerk_shown(INT64_MIN));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, most / 2.0, jerk_shown(range / 2));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, -most / 2.0, jerk_shown(-range / 2));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -617,5 +640,6 @@ int main(void)
     RUN_TEST(test_any_number_of_periods_from_three_on_reaches_its_target);
     RUN_TEST(test_a_set_point_too_far_away_is_refused);
     RUN_TEST(test_the_jerk_shown_is_the_change_of_the_acceleration_shown);
+    RUN_TEST(test_a_jerk_beyond_its_range_is_shown_as_the_end_of_it);
     return UNITY_END();
 }

@@ -237,11 +237,15 @@ def cycles(sources):
 
 OBSERVED = "what all laws with an encoder share: the observer, the frames for three currents, " \
            "the whole voltage path"
-WHY = {"csmc-equivalent": "the same, and the equivalent control",
-       "csmc-servo": "the same, and three oscillators that need 32-bit coefficients",
-       "feedback-linearisation": "the same, 800 cycles of detent compensation (six coefficients "
-                                 "learned and played), the exact inverse of the winding, two "
-                                 "disturbance observers"}
+BESIDES = {"csmc-equivalent": "the equivalent control",
+           "csmc-servo": "three oscillators that need 32-bit coefficients",
+           "feedback-linearisation": "600 cycles of detent compensation (six coefficients learned "
+                                     "and played), the exact inverse of the winding, two "
+                                     "disturbance observers"}
+
+
+def why(law, first):
+    return (OBSERVED if first else "the same") + (f", and {BESIDES[law]}" if law in BESIDES else "")
 
 
 def probe_of_cycles(sources):
@@ -267,7 +271,7 @@ def cycles_of_all(sources):
     beyond = sorted(((row["worst_cycles"], law) for (core, _, law), row in rows.items()
                      if core == "m0plus" and row["worst_us"] > 45))
     lines = [[law, f"{count:,}", spelled(count / 64, 1),
-              WHY.get(law, OBSERVED if place == 0 else "the same")]
+              why(law, place == 0)]
              for place, (count, law) in enumerate(beyond)]
     return {"float": span("m4f", "float", "worst_cycles", 0),
             "fixed": span("m4f", "fixed", "worst_cycles", 0),
