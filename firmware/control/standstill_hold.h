@@ -83,9 +83,10 @@ void standstill_hold_preset(struct standstill_hold *hold, num_t i_d);
 void standstill_hold_follow(struct standstill_hold *hold, angle_t reference, num_t speed,
                             bool goes_on);
 
-/* Of a hold that leads its rotor every fourth period turns the frame. What else takes its time and
-   can wait leaves that period alone. */
-static inline bool standstill_hold_leads_in(uint32_t period)
+/* Every fourth period of a hold is for its slow work: where it leads its rotor the frame turns,
+   where it rests the resistance is adapted. What else takes its time and can wait leaves it alone.
+ */
+static inline bool standstill_hold_works_in(uint32_t period)
 {
     return (period & 3u) == 1u;
 }
@@ -94,7 +95,7 @@ static inline bool standstill_hold_leads_in(uint32_t period)
 static inline num_t standstill_hold_ramp(struct standstill_hold *hold, num_t target, num_t step)
 {
     if (RARE(hold->i_d != target)) {
-        hold->i_d += num_limit(target - hold->i_d, step);
+        hold->i_d += num_clamp(target - hold->i_d, -step, step);
     }
     return hold->i_d;
 }

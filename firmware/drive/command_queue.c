@@ -130,9 +130,6 @@ struct queued_command *command_queue_due(struct command_queue *queue, uint32_t c
     if (queue->written == read || !come_or_wait(oldest->at_period, coming, wait)) {
         return NULL;
     }
-    if (oldest->at_period == coming) {
-        *wait = 1u;
-    }
     return oldest;
 }
 

@@ -115,6 +115,14 @@ bool command_queue_enable_waits(const struct command_queue *queue);
 struct queued_command *command_queue_due(struct command_queue *queue, uint32_t coming,
                                          uint32_t *wait);
 
+/* Interrupt, of that command, if any, when it does not act: `wait`, or less if its period is
+ * `coming`. */
+static inline uint32_t command_queue_wait_of(const struct queued_command *command, uint32_t coming,
+                                             uint32_t wait)
+{
+    return command != NULL && command->at_period == coming ? 1u : wait;
+}
+
 void command_queue_drop(struct command_queue *queue);
 
 /* Interrupt: a command had been accepted, but what it was accepted for has not come. Counted, so

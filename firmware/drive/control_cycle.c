@@ -211,8 +211,8 @@ IN_PLACE void compensate_detent(struct drive *drive, const struct estimate *esti
     next->rotor.load_torque = estimate->rotor.load_torque + drive->detent.torque;
 }
 
-/* To the middle of the periods in which the frame acts, S(k+2)...S(k+6). Apart: rare. */
-__attribute__((noinline)) static void lead_rotor(struct drive *drive)
+/* To the middle of the periods in which the frame acts, S(k+2)...S(k+6). */
+static void lead_rotor(struct drive *drive)
 {
     const struct reference_sample *reference = &drive->reference.next;
     const int32_t half_turn =
@@ -222,16 +222,31 @@ __attribute__((noinline)) static void lead_rotor(struct drive *drive)
                            reference->speed, reference->moving);
 }
 
+/* Whether a hold may do its slow work. */
+IN_PLACE bool hold_works(const struct drive *drive)
+{
+    return RARE(standstill_hold_works_in(drive->supervision.period)) &&
+           !state_machine_period_is_claimed(drive);
+}
+
+/* That. Apart: rare. */
+__attribute__((noinline)) static void work_on_hold(struct drive *drive)
+{
+    state_machine_claim_period(drive);
+    estimator_adapt_resistance(&drive->estimator, &drive->params.estimator, drive->hold.leads);
+    if (drive->hold.leads) {
+        lead_rotor(drive);
+    }
+}
+
 /* The hold ends where the reference moves, but takes its frame along with one that creeps, until
    that has come to rest. */
 static void leave_or_lead_hold(struct drive *drive)
 {
     standstill_hold_leave(&drive->hold, drive->reference.slow_periods,
                           drive->reference.next.moving);
-    if (drive->hold.active && drive->hold.leads &&
-        standstill_hold_leads_in(drive->supervision.period) &&
-        drive->commands.looked != drive->supervision.period) {
-        lead_rotor(drive);
+    if (drive->hold.active && drive->hold.leads && hold_works(drive)) {
+        work_on_hold(drive);
     }
 }
 
@@ -244,6 +259,7 @@ __attribute__((noinline)) static void enter_hold(struct drive *drive)
     standstill_hold_consider(&drive->hold, &drive->params.hold, reference.fraction,
                              position_difference(reference, rotor->position), rotor->speed);
     if (drive->hold.active) {
+        state_machine_claim_period(drive);
         estimator_begin_hold(&drive->estimator, &drive->params.estimator);
         leave_or_lead_hold(drive);
     }
@@ -253,8 +269,10 @@ __attribute__((noinline)) static void enter_hold(struct drive *drive)
 IN_PLACE void enter_or_leave_hold(struct drive *drive, bool held)
 {
     if (RARE(held)) {
-        if (!reference_is_still(&drive->reference) || drive->hold.leads) {
+        if (!reference_is_at_rest(&drive->reference) || drive->hold.leads) {
             leave_or_lead_hold(drive);
+        } else if (hold_works(drive)) {
+            work_on_hold(drive);
         }
     } else if (standstill_hold_waits(&drive->params.hold, drive->reference.slow_periods)) {
         enter_hold(drive);
@@ -316,9 +334,7 @@ static struct passage observe(struct drive *drive, const struct sample_set *now)
         .surprise = surprise,
         .in_force = voltage_in_force(drive),
         .encoder_count = now->encoder_count,
-        .hold = {.active = drive->hold.active,
-                 .leads = &drive->hold.leads,
-                 .frame = &drive->hold.frame},
+        .hold = {.active = drive->hold.active, .frame = &drive->hold.frame},
     };
 
     return estimator_observe(&drive->estimator, &drive->params.estimator, &input);
@@ -335,16 +351,15 @@ IN_PLACE struct passage observe_sensorless(struct drive *drive, const struct sam
 
     return invariant_ekf_step(&drive->estimator.invariant_ekf,
                               &drive->params.estimator.invariant_ekf, now->winding.current,
-                              surprise, in_force,
-                              (struct rotor_hold){held, &drive->hold.leads, &drive->hold.frame});
+                              surprise, in_force, (struct rotor_hold){held, &drive->hold.frame});
 }
 
-/* Where a phase or a stop begins, nothing else that can wait is done in this period, and what has
-   waited for the reference to rest is looked at in the next. Apart: rare. */
+/* Where a phase or a stop begins; what has waited for the reference to rest is looked at in the
+   next period. Apart: rare. */
 __attribute__((noinline)) static void turn_reference(struct drive *drive)
 {
     if (reference_turn(&drive->reference, &drive->params.reference, drive->hold.active)) {
-        synchronism_wait(drive, 2u);
+        state_machine_claim_period(drive);
         if (!reference_busy(&drive->reference)) {
             command_queue_rest(&drive->commands, drive->supervision.period, 1u);
         }
@@ -366,15 +381,26 @@ __attribute__((noinline)) static void stop_in_fault(struct drive *drive, enum dr
     *outputs = (struct hal_outputs){.bridge_on = false};
 }
 
+/* Apart: rare. */
+__attribute__((noinline)) static void
+act_on_synchronism(struct drive *drive, enum synchronism verdict, struct hal_outputs *outputs)
+{
+    const enum drive_fault fault = synchronism_act(drive, verdict);
+
+    if (fault != DRIVE_FAULT_NONE) {
+        stop_in_fault(drive, fault, outputs);
+    }
+}
+
 /* Last of all, as nothing is kept for it: a step of the monitor. Apart: its switch would be a table
    of addresses in the interrupt's body. */
 __attribute__((noinline)) static void watch_synchronism(struct drive *drive,
                                                         struct hal_outputs *outputs)
 {
-    const enum drive_fault fault = synchronism_watch(drive);
+    const enum synchronism verdict = synchronism_step(drive);
 
-    if (fault != DRIVE_FAULT_NONE) {
-        stop_in_fault(drive, fault, outputs);
+    if (RARE(verdict != SYNCHRONISM_SURE)) {
+        act_on_synchronism(drive, verdict, outputs);
     }
 }
 

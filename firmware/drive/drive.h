@@ -94,24 +94,24 @@ struct drive_params {
 struct supervision {
     enum drive_state state;
     enum drive_fault fault;
-    uint32_t period;      /* index of the present or last control interrupt; 0 is the first */
-    uint32_t state_since; /* period in which the state was entered */
-    uint8_t asked_for;    /* fault: by the background, of the next interrupt */
+    uint8_t asked_for; /* fault: by the background, of the next interrupt */
     bool aligns; /* draws the rotor to where it is assumed to be: what the encoder then knows of the
                     frame, and with it load and detent, is worth nothing */
+    uint32_t period;      /* index of the present or last control interrupt; 0 is the first */
+    uint32_t state_since; /* period in which the state was entered */
+    uint32_t claimed;     /* period in which something rare was done last */
 };
 
 /* The synchronism monitor and what comes of its verdicts: synchronism.h. */
 struct synchronism_supervision {
     uint32_t due; /* first period for the monitor's next step */
     enum drive_synchronism shown;
-    uint32_t step;        /* the monitor's next */
+    uint8_t step;         /* the monitor's next */
     uint32_t block_began; /* period */
     struct synchronism_monitor monitor;
     struct synchronism_monitor_params params;
     enum drive_synchronism_policy policy;
     bool monitored;
-    uint8_t waits; /* on end, of the next step */
 };
 
 /* What the estimator gets instead of samples: prepared_input.h. */

@@ -120,6 +120,18 @@ struct phases offset_calibration_drop_error(const struct offset_calibration *cal
         num_mul(mean_offset(calibration->channel[1].flowing, scales->current), error)};
 }
 
+static void find(const struct offset_calibration *calibration,
+                 const struct offset_calibration_params *params,
+                 const struct measurement_params *scales, struct channels *offset)
+{
+    offset->current.a = mean_offset(calibration->channel[0].sum, scales->current);
+    offset->current.b = mean_offset(calibration->channel[1].sum, scales->current);
+    offset->voltage.a = mean_offset(calibration->channel[2].sum, scales->phase_voltage) -
+                        mean_offset(calibration->channel[0].flowing, params->drop);
+    offset->voltage.b = mean_offset(calibration->channel[3].sum, scales->phase_voltage) -
+                        mean_offset(calibration->channel[1].flowing, params->drop);
+}
+
 enum offset_result offset_calibration_step(struct offset_calibration *calibration,
                                            const struct offset_calibration_params *params,
                                            const struct measurement_params *scales,
@@ -133,18 +145,19 @@ enum offset_result offset_calibration_step(struct offset_calibration *calibratio
         samples->phase_voltage_b,
     };
 
-    /* a period behind the last sample: what follows the calibration costs enough by itself */
     if (calibration->samples == OFFSET_SAMPLES) {
-        offset->current.a = mean_offset(calibration->channel[0].sum, scales->current);
-        offset->current.b = mean_offset(calibration->channel[1].sum, scales->current);
-        offset->voltage.a = mean_offset(calibration->channel[2].sum, scales->phase_voltage) -
-                            mean_offset(calibration->channel[0].flowing, params->drop);
-        offset->voltage.b = mean_offset(calibration->channel[3].sum, scales->phase_voltage) -
-                            mean_offset(calibration->channel[1].flowing, params->drop);
-        return OFFSETS_FOUND;
+        return OFFSETS_DONE;
     }
     add(calibration, code);
-    return calibration->samples < OFFSET_SAMPLES || end_stage(calibration, params)
-               ? OFFSETS_PENDING
-               : OFFSETS_OUT_OF_RANGE;
+    if (calibration->samples < OFFSET_SAMPLES) {
+        return OFFSETS_PENDING;
+    }
+    if (!end_stage(calibration, params)) {
+        return OFFSETS_OUT_OF_RANGE;
+    }
+    if (calibration->samples < OFFSET_SAMPLES) { /* the second stage follows */
+        return OFFSETS_PENDING;
+    }
+    find(calibration, params, scales, offset);
+    return OFFSETS_FOUND;
 }

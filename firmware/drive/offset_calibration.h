@@ -73,7 +73,8 @@ struct offset_calibration_params offset_calibration_design(const struct hal_fact
 
 void offset_calibration_reset(struct offset_calibration *calibration);
 
-enum offset_result { OFFSETS_PENDING, OFFSETS_FOUND, OFFSETS_OUT_OF_RANGE };
+/* Found with the last sample, done a period behind it: what follows costs enough by itself. */
+enum offset_result { OFFSETS_PENDING, OFFSETS_FOUND, OFFSETS_DONE, OFFSETS_OUT_OF_RANGE };
 
 /*
  * What is to be added to the offsets of the voltages once the resistance is known: the currents

@@ -201,7 +201,7 @@ static bool begin_plan(struct drive *drive, struct motion_plan *plan, uint32_t a
     motion_plan_begin(plan, &copy.at, p->epoch);
     p->end = copy.at;
     if (copy.periods_left > 0u) {
-        motion_run(&p->end, copy.jerk_sixth, 1u);
+        motion_run(&p->end, reference_jerk_sixth(&copy), 1u);
     }
     return true;
 }

@@ -140,7 +140,8 @@ void state_machine_ask_for_fault(struct drive *drive, enum drive_fault fault)
     command_queue_look_next(&drive->commands);
 }
 
-static void disable(struct drive *drive)
+/* Apart: rare, and so its registers are not take_urgent's. */
+__attribute__((noinline)) static void disable(struct drive *drive)
 {
     axis_note_bridge_off(drive, DRIVE_FAULT_NONE);
     axis_note_disabled(drive);
@@ -224,7 +225,8 @@ static inline bool obey(struct drive *drive, struct queued_command *command)
     return true;
 }
 
-static void preempt(struct drive *drive, const struct motion_plan *plan)
+/* Apart: it needs many registers. */
+__attribute__((noinline)) static void preempt(struct drive *drive, const struct motion_plan *plan)
 {
     if (drive->supervision.state == DRIVE_OPERATION_ENABLED &&
         reference_preempt(&drive->reference, plan)) {
@@ -232,9 +234,39 @@ static void preempt(struct drive *drive, const struct motion_plan *plan)
     }
 }
 
-/* A disable or stop: periods until one is to be looked at again, 0 if one has acted. Apart: rare.
+/* A plan, or there is nothing to do for `wait` periods or less. */
+static void take_plan(struct drive *drive, uint32_t wait)
+{
+    struct command_queue *queue = &drive->commands;
+    const uint32_t period = drive->supervision.period;
+    const struct motion_plan *plan = command_queue_preemption(queue, period + 1u, &wait);
+
+    if (plan != NULL) {
+        preempt(drive, plan);
+    } else {
+        command_queue_rest(queue, period, wait);
+    }
+}
+
+/* What acts in turn, and plans. `urgent_wait`: periods until an urgent command is to be looked at.
  */
-__attribute__((noinline)) static uint32_t take_urgent(struct drive *drive)
+__attribute__((noinline)) static void take_in_turn(struct drive *drive, uint32_t urgent_wait)
+{
+    struct command_queue *queue = &drive->commands;
+    const uint32_t period = drive->supervision.period;
+    uint32_t wait = urgent_wait;
+    struct queued_command *command = command_queue_due(queue, period + 1u, &wait);
+
+    if (command != NULL && obey(drive, command)) {
+        command_queue_drop(queue);
+        command_queue_rest_if_empty(queue, period, urgent_wait);
+    } else {
+        take_plan(drive, command_queue_wait_of(command, period + 1u, wait));
+    }
+}
+
+/* A disable or stop waits; the others' turn comes if it does so still. Apart: rare. */
+__attribute__((noinline)) static void take_urgent(struct drive *drive)
 {
     struct command_queue *queue = &drive->commands;
     const uint32_t period = drive->supervision.period;
@@ -242,54 +274,29 @@ __attribute__((noinline)) static uint32_t take_urgent(struct drive *drive)
 
     if (command_queue_take_urgent(queue, &queue->disable, period, &wait)) {
         disable(drive);
-        return 0u;
-    }
-    if (command_queue_take_urgent(queue, &queue->stop, period + 1u, &wait)) {
+    } else if (command_queue_take_urgent(queue, &queue->stop, period + 1u, &wait)) {
         reference_stop(&drive->reference);
         command_queue_stop_acted(queue, period + 1u);
         command_queue_rest_if_empty(queue, period, wait);
-        return 0u;
+    } else {
+        take_in_turn(drive, wait);
     }
-    return wait;
 }
 
 /*
  * One command a period, and in the next the rest is looked at: short worst case. The reference has
  * been moved to S(k+1): what is asked of it for the period that follows is put to it now.
  */
-__attribute__((noinline)) static void take_commands(struct drive *drive)
+static void take_commands(struct drive *drive)
 {
-    struct command_queue *queue = &drive->commands;
-    const uint32_t period = drive->supervision.period;
-    uint32_t urgent_wait = COMMAND_QUEUE_NEVER;
-    uint32_t wait;
-    const struct motion_plan *plan;
-    struct queued_command *command;
-
-    command_queue_look(queue, period);
-    synchronism_wait(drive, 1u);
-    if (drive->supervision.asked_for != DRIVE_FAULT_NONE) {
+    command_queue_look(&drive->commands, drive->supervision.period);
+    state_machine_claim_period(drive);
+    if (RARE(drive->supervision.asked_for != DRIVE_FAULT_NONE)) {
         enter_fault_asked_for(drive);
-        return;
-    }
-    if (command_queue_holds_urgent(queue)) {
-        urgent_wait = take_urgent(drive);
-        if (urgent_wait == 0u) {
-            return;
-        }
-    }
-    wait = urgent_wait;
-    command = command_queue_due(queue, period + 1u, &wait);
-    if (command != NULL && obey(drive, command)) {
-        command_queue_drop(queue);
-        command_queue_rest_if_empty(queue, period, urgent_wait);
-        return;
-    }
-    plan = command_queue_preemption(queue, period + 1u, &wait);
-    if (plan != NULL) {
-        preempt(drive, plan);
+    } else if (RARE(command_queue_holds_urgent(&drive->commands))) {
+        take_urgent(drive);
     } else {
-        command_queue_rest(queue, period, wait);
+        take_in_turn(drive, COMMAND_QUEUE_NEVER);
     }
 }
 
@@ -310,6 +317,8 @@ static void calibrate_offsets(struct drive *drive, const struct hal_samples *sam
         break;
     case OFFSETS_FOUND:
         measurement_set_offset(&drive->measurement, offset);
+        break;
+    case OFFSETS_DONE:
         find_position_or_power_up(drive);
         break;
     case OFFSETS_OUT_OF_RANGE:

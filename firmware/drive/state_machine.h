@@ -23,6 +23,20 @@ static inline uint32_t state_machine_begin_period(struct drive *drive)
     return period;
 }
 
+/*
+ * At most one rare thing a period, so that no interrupt pays for two: what has its time, commands
+ * and what begins with them, claims the period, and what can wait leaves a claimed one alone.
+ */
+static inline void state_machine_claim_period(struct drive *drive)
+{
+    drive->supervision.claimed = drive->supervision.period;
+}
+
+static inline bool state_machine_period_is_claimed(const struct drive *drive)
+{
+    return drive->supervision.claimed == drive->supervision.period;
+}
+
 /* The bridge is on and the control runs; detecting-position has the bridge for itself. */
 static inline bool state_machine_powered(const struct drive *drive)
 {

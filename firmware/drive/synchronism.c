@@ -36,13 +36,15 @@ void synchronism_design(struct drive *drive, const struct drive_settings *settin
 /* The steps of a block. */
 enum step {
     TAKE,
+    WATCH_HOLD, /* of a hold alone */
     JUDGE_VOLTAGE,
     JUDGE_LASTING,
     JUDGE_TORQUE,
     JUDGE_LOAD,
     JUDGE_FOLLOWING,
-    JUDGE_PULL_OUT,
+    JUDGE_PULL_OUT, /* of a hold alone */
     JUDGE_LOAD_ANGLE,
+    BEHIND_PULL_OUT = JUDGE_LOAD_ANGLE,
     FOLLOW,     /* with an encoder: all there is */
     UNMONITORED /* no block, ever */
 };
@@ -67,7 +69,8 @@ void synchronism_start(struct drive *drive)
         drive->synchronism.block_began = drive->supervision.period;
         drive->synchronism.due =
             drive->supervision.period + drive->synchronism.params.block_periods;
-        (void)invariant_ekf_take_innovation_sum(&drive->estimator.invariant_ekf);
+        (void)invariant_ekf_take_innovation_sum(&drive->estimator.invariant_ekf,
+                                                drive->hold.active);
     }
 }
 
@@ -106,73 +109,68 @@ static num_t error_of(const struct drive *drive, const struct rotor *rotor)
     return position_difference(drive->reference.now.position, rotor->position);
 }
 
-/* A hold whose rotor has pulled out drives it on: the position law catches it, if it may. */
-static enum synchronism judge_pull_out(struct drive *drive, const struct rotor *rotor)
-{
-    const enum synchronism verdict = synchronism_monitor_judge_pull_out(
-        &drive->synchronism.monitor, &drive->synchronism.params, error_of(drive, rotor));
-
-    if (verdict != SYNCHRONISM_SURE) {
-        standstill_hold_leave(&drive->hold, 0u, false);
-        position_law_reset(&drive->law);
-    }
-    return verdict;
-}
-
-static void take(struct drive *drive)
-{
-    struct invariant_ekf *ekf = &drive->estimator.invariant_ekf;
-    const bool held = drive->hold.active;
-    const num_t sum = of_a_block(drive, invariant_ekf_take_innovation_sum(ekf));
-
-    drive->synchronism.block_began = drive->supervision.period;
-    if (held) {
-        invariant_ekf_watch_hold(ekf, &drive->params.estimator.invariant_ekf, drive->hold.leads);
-    }
-    synchronism_monitor_take(&drive->synchronism.monitor, &drive->synchronism.params, sum, held);
-}
-
-/* One of the steps of a block. */
-static enum synchronism step(struct drive *drive, const struct rotor *rotor)
+static enum synchronism judge_lasting(struct drive *drive, const struct rotor *rotor)
 {
     struct synchronism_monitor *monitor = &drive->synchronism.monitor;
     const struct synchronism_monitor_params *params = &drive->synchronism.params;
 
-    drive->synchronism.due = drive->supervision.period + 1u;
-    switch (drive->synchronism.step++) {
-    case TAKE:
-        take(drive);
-        return SYNCHRONISM_SURE;
-    case JUDGE_VOLTAGE:
-        return synchronism_monitor_judge_voltage(monitor, params, rotor->speed,
-                                                 drive->current_reference.d);
-    case JUDGE_LASTING:
-        return drive->hold.active ? synchronism_monitor_judge_hold(monitor, params, rotor->speed,
-                                                                   drive->hold.leads)
-                                  : synchronism_monitor_judge_motion(monitor, params, rotor->speed,
-                                                                     drive->current_reference.d);
-    case JUDGE_TORQUE:
-        return synchronism_monitor_judge_torque(monitor, params, drive->current_reference.q,
-                                                rotor->speed);
-    case JUDGE_LOAD:
-        return synchronism_monitor_judge_load(monitor, params, rotor->load_torque);
-    case JUDGE_FOLLOWING:
-        return synchronism_monitor_judge_following(monitor, params, error_of(drive, rotor),
-                                                   drive->reference.now.speed - rotor->speed);
-    case JUDGE_PULL_OUT:
-        return drive->hold.active ? judge_pull_out(drive, rotor) : SYNCHRONISM_SURE;
-    case JUDGE_LOAD_ANGLE:
-        return judge_load_angle(drive);
-    default:
-        drive->synchronism.step = UNMONITORED;
-        drive->synchronism.due = drive->supervision.period + NOT_YET;
-        return SYNCHRONISM_SURE;
+    return drive->hold.active
+               ? synchronism_monitor_judge_hold(monitor, params, rotor->speed, drive->hold.leads)
+               : synchronism_monitor_judge_motion(monitor, params, rotor->speed,
+                                                  drive->current_reference.d);
+}
+
+static enum synchronism judge_following(struct drive *drive, const struct rotor *rotor)
+{
+    if (!drive->hold.active) {
+        drive->synchronism.step = JUDGE_LOAD_ANGLE;
+    }
+    return synchronism_monitor_judge_following(&drive->synchronism.monitor,
+                                               &drive->synchronism.params, error_of(drive, rotor),
+                                               drive->reference.now.speed - rotor->speed);
+}
+
+static enum synchronism judge_pull_out(struct drive *drive, const struct rotor *rotor)
+{
+    return drive->hold.active ? synchronism_monitor_judge_pull_out(&drive->synchronism.monitor,
+                                                                   &drive->synchronism.params,
+                                                                   error_of(drive, rotor))
+                              : SYNCHRONISM_SURE;
+}
+
+/* A hold whose rotor has pulled out drives it on: the position law catches it, if it may. */
+static void release(struct drive *drive)
+{
+    standstill_hold_leave(&drive->hold, 0u, false);
+    position_law_reset(&drive->law);
+}
+
+static void take(struct drive *drive)
+{
+    const bool held = drive->hold.active;
+    const num_t sum =
+        of_a_block(drive, invariant_ekf_take_innovation_sum(&drive->estimator.invariant_ekf, held));
+
+    drive->synchronism.block_began = drive->supervision.period;
+    if (!held) {
+        drive->synchronism.step = JUDGE_VOLTAGE;
+    }
+    synchronism_monitor_take(&drive->synchronism.monitor, &drive->synchronism.params, sum, held);
+}
+
+/* What a hold takes for a step of the load. Apart, as it calls others: no step's registers are
+   saved for that. */
+__attribute__((noinline)) static void watch_hold(struct drive *drive)
+{
+    if (drive->hold.active) {
+        invariant_ekf_watch_hold(&drive->estimator.invariant_ekf,
+                                 &drive->params.estimator.invariant_ekf, drive->hold.leads);
     }
 }
 
 /* With the policy `warn` the worst stays on show: a loss until the bridge is switched on anew, the
    rest until the estimate is sure again. */
-static enum drive_fault act(struct drive *drive, enum synchronism verdict)
+enum drive_fault synchronism_act(struct drive *drive, enum synchronism verdict)
 {
     static const enum drive_synchronism shown[] = {
         [SYNCHRONISM_SURE] = DRIVE_SYNCHRONISM_SURE,
@@ -181,6 +179,13 @@ static enum drive_fault act(struct drive *drive, enum synchronism verdict)
         [SYNCHRONISM_LOST] = DRIVE_SYNCHRONISM_LOST,
     };
 
+    if (drive->synchronism.step == FOLLOW) {
+        return DRIVE_FAULT_FOLLOWING_ERROR;
+    }
+    if (drive->hold.active && drive->synchronism.step == BEHIND_PULL_OUT &&
+        verdict == SYNCHRONISM_STALLED) {
+        release(drive);
+    }
     if (shown[verdict] > drive->synchronism.shown) {
         drive->synchronism.shown = shown[verdict];
     }
@@ -193,23 +198,53 @@ static enum drive_fault act(struct drive *drive, enum synchronism verdict)
     return verdict == SYNCHRONISM_LOST ? DRIVE_FAULT_LOST_SYNCHRONISM : DRIVE_FAULT_STALLED;
 }
 
-static enum drive_fault follow(struct drive *drive, const struct rotor *rotor)
+static bool follow(struct drive *drive, const struct rotor *rotor)
 {
     const bool exceeds =
         following_error_exceeds(&drive->following, &drive->params.following, error_of(drive, rotor),
                                 drive->reference.now.speed - rotor->speed);
 
+    drive->synchronism.step = FOLLOW;
     drive->synchronism.due = drive->supervision.period + drive->params.following.periods;
-    return exceeds ? DRIVE_FAULT_FOLLOWING_ERROR : DRIVE_FAULT_NONE;
+    return exceeds;
 }
 
-enum drive_fault synchronism_watch(struct drive *drive)
+/* One of the steps of a block, each in a period of its own. */
+enum synchronism synchronism_step(struct drive *drive)
 {
-    drive->synchronism.waits = 0u;
-    if (drive->synchronism.step == FOLLOW) {
-        return follow(drive, &drive->estimator.estimate.rotor);
-    }
-    const enum synchronism verdict = step(drive, &drive->estimator.estimate.rotor);
+    struct synchronism_monitor *monitor = &drive->synchronism.monitor;
+    const struct synchronism_monitor_params *params = &drive->synchronism.params;
+    const struct rotor *rotor = &drive->estimator.estimate.rotor;
 
-    return verdict == SYNCHRONISM_SURE ? DRIVE_FAULT_NONE : act(drive, verdict);
+    drive->synchronism.due = drive->supervision.period + 1u;
+    switch (drive->synchronism.step++) {
+    case TAKE:
+        take(drive);
+        return SYNCHRONISM_SURE;
+    case WATCH_HOLD:
+        watch_hold(drive);
+        return SYNCHRONISM_SURE;
+    case JUDGE_VOLTAGE:
+        return synchronism_monitor_judge_voltage(monitor, params, rotor->speed,
+                                                 drive->current_reference.d);
+    case JUDGE_LASTING:
+        return judge_lasting(drive, rotor);
+    case JUDGE_TORQUE:
+        return synchronism_monitor_judge_torque(monitor, params, drive->current_reference.q,
+                                                rotor->speed);
+    case JUDGE_LOAD:
+        return synchronism_monitor_judge_load(monitor, params, rotor->load_torque);
+    case JUDGE_FOLLOWING:
+        return judge_following(drive, rotor);
+    case JUDGE_PULL_OUT:
+        return judge_pull_out(drive, rotor);
+    case JUDGE_LOAD_ANGLE:
+        return judge_load_angle(drive);
+    case FOLLOW:
+        return follow(drive, rotor) ? SYNCHRONISM_LOST : SYNCHRONISM_SURE;
+    default:
+        drive->synchronism.step = UNMONITORED;
+        drive->synchronism.due = drive->supervision.period + NOT_YET;
+        return SYNCHRONISM_SURE;
+    }
 }

@@ -5,7 +5,7 @@
 #ifndef STEADYSTEP_SYNCHRONISM_H
 #define STEADYSTEP_SYNCHRONISM_H
 
-#include "firmware/drive/drive.h"
+#include "firmware/drive/state_machine.h"
 
 /* At start-up, behind the estimator's design; only an invariant EKF is monitored. */
 __attribute__((cold)) void synchronism_design(struct drive *drive,
@@ -21,34 +21,23 @@ void synchronism_reset(struct drive *drive);
 /* When operation begins. */
 void synchronism_start(struct drive *drive);
 
-/*
- * The monitor's steps follow one another in periods in which the reference just goes on and no
- * command is looked at: elsewhere they wait, so that no interrupt pays for both.
- */
+/* So many periods at most: a quick sine claims every one or two. */
+#define SYNCHRONISM_WAIT_MAX 3
+
+/* The monitor's next step is due. It waits where the period is claimed. */
 static inline bool synchronism_is_due(const struct drive *drive)
 {
-    return RARE((int32_t)(drive->supervision.period - drive->synchronism.due) >= 0) &&
-           (!drive->hold.active || !drive->hold.leads ||
-            !standstill_hold_leads_in(drive->supervision.period));
+    const int32_t waited = (int32_t)(drive->supervision.period - drive->synchronism.due);
+
+    return RARE(waited >= 0) &&
+           (!state_machine_period_is_claimed(drive) || waited >= SYNCHRONISM_WAIT_MAX);
 }
 
-/* How often on end a step waits: a quick sine begins a phase in every period or two. */
-#define SYNCHRONISM_WAITS_MAX 3u
+/* At the end of a period in which it is due. */
+enum synchronism synchronism_step(struct drive *drive);
 
-/* In a period in which commands are looked at (1), or a phase of the reference begins, which takes
-   its time in the next one, too (2). */
-static inline void synchronism_wait(struct drive *drive, uint32_t periods)
-{
-    const uint32_t until = drive->supervision.period + periods;
-
-    if ((int32_t)(until - drive->synchronism.due) > 0 &&
-        drive->synchronism.waits < SYNCHRONISM_WAITS_MAX) {
-        drive->synchronism.due = until;
-        drive->synchronism.waits++;
-    }
-}
-
-/* At the end of a period in which it is due: the fault to enter, if any. */
-enum drive_fault synchronism_watch(struct drive *drive);
+/* The fault to enter, if any, where the verdict is not that all is sure. Apart: rare. */
+__attribute__((noinline)) enum drive_fault synchronism_act(struct drive *drive,
+                                                           enum synchronism verdict);
 
 #endif

@@ -7,9 +7,7 @@
 /* What the hold does with the rotor over the period. */
 struct rotor_hold {
     bool active;
-    /* Read in hold alone: */
-    const bool *leads;          /* the rotor, else it holds it at rest */
-    const struct sincos *frame; /* of the hold's current */
+    const struct sincos *frame; /* of the hold's current; read in hold alone */
 };
 
 /* What is known when the bridge is switched on: at rest, without current. */

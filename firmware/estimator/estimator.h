@@ -93,6 +93,16 @@ static inline void estimator_begin_hold(struct estimator *estimator,
     }
 }
 
+/* Held, every few periods: what a hold shows of the resistance. Only this one leaves it until then.
+ */
+static inline void estimator_adapt_resistance(struct estimator *estimator,
+                                              const struct estimator_params *params, bool leads)
+{
+    if (estimator_is(params, ESTIMATOR_INVARIANT_EKF)) {
+        invariant_ekf_adapt_resistance(&estimator->invariant_ekf, &params->invariant_ekf, leads);
+    }
+}
+
 /* Only this one distinguishes them from others. */
 static inline void estimator_expect_load(struct estimator *estimator,
                                          const struct estimator_params *params)

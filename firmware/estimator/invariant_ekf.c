@@ -75,6 +75,7 @@ void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_p
     estimate_reset(&ekf->estimate, &params->model, position, resistance);
     ekf->bias = (struct phases){NUM(0.0), NUM(0.0)};
     ekf->innovation_sum = NUM(0.0);
+    ekf->adapted_sum = NUM(0.0);
     ekf->usual_change = NUM(0.0);
     ekf->swings = 0u;
     ekf->swung_up = false;
@@ -90,6 +91,7 @@ void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_p
 
 void invariant_ekf_settle(struct invariant_ekf *ekf, const struct invariant_ekf_params *params)
 {
+    invariant_ekf_carry_sum(ekf); /* that of motion */
     ekf->settled_load = ekf->estimate.rotor.load_torque;
     ekf->settled_bias = ekf->bias;
     ekf->following_periods = 0u;
@@ -152,6 +154,24 @@ void invariant_ekf_watch_hold(struct invariant_ekf *ekf, const struct invariant_
     }
     ekf->step_limit = params->load_step +
                       (leads || ekf->swings >= VIBRATION_SWINGS ? ekf->usual_change : NUM(0.0));
+}
+
+/* More than a sum of nu_d comes to in a few periods of a hold; fixed point multiplies no more. */
+#define ADAPTING_SUM_MAX NUM(8.0)
+
+void invariant_ekf_adapt_resistance(struct invariant_ekf *ekf,
+                                    const struct invariant_ekf_params *params, bool leads)
+{
+    struct estimate *x = &ekf->estimate;
+    const num_t sum = num_headroom(ekf->innovation_sum, ADAPTING_SUM_MAX);
+
+    invariant_ekf_carry_sum(ekf);
+    if (!leads) {
+        const num_t i_d = park(x->next.current, x->next.frame).d;
+        const num_t change = num_mul_coef(num_mul(sum, i_d), params->holding.resistance);
+
+        winding_set_resistance(&x->winding, &params->model, x->winding.resistance + change);
+    }
 }
 
 struct passage invariant_ekf_observe(struct invariant_ekf *ekf,

@@ -15,7 +15,7 @@
  *   b     += (k_bd sat(w/w_s) nu_d + k_bq nu_q) q      q: the q axis, in phase coordinates: the
  *                                                     rotor's; in hold the frame's, since what
  *                                                     swings with the rotor adds up in d
- *   R     += k_R i_d nu_d                              while holding
+ *   R     += k_R i_d sum(nu_d)                         while holding, every few periods
  *
  * b is the offset of the voltage measurement, constant in phase coordinates, where the back-EMF
  * turns. In motion an offset shows as an angle error that turns with it, so in nu_d; at rest, where
@@ -30,6 +30,9 @@
  * so that the estimate cannot run away with the current that compensates it. A rotor that is led
  * along a creeping reference passes its detent torque, and a machine may vibrate, which several
  * steps on end show: there what exceeds three times the mean difference of late is a step.
+ *
+ * The resistance has some 20 ms to be found, so it need not move in every period: all that nu_d has
+ * been since it moved last moves it by as much as if it had done so in each, while i_d stays.
  *
  * Gains: design/invariant_ekf_design.h.
  */
@@ -74,14 +77,14 @@ struct invariant_ekf {
     struct estimate estimate;
     struct phases bias;         /* offset of the measured voltage */
     struct phases settled_bias; /* of it, what has lasted in a settled hold */
-    num_t innovation_sum;       /* of nu_d since the synchronism monitor has taken it; runs on
-                                   without one */
-    num_t settled_load;         /* torque that a hold returns to */
-    num_t step_limit;           /* beyond which a change of the load is a step */
-    num_t usual_change;         /* three times the mean of the load's change of late */
-    uint8_t swings;             /* of the load on end, a reversal twice; up to what vibrates */
-    uint8_t calm_blocks;        /* left until they are at an end */
-    bool swung_up;              /* the last time */
+    num_t innovation_sum;       /* of nu_d since it was taken last; runs on if nobody does */
+    num_t adapted_sum;   /* of those that the resistance has taken, for the synchronism monitor */
+    num_t settled_load;  /* torque that a hold returns to */
+    num_t step_limit;    /* beyond which a change of the load is a step */
+    num_t usual_change;  /* three times the mean of the load's change of late */
+    uint8_t swings;      /* of the load on end, a reversal twice; up to what vibrates */
+    uint8_t calm_blocks; /* left until they are at an end */
+    bool swung_up;       /* the last time */
     uint32_t following_periods; /* left of the gains that follow a load step, and of their rest */
     uint32_t swing_end;         /* of unloaded_periods, when the rotor has swung into place */
     uint32_t unloaded_periods;  /* left of the hold in which no load step is expected */
@@ -102,14 +105,31 @@ __attribute__((cold)) void invariant_ekf_reset(struct invariant_ekf *ekf,
                                                struct position position, num_t resistance,
                                                uint32_t unloaded_periods);
 
-/* The sum of nu_d, which begins anew. */
-static inline num_t invariant_ekf_take_innovation_sum(struct invariant_ekf *ekf)
+/* Carries the sum of nu_d over to the monitor's. */
+static inline void invariant_ekf_carry_sum(struct invariant_ekf *ekf)
 {
-    const num_t sum = ekf->innovation_sum;
-
+    ekf->adapted_sum = num_add_around(ekf->adapted_sum, ekf->innovation_sum);
     ekf->innovation_sum = NUM(0.0);
+}
+
+/* The sum of nu_d since the last call. In hold up to where the resistance was adapted last: what
+   has come since then is still to adapt it. */
+static inline num_t invariant_ekf_take_innovation_sum(struct invariant_ekf *ekf, bool held)
+{
+    num_t sum;
+
+    if (!held) {
+        invariant_ekf_carry_sum(ekf);
+    }
+    sum = ekf->adapted_sum;
+    ekf->adapted_sum = NUM(0.0);
     return sum;
 }
+
+/* In hold, every few periods, at their end: the resistance by the innovations since the last call.
+   Not if the hold leads its rotor, whose lag behind its frame shows in nu_d, too. */
+void invariant_ekf_adapt_resistance(struct invariant_ekf *ekf,
+                                    const struct invariant_ekf_params *params, bool leads);
 
 /* A load step in a settled hold. Of the offset stays what has lasted: the rest may have been
  * motion. */

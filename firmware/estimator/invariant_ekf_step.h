@@ -81,18 +81,6 @@ invariant_ekf_correct(struct invariant_ekf *ekf, const struct invariant_ekf_gain
     ekf->bias.b += num_mul_unit_nearest(by.bias_q, bias_frame.cos);
 }
 
-static inline void invariant_ekf_adapt_resistance(struct invariant_ekf *ekf,
-                                                  const struct invariant_ekf_params *params,
-                                                  const struct invariant_ekf_gain_set *gain,
-                                                  num_t innovation_d)
-{
-    struct estimate *x = &ekf->estimate;
-    const num_t i_d = park(x->current, x->next.frame).d;
-    const num_t change = num_mul_coef(num_mul(innovation_d, i_d), gain->resistance);
-
-    winding_set_resistance(&x->winding, &params->model, x->winding.resistance + change);
-}
-
 /* Which of the sets of gains serves this period of the hold. */
 static inline const struct invariant_ekf_gain_set *
 invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_params *params)
@@ -126,18 +114,13 @@ invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_p
 
 __attribute__((always_inline)) static inline void
 invariant_ekf_step_in_hold(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
-                           const struct invariant_ekf_innovation *innovation,
-                           struct rotor_hold hold)
+                           const struct invariant_ekf_innovation *innovation, struct sincos frame)
 {
     const struct invariant_ekf_gain_set *gain = invariant_ekf_hold_gains(ekf, params);
     const num_t away = invariant_ekf_away_from_settled_load(ekf);
 
     invariant_ekf_correct(ekf, gain, innovation,
-                          invariant_ekf_correct_in_hold(gain, innovation->in_frame, away),
-                          *hold.frame);
-    if (!*hold.leads) { /* a led rotor's lag behind its frame shows in nu_d, too */
-        invariant_ekf_adapt_resistance(ekf, params, gain, innovation->in_frame.d);
-    }
+                          invariant_ekf_correct_in_hold(gain, innovation->in_frame, away), frame);
 }
 
 /* From S(k) to S(k+1), under this mean voltage. */
@@ -168,7 +151,7 @@ invariant_ekf_step(struct invariant_ekf *ekf, const struct invariant_ekf_params 
 
     ekf->innovation_sum = num_add_around(ekf->innovation_sum, innovation.in_frame.d);
     if (RARE(hold.active)) {
-        invariant_ekf_step_in_hold(ekf, params, &innovation, hold);
+        invariant_ekf_step_in_hold(ekf, params, &innovation, *hold.frame);
     } else {
         invariant_ekf_correct(
             ekf, &params->moving, &innovation,

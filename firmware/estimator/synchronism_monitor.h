@@ -46,7 +46,7 @@
 
 #include "firmware/estimator/estimate.h"
 
-/* A block, of at least as many periods as it has steps. */
+/* A block, of at least as many periods as it has steps in motion, and one. */
 #define SYNCHRONISM_BLOCK_S 1.6e-3
 #define SYNCHRONISM_STEPS   8u
 
@@ -113,7 +113,7 @@ __attribute__((noinline)) void
 synchronism_monitor_reset(struct synchronism_monitor *monitor,
                           const struct synchronism_monitor_params *params);
 
-/* ---- The eight steps of a block, each for a period of its own. ---- */
+/* ---- The steps of a block, each for a period of its own. ---- */
 
 /* Takes the block's sum of innovations in d. */
 void synchronism_monitor_take(struct synchronism_monitor *monitor,

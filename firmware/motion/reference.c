@@ -127,8 +127,8 @@ static void begin(struct reference *r, enum reference_phase phase, uint32_t peri
     r->periods_left = periods;
     r->at.acceleration = acceleration;
     r->jerks = false;
-    r->jerk = 0;
-    r->jerk_sixth = 0;
+    r->next.moving = phase != REFERENCE_REST;
+    r->course = phase != REFERENCE_REST ? REFERENCE_STEADY : REFERENCE_ARRIVES;
 }
 
 /* A jerk phase takes the acceleration on from the phase before. */
@@ -140,26 +140,19 @@ static void begin_jerk(struct reference *r, enum reference_phase phase, int64_t 
     r->jerks = true;
     r->jerk = jerk;
     r->jerk_sixth = jerk_sixth;
+    r->next.moving = true;
+    r->course = REFERENCE_JERKS;
 }
 
-static void come_to_rest(struct reference *r)
+/* At the target, but where it has been stopped, or a plan does not end at one. */
+static void come_to_rest(struct reference *r, bool at_target, struct position target)
 {
     begin(r, REFERENCE_REST, 0, 0);
     r->stop_requested = false;
     r->at.speed = 0;
     r->next.speed = NUM(0.0);
-    place(r, r->stopped ? (struct position){r->at.turns, (angle_t)(r->at.fraction >> 32)}
-                        : r->profile->target);
-}
-
-static void rest_behind_plan(struct reference *r)
-{
-    const struct position here = r->plan->lands ? r->plan->target : motion_position(&r->at);
-
-    begin(r, REFERENCE_REST, 0, 0);
-    r->stop_requested = false;
-    r->at.speed = 0;
-    place(r, here);
+    r->next.acceleration = NUM(0.0);
+    place(r, at_target ? target : motion_position(&r->at));
 }
 
 __attribute__((noinline)) static void begin_next_segment(struct reference *r)
@@ -182,7 +175,7 @@ __attribute__((noinline)) static void begin_next_segment(struct reference *r)
     }
     if (r->segment == r->plan->segments) {
         if (!r->plan->endless) {
-            rest_behind_plan(r);
+            come_to_rest(r, r->plan->lands, r->plan->target);
             return;
         }
         r->segment--;
@@ -190,6 +183,7 @@ __attribute__((noinline)) static void begin_next_segment(struct reference *r)
     segment = &r->plan->segment[r->segment++];
     begin(r, REFERENCE_PLANNED, segment->periods, segment->acceleration);
     r->jerks = segment->jerk_sixth != 0;
+    r->course = reference_course_of_phase(r);
     r->jerk_sixth = segment->jerk_sixth;
     r->jerk = 2 * segment->jerk_sixth + 4 * segment->jerk_sixth; /* no library call on a M0+ */
 }
@@ -229,8 +223,10 @@ static inline __attribute__((always_inline)) void begin_ramp_down(struct referen
     } else if (ended < REFERENCE_JERK_TO_REST && smooth) {
         begin_jerk(r, REFERENCE_JERK_TO_REST, profile->jerk, profile->jerk_sixth);
     } else {
-        come_to_rest(r);
-        r->slow_periods = ended == REFERENCE_LOADED ? 0u : r->slow_periods; /* a step */
+        come_to_rest(r, !r->stopped, profile->target);
+        if (RARE(ended == REFERENCE_LOADED)) { /* a step */
+            r->slow_periods = 0u;
+        }
     }
 }
 
@@ -242,14 +238,17 @@ static inline __attribute__((always_inline)) void begin_next_phase_of_profile(st
     }
 }
 
-static inline __attribute__((always_inline)) void begin_next_phase(struct reference *r)
+/* true: of a plan, and so the speed may jump. */
+static inline __attribute__((always_inline)) bool begin_next_phase(struct reference *r)
 {
-    if (r->phase == REFERENCE_PLANNED) {
+    const bool planned = r->phase == REFERENCE_PLANNED;
+
+    if (planned) {
         begin_next_segment(r);
     } else {
         begin_next_phase_of_profile(r);
     }
-    r->next.moving = r->phase < REFERENCE_REST;
+    return planned;
 }
 
 bool reference_preempt(struct reference *r, const struct motion_plan *plan)
@@ -283,14 +282,14 @@ void reference_skip(struct reference *r, uint32_t periods)
         const uint32_t run = r->periods_left < periods ? r->periods_left : periods;
 
         if (run > 0u) {
-            motion_run(&r->at, r->jerk_sixth, run);
+            motion_run(&r->at, reference_jerk_sixth(r), run);
             r->periods_left -= run;
             periods -= run;
         } else {
             periods--;
         }
         if (r->periods_left == 0u) {
-            begin_next_phase(r);
+            (void)begin_next_phase(r);
         }
     }
 }
@@ -314,7 +313,7 @@ static enum reference_course course_of(const struct reference *r)
     if (r->creeps) {
         return REFERENCE_TURNS;
     }
-    return r->jerks ? REFERENCE_JERKS : REFERENCE_STEADY;
+    return reference_course_of_phase(r);
 }
 
 static inline void advance(struct reference *r)
@@ -344,7 +343,6 @@ __attribute__((noinline)) static bool turn(struct reference *r,
         r->slow_periods = 0u;
     }
     reference_pass(r);
-    reference_pass_acceleration(r);
     r->now.moving = r->next.moving;
     if (r->periods_left > 0u) {
         advance(r);
@@ -360,34 +358,46 @@ __attribute__((noinline)) static bool turn(struct reference *r,
     return false;
 }
 
-/* Of a phase as it begins. In motion one with jerk just goes on from here. */
-static enum reference_course first_course_of(const struct reference *r)
+/* A phase has begun, and does not just go on. */
+static inline void keep_turning(struct reference *r)
 {
-    return r->jerks && r->now.moving && !r->creeps && !r->stop_requested ? REFERENCE_JERKS
-                                                                         : REFERENCE_TURNS;
+    if (RARE(r->creeps || r->stop_requested)) {
+        r->course = REFERENCE_TURNS;
+    } else if (RARE(!r->now.moving)) {
+        r->course = REFERENCE_SETS_OUT;
+    }
+}
+
+/* What comes before a phase begins where it does not just go on; false: none begins. */
+static bool turn_to_phase(struct reference *r, const struct reference_params *params, bool held)
+{
+    if (r->course == REFERENCE_STARTS) {
+        reference_count_slow(r);
+    } else if (!turn(r, params, held)) {
+        return false;
+    }
+    if (r->phase == REFERENCE_LOADED) {
+        reference_show(r, params); /* the speed jumps by what rounding adds to it */
+    }
+    if (r->periods_left > 0u) { /* a stop has been asked for */
+        cut_short(r, 1u);
+        r->stop_requested = false;
+        r->course = reference_course_of_phase(r);
+    }
+    return true;
 }
 
 bool reference_turn(struct reference *r, const struct reference_params *params, bool held)
 {
-    bool jumps; /* the speed, by what rounding or a plan adds to it */
-
-    if (r->course == REFERENCE_TURNS && !turn(r, params, held)) {
+    if (RARE(r->course <= REFERENCE_STARTS) && !turn_to_phase(r, params, held)) {
         return false;
     }
-    if (r->course == REFERENCE_STARTS) {
-        reference_count_slow(r);
-    }
-    jumps = r->phase == REFERENCE_LOADED || r->phase == REFERENCE_PLANNED;
-    if (r->periods_left == 0u) {
-        begin_next_phase(r);
-    } else { /* a stop has been asked for */
-        cut_short(r, 1u);
-        r->stop_requested = false;
-    }
-    if (jumps) {
+    if (!RARE(r->periods_left > 0u) && begin_next_phase(r)) {
         reference_show(r, params);
     }
-    reference_show_acceleration(r, params);
-    r->course = first_course_of(r);
+    if (r->phase != REFERENCE_REST) {
+        reference_show_acceleration(r, params);
+        keep_turning(r);
+    }
     return true;
 }

@@ -58,8 +58,10 @@ enum reference_phase {
 
 /* What a step has to do. Chosen anew by each that does not just go on. */
 enum reference_course {
-    REFERENCE_TURNS,  /* a phase begins or ends, it creeps, or something has been asked for */
-    REFERENCE_STARTS, /* a profile begins from rest */
+    REFERENCE_TURNS,    /* it creeps, or something has been asked for */
+    REFERENCE_SETS_OUT, /* a profile has begun: the first period of motion */
+    REFERENCE_ARRIVES,  /* it has ended: the first period of rest */
+    REFERENCE_STARTS,   /* a profile begins from rest */
     REFERENCE_STILL,
     REFERENCE_STEADY, /* a phase of constant acceleration */
     REFERENCE_JERKS
@@ -76,10 +78,10 @@ struct reference {
     uint32_t periods_left; /* of the phase */
     bool creeps;           /* the profile or plan does */
     bool stop_requested;
-    bool stopped;           /* comes to rest where it may, not at the target */
-    bool jerks;             /* else both words of jerk are 0 */
+    bool stopped; /* comes to rest where it may, not at the target */
+    bool jerks;
     struct motion_state at; /* S(k+1) */
-    int64_t jerk;
+    int64_t jerk;           /* both count while it jerks */
     int64_t jerk_sixth;
 
     const struct motion_plan *plan; /* the one that began last */
@@ -106,14 +108,21 @@ static inline num_t reference_jerk(const struct reference *reference,
                                    const struct reference_params *params)
 {
     /* 2^-42 turn in 32 bits; one comparison: what is below them wraps to a large number */
-    const int32_t high = (int32_t)(reference->jerk >> 32);
+    const int64_t jerk = reference->jerks ? reference->jerk : 0;
+    const int32_t high = (int32_t)(jerk >> 32);
     const uint32_t range = 1u << (REFERENCE_JERK_SHIFT - 1);
-    int32_t limited = (int32_t)(uint32_t)(reference->jerk >> REFERENCE_JERK_SHIFT);
+    int32_t limited = (int32_t)(uint32_t)(jerk >> REFERENCE_JERK_SHIFT);
 
     if (RARE((uint32_t)high + range >= 2u * range)) {
         limited = high < 0 ? -INT32_MAX : INT32_MAX;
     }
     return num_mul_coef(turns_from_angle(limited), params->jerk);
+}
+
+/* A sixth of the jerk, 2^-64 turn per period^3. */
+static inline int64_t reference_jerk_sixth(const struct reference *reference)
+{
+    return reference->jerks ? reference->jerk_sixth : 0;
 }
 
 /* At rest at a position. */
@@ -229,18 +238,12 @@ static inline void reference_count_slow(struct reference *r)
     }
 }
 
-/* What was to come is now. */
+/* What was to come is now. Only a simulation asks for the present acceleration. */
 static inline void reference_pass(struct reference *r)
 {
     r->now.position.turns = r->next.position.turns;
     r->now.position.fraction = r->next.position.fraction;
     r->now.speed = r->next.speed;
-}
-
-/* Of the sample what changes in a phase with jerk alone. Only a simulation asks for the present
-   acceleration. */
-static inline void reference_pass_acceleration(struct reference *r)
-{
     if (SERVES_SIMULATION) {
         r->now.acceleration = r->next.acceleration;
     }
@@ -250,6 +253,12 @@ static inline void reference_pass_acceleration(struct reference *r)
 static inline bool reference_is_still(const struct reference *r)
 {
     return r->course == REFERENCE_STILL;
+}
+
+/* The same, and a profile may begin with the next step. */
+static inline bool reference_is_at_rest(const struct reference *r)
+{
+    return r->course == REFERENCE_STILL || r->course == REFERENCE_STARTS;
 }
 
 /* One control period at rest; false: it does not rest, or has only just begun to. */
@@ -262,21 +271,46 @@ static inline bool reference_keeps_still(struct reference *r)
     return true;
 }
 
+/* How a phase goes on that has begun. */
+static inline enum reference_course reference_course_of_phase(const struct reference *r)
+{
+    return r->jerks ? REFERENCE_JERKS : REFERENCE_STEADY;
+}
+
+static inline void reference_set_out(struct reference *r)
+{
+    r->now.moving = true;
+    r->slow_periods = 0u;
+    r->course = reference_course_of_phase(r);
+}
+
+static inline void reference_arrive(struct reference *r)
+{
+    reference_count_slow(r);
+    reference_pass(r);
+    r->now.moving = false;
+    r->course = REFERENCE_STILL;
+}
+
 /* One control period on; false: it does not just go on, reference_turn is to follow, or a phase has
    ended, and reference_turn begins the next. */
 static inline bool reference_step(struct reference *r, const struct reference_params *params)
 {
-    const enum reference_course course = r->course;
-
     if (reference_keeps_still(r)) {
         return true;
     }
-    if (RARE(course <= REFERENCE_STARTS)) {
-        return false;
+    if (RARE(r->course < REFERENCE_STILL)) {
+        if (r->course == REFERENCE_ARRIVES) {
+            reference_arrive(r);
+            return true;
+        }
+        if (r->course != REFERENCE_SETS_OUT) {
+            return false;
+        }
+        reference_set_out(r);
     }
     reference_pass(r);
-    if (RARE(course == REFERENCE_JERKS)) {
-        reference_pass_acceleration(r);
+    if (RARE(r->course == REFERENCE_JERKS)) {
         reference_advance_with_jerk(r);
         if (!RARE(r->periods_left == 0u)) {
             reference_show_acceleration(r, params);

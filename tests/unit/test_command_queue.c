@@ -239,11 +239,13 @@ static int calls_from(uint32_t from, uint32_t to)
 static void look(uint32_t period)
 {
     uint32_t wait = COMMAND_QUEUE_NEVER;
+    const struct queued_command *command;
 
     command_queue_look(&queue, period);
     (void)command_queue_take_urgent(&queue, &queue.disable, period, &wait);
     (void)command_queue_take_urgent(&queue, &queue.stop, period, &wait);
-    (void)command_queue_due(&queue, period + 1u, &wait);
+    command = command_queue_due(&queue, period + 1u, &wait);
+    wait = command_queue_wait_of(command, period + 1u, wait);
     (void)command_queue_preemption(&queue, period, &wait);
     command_queue_rest(&queue, period, wait);
 }

@@ -131,7 +131,7 @@ static void test_without_an_encoder(void)
         {LEAD_B, true, "open-phase-b", 150, 260, 0},
         {SENSOR_B, true, "current-sensor-b", 200, 350, 0},
         {SENSOR_A, true, "current-sensor-a", 200, 350, 11},
-        {LEG_VOLTAGE, true, "lost-synchronism", 25, 55, 0},
+        {LEG_VOLTAGE, true, "lost-synchronism", 20, 50, 0},
         {LEG_VOLTAGE, true, "lost-synchronism", 70, 110, 11},
         {HELD_ROTOR, false, "stalled", 205, 245, 0},
         {HELD_ROTOR, true, "stalled", 25, 55, 0},

@@ -70,8 +70,11 @@ static double estimated_resistance_ohm(void)
     return num_to_double(ekf.estimate.winding.resistance) * base.resistance_ohm;
 }
 
-static const bool leads = false;
 static angle_t hold_angle; /* electrical, of the frame of the hold's current */
+
+/* As in the drive: in a hold the resistance moves in every fourth period. */
+#define ADAPTING_PERIODS 4u
+static uint32_t periods_held;
 
 static void correct(struct bench_vector current, struct phases surprise, bool in_hold)
 {
@@ -79,10 +82,13 @@ static void correct(struct bench_vector current, struct phases surprise, bool in
     const struct estimator_input input = {
         .winding.current = bench_phases(current.a, current.b, base.current_A),
         .surprise = surprise,
-        .hold = {in_hold, &leads, &hold_frame},
+        .hold = {in_hold, &hold_frame},
     };
 
     (void)invariant_ekf_observe(&ekf, &params, &input);
+    if (in_hold && ++periods_held % ADAPTING_PERIODS == 0u) {
+        invariant_ekf_adapt_resistance(&ekf, &params, false);
+    }
 }
 
 /* Under a voltage that is as it was expected. */
@@ -168,9 +174,24 @@ static struct state corrected(struct state x, struct state y, const struct invar
     y.load += k->k_load_q_Nm_A * nu.b - k->load_return * away;
     y.bias_a += bias.a;
     y.bias_b += bias.b;
-    y.resistance +=
-        k->k_resistance_ohm_A2 * bench_to_rotor(y.i_a, y.i_b, 50.0 * x.angle + h).a * nu.a;
     return y;
+}
+
+/* What a hold that has corrected x predicted by y, and looked ahead without voltage, has for the
+   resistance, had nu_d been the same in `periods`. */
+static double adapted_resistance(struct state x, struct state y,
+                                 const struct invariant_ekf_gains *k, struct bench_vector i,
+                                 int periods)
+{
+    static const struct bench_vector none = {0.0, 0.0};
+    const double turned = 50.0 * x.angle + 50.0 * PERIOD_S * x.speed;
+    const double nu_d = bench_to_rotor(i.a - y.i_a, i.b - y.i_b, turned).a;
+    const struct state now = corrected(x, y, k, i, NULL);
+    const struct state next = predicted(now, none);
+    const double i_d =
+        bench_to_rotor(next.i_a, next.i_b, 50.0 * (now.angle + PERIOD_S * now.speed)).a;
+
+    return y.resistance + k->k_resistance_ohm_A2 * i_d * nu_d * periods;
 }
 
 static void set(struct state x)
@@ -225,6 +246,7 @@ static void test_a_step_is_that_of_the_equations_in_motion_and_in_hold(void)
         const struct state x = starts[i];
         const bool load_step = fabs(x.load - x.settled) > holding.load_step_Nm;
 
+        periods_held = 0u;
         set(x);
         step(voltage, current, true);
         is_state(corrected(x, predicted(x, voltage),
@@ -235,6 +257,60 @@ static void test_a_step_is_that_of_the_equations_in_motion_and_in_hold(void)
         is_state(corrected(x, predicted(x, voltage), &moving, current, NULL));
     }
     hold_angle = 0u;
+}
+
+static double resistance_after(struct state start, int sums, bool leads)
+{
+    static const struct bench_vector voltage = {3.0, -2.0};
+    static const struct bench_vector current = {0.95, -0.4};
+    num_t nu_d;
+
+    periods_held = 0u;
+    set(start);
+    step(voltage, current, true);
+    nu_d = ekf.innovation_sum;
+    for (int k = 1; k < sums; k++) {
+        ekf.innovation_sum += nu_d;
+    }
+    invariant_ekf_adapt_resistance(&ekf, &params, leads);
+    TEST_ASSERT_TRUE(ekf.innovation_sum == NUM(0.0));
+    return estimated_resistance_ohm();
+}
+
+/* As much as if it had moved in each of the periods. */
+static void test_the_resistance_moves_by_all_innovations_since_it_moved_last(void)
+{
+    static const struct state start = {1.4, 0.3, 0.4, 3.3, 0.1, 0.11, 0.0, 0.0, 0.37};
+    static const struct bench_vector voltage = {3.0, -2.0};
+    static const struct bench_vector current = {0.95, -0.4};
+
+    for (int periods = 1; periods <= 4; periods++) {
+        const double expected =
+            adapted_resistance(start, predicted(start, voltage), &holding.quiet, current, periods);
+
+        TEST_ASSERT_TRUE(fabs(expected - start.resistance) > 1e-4);
+        TEST_ASSERT_DOUBLE_WITHIN(0.01 * fabs(expected - start.resistance) + 1e-5, expected,
+                                  resistance_after(start, periods, false));
+    }
+}
+
+static void test_a_hold_that_leads_its_rotor_leaves_the_resistance_alone(void)
+{
+    static const struct state start = {1.4, 0.3, 0.4, 3.3, 0.1, 0.11, 0.0, 0.0, 0.37};
+
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, start.resistance, resistance_after(start, 4, true));
+}
+
+/* Of a hold only those that the resistance has taken; the others come with the next block. */
+static void test_each_innovation_is_taken_once_by_the_monitor(void)
+{
+    ekf.innovation_sum = NUM(0.25);
+    invariant_ekf_adapt_resistance(&ekf, &params, false);
+    ekf.innovation_sum = NUM(0.125);
+    TEST_ASSERT_TRUE(invariant_ekf_take_innovation_sum(&ekf, true) == NUM(0.25));
+    TEST_ASSERT_TRUE(invariant_ekf_take_innovation_sum(&ekf, true) == NUM(0.0));
+    TEST_ASSERT_TRUE(invariant_ekf_take_innovation_sum(&ekf, false) == NUM(0.125));
+    TEST_ASSERT_TRUE(invariant_ekf_take_innovation_sum(&ekf, false) == NUM(0.0));
 }
 
 /* The surprise moves the predicted current; what it does to the rotor in a period is left out. */
@@ -620,6 +696,9 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_step_is_that_of_the_equations_in_motion_and_in_hold);
+    RUN_TEST(test_the_resistance_moves_by_all_innovations_since_it_moved_last);
+    RUN_TEST(test_a_hold_that_leads_its_rotor_leaves_the_resistance_alone);
+    RUN_TEST(test_each_innovation_is_taken_once_by_the_monitor);
     RUN_TEST(test_a_voltage_that_was_another_than_expected_is_made_up_for);
     RUN_TEST(test_a_right_start_is_tracked_from_rest_through_an_acceleration);
     RUN_TEST(test_the_estimate_locks_from_thirty_electrical_degrees_either_way);

@@ -72,7 +72,7 @@ static struct motion_plan *new_plan(void)
     motion_plan_begin(plan, &reference.at, reference.epoch);
     end = reference.at;
     if (reference.periods_left > 0u) {
-        motion_run(&end, reference.jerk_sixth, 1u);
+        motion_run(&end, reference_jerk_sixth(&reference), 1u);
     }
     return plan;
 }

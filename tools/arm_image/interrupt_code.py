@@ -1,7 +1,7 @@
 """What the control interrupt of a board's image can reach, by the static call graph.
 
 Constants are the addresses of read-only memory that the reached functions load. What the interrupt calls only
-while the drive is being enabled may run from flash: ENABLING.
+while the drive is being enabled, or once as it is disabled, may run from flash: ENABLING.
 """
 
 import re
@@ -13,6 +13,7 @@ INTERRUPTS = ["control_interrupt", "deadline_guard_interrupt"]
 # And what they alone call.
 ENABLING = {
     "align_encoder",
+    "disable",
     "encoder_aligning_step",
     "end_first_hold",
     "find_position_or_power_up",
