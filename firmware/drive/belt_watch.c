@@ -2,6 +2,7 @@
 
 #include "firmware/design/loop_bandwidth.h"
 #include "firmware/drive/drive.h"
+#include "firmware/drive/inductance.h"
 #include "firmware/drive/interrupt_view.h"
 
 #define SWINGS    12u
@@ -62,9 +63,12 @@ void belt_watch_background(struct drive *drive)
         return;
     }
     const double period_s = drive->board->facts->control_period_s;
+    struct motor_params motor = drive->settings.motor;
+
+    motor.inductance_H = inductance_in_force_H(drive);
 
     const struct current_control_params widest = current_control_design(
-        &drive->settings.motor, &drive->base, period_s, CURRENT_BANDWIDTH_PERIOD_MAX / period_s);
+        &motor, &drive->base, period_s, CURRENT_BANDWIDTH_PERIOD_MAX / period_s);
 
     hal_defer_interrupts(drive->board, true);
     drive->params.current_control = widest;

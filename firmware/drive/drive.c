@@ -322,6 +322,7 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
                                                      settings->current_bandwidth_rad_s);
     belt_watch_design(drive, given);
     drive->torque_constant = (struct torque_constant){.in_force = NUM(0.0)};
+    drive->enabling.inductance_change = NUM(0.0);
     params->modulator = modulator_design(facts->pwm_half_period_counts,
                                          modulation_max(facts->low_state_s, period_s));
     params->protection = protection_design(&drive->base, facts, &drive->settings);

@@ -17,6 +17,7 @@
 #include "firmware/drive/expectation.h"
 #include "firmware/drive/following_error.h"
 #include "firmware/drive/idle_current.h"
+#include "firmware/drive/inductance_measurement.h"
 #include "firmware/drive/measurement.h"
 #include "firmware/drive/offset_calibration.h"
 #include "firmware/drive/parameter_store.h"
@@ -134,14 +135,21 @@ struct enabling {
     struct initial_position detection;
     struct initial_position_params detection_params;
     union { /* a drive has one or the other: without an encoder, with one */
-        struct phase_balance balance;
+        struct {
+            struct phase_balance balance;
+            struct inductance_measurement inductance;
+        };
         struct encoder_alignment alignment;
     };
     union {
-        struct phase_balance_params balance_params;
+        struct {
+            struct phase_balance_params balance_params;
+            struct inductance_measurement_params inductance_params;
+        };
         struct encoder_alignment_params alignment_params;
     };
-    num_t phase_imbalance; /* as last found */
+    num_t phase_imbalance;   /* as last found */
+    num_t inductance_change; /* by what share that in force is above the settings' */
 };
 
 /*

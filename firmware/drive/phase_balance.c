@@ -1,6 +1,7 @@
 #include "firmware/drive/phase_balance.h"
 
 #include "firmware/design/hold_frequency.h"
+#include "firmware/numeric/quotient.h"
 
 static const double two_pi = 6.28318530717958647693;
 
@@ -12,9 +13,6 @@ static const double look_s = 0.04;
 
 /* 2.8 degrees: a friction of 1.7 % of the holding torque, in a hold of half the rated current. */
 #define BEYOND 0x02000000
-
-/* Errors of 1/2, 1/4, 1/16, 4e-3, 2e-5, 2e-10. */
-#define NEWTON_STEPS 5u
 
 #define QUARTER_TURN 0x40000000u
 #define EIGHTH_TURN  0x20000000u
@@ -76,7 +74,6 @@ static bool compare(struct phase_balance *balance, const struct phase_balance_pa
 
     balance->sum = num_abs(a + b);
     balance->difference = a + b < NUM(0.0) ? b - a : a - b;
-    balance->reciprocal = NUM(1.0);
     return num_abs(current.a) > params->current_min && num_abs(current.b) > params->current_min &&
            num_abs(balance->difference) < num_mul(balance->sum, NUM(2.0 * PHASE_IMBALANCE_MAX));
 }
@@ -112,26 +109,9 @@ static enum phase_balance_event lead_back(struct phase_balance *balance)
 {
     (void)go_on(balance);
     held_angle_lead_to(&balance->held, balance->held.offset > 0 ? -BEYOND : BEYOND);
-    balance->imbalance = num_mul(balance->difference, balance->reciprocal);
+    balance->imbalance = quotient(balance->difference, balance->sum);
     return num_abs(balance->imbalance) < NUM(PHASE_IMBALANCE_MAX) ? PHASES_COMPARED
                                                                   : PHASES_TOO_DIFFERENT;
-}
-
-/* Without a division: the sum is scaled to 3/4...3/2, the difference with it, then Newton's method
-   for its reciprocal, whose error of 1/2 at most is squared by each step. */
-static enum phase_balance_event divide(struct phase_balance *balance)
-{
-    if (balance->sum < NUM(0.75)) {
-        balance->sum += balance->sum;
-        balance->difference += balance->difference;
-        balance->periods = 1u;
-    } else if (balance->periods <= NEWTON_STEPS + 1u) {
-        balance->reciprocal =
-            num_mul(balance->reciprocal, NUM(2.0) - num_mul(balance->sum, balance->reciprocal));
-    } else {
-        return lead_back(balance);
-    }
-    return PHASES_GO_ON;
 }
 
 static bool is_led(enum phase_balance_stage stage)
@@ -152,7 +132,7 @@ enum phase_balance_event phase_balance_step(struct phase_balance *balance,
         return balance->periods < params->look ? PHASES_GO_ON : end_look(balance, params);
     }
     if (stage == PHASES_DIVIDED) {
-        return divide(balance);
+        return lead_back(balance);
     }
     if (stage == PHASES_BALANCED) {
         return PHASES_AT_FINAL;

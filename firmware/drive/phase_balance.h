@@ -47,7 +47,7 @@ enum phase_balance_stage {
     PHASES_LED,      /* to where both carry the same */
     PHASES_SETTLING, /* there */
     PHASES_LOOKED_AT,
-    PHASES_DIVIDED,  /* a step of the division in each period */
+    PHASES_DIVIDED,
     PHASES_LED_BACK, /* a little further than the final angle */
     PHASES_SETTLING_BEYOND,
     PHASES_LED_TO_FINAL,
@@ -62,8 +62,7 @@ struct phase_balance {
     struct channels mean;
     num_t difference; /* numerator and denominator of d */
     num_t sum;
-    num_t reciprocal; /* of the sum, when it has been scaled to about 1 */
-    num_t imbalance;  /* d; 0 until it is found */
+    num_t imbalance; /* d; 0 until it is found */
 };
 
 struct phase_balance_task {

@@ -7,7 +7,12 @@
 
 #include "firmware/drive/drive.h"
 
-enum phase_balancing { PHASES_ARE_BEING_BALANCED, PHASES_ARE_BALANCED, PHASES_DO_NOT_MATCH };
+enum phase_balancing {
+    PHASES_ARE_BEING_BALANCED,
+    PHASES_ARE_BALANCED,
+    PHASES_DO_NOT_MATCH,
+    INDUCTANCE_DOES_NOT_MATCH
+};
 
 /* At start-up, when the path is designed: periods that it takes at most, 0 if it is left out. */
 uint32_t phase_balancing_design(struct drive *drive, const struct drive_settings *settings,

@@ -52,6 +52,8 @@ static void balance_phases(struct drive *drive, const struct hal_samples *sample
         end_aligning(drive);
     } else if (balancing == PHASES_DO_NOT_MATCH) {
         state_machine_fault(drive, DRIVE_FAULT_PHASE_IMBALANCE);
+    } else if (balancing == INDUCTANCE_DOES_NOT_MATCH) {
+        state_machine_fault(drive, DRIVE_FAULT_INDUCTANCE);
     }
 }
 

@@ -1,6 +1,7 @@
 #include "firmware/drive/torque_constant.h"
 
 #include "firmware/drive/drive.h"
+#include "firmware/drive/inductance.h"
 #include "firmware/drive/interrupt_view.h"
 
 #define WINDOW_PERIODS 128u
@@ -28,6 +29,7 @@ static void put_in_force(struct drive *drive, num_t change)
     struct motor_params motor = drive->settings.motor;
 
     motor.torque_constant_Nm_A *= 1.0 + num_to_double(change);
+    motor.inductance_H = inductance_in_force_H(drive);
     drive->base = per_unit_base(&motor, period_s);
     drive->torque_constant.in_force = change;
 

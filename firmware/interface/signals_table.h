@@ -59,6 +59,8 @@
          "by what share phase a's resistance, as measured, is above that of both, and b's below")  \
     REAL(0x2329, torque_constant_change, torque_constant.change, "", UNTRACED, ratio, "",          \
          "by what share the torque constant that motion shows is above that of the settings")      \
+    REAL(0x232a, inductance_change, enabling.inductance_change, "", UNTRACED, ratio, "",           \
+         "by what share the inductance found while enabling is above that of the settings")        \
     COUNT(0x2305, reference_underruns, planner.underruns, "underruns", UNTRACED,                   \
           "sines and set-points whose continuation came too late")                                 \
     COUNT(                                                                                         \

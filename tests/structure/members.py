@@ -22,7 +22,8 @@ VIEW = "firmware/drive/interrupt_view.h"
 
 # Sources that write the members of a block. Those of the others are written by what knows no drive.
 WRITERS = {
-    "params": ["drive", "estimator_design", "settings_in_motion", "belt_watch", "torque_constant"],
+    "params": ["drive", "estimator_design", "settings_in_motion", "belt_watch", "torque_constant",
+               "inductance"],
     "belt_watch": ["belt_watch"],
     "torque_constant": ["torque_constant"],
     "settings": ["drive", "settings_in_motion"],
@@ -31,7 +32,7 @@ WRITERS = {
     "synchronism": ["synchronism", "settings_in_motion"],
     "input": ["prepared_input"],
     "standstill": ["standstill_angle"],
-    "enabling": ["drive", "encoder_aligning", "phase_balancing", "state_machine"],
+    "enabling": ["drive", "encoder_aligning", "inductance", "phase_balancing", "state_machine"],
     "thermal": ["thermal_watch"],
     "planner": ["planner"],
     "planned_end": ["planned_end"],

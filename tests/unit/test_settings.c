@@ -439,7 +439,8 @@ static void test_names_are_spelt_as_scenarios_and_the_serial_line_do(void)
                                                      "current-sensor-b",
                                                      "motor-overheated",
                                                      "bridge-overheated",
-                                                     "encoder"};
+                                                     "encoder",
+                                                     "inductance"};
 
     for (int i = 0; i < DRIVE_STATES; i++) {
         TEST_ASSERT_EQUAL_STRING(states[i], drive_state_name((enum drive_state)i));

@@ -209,12 +209,27 @@ static void test_phases_that_carry_no_current_are_not_let_pass(void)
     has_fault(DRIVE_FAULT_PHASE_IMBALANCE);
 }
 
+static void test_a_current_that_does_not_swing_as_that_of_a_winding_is_not_let_pass(void)
+{
+    settings.balance_phases = true;
+    settings.calibrate_offsets = false;
+    power_up();
+    samples.current_a = 2048 + 360;
+    samples.current_b = 2048 + 360;
+    samples.phase_voltage_a = 26 * 10;
+    samples.phase_voltage_b = 26 * 10;
+    post_kind(DRIVE_COMMAND_ENABLE);
+    run(HOLD_PERIODS + 2u + phase_balance_periods(&drive.enabling.balance_params));
+    has_fault(DRIVE_FAULT_INDUCTANCE);
+}
+
 /* Their sensor says the same in both phases wherever the rotor is held. */
 static void test_the_phases_are_balanced_behind_the_hold(void)
 {
     const coef_t before = drive.params.measurement.current;
 
     settings.balance_phases = true;
+    settings.identify_inductance = false; /* nothing swings */
     settings.calibrate_offsets = false;
     power_up();
     samples.current_a = 2048 + 360;
@@ -1079,6 +1094,7 @@ int main(void)
     RUN_TEST(test_an_encoder_whose_counts_do_not_follow_the_alignment_ends_it_in_a_fault);
     RUN_TEST(test_without_hold_on_enable_operation_follows_the_calibration);
     RUN_TEST(test_phases_that_carry_no_current_are_not_let_pass);
+    RUN_TEST(test_a_current_that_does_not_swing_as_that_of_a_winding_is_not_let_pass);
     RUN_TEST(test_the_phases_are_balanced_behind_the_hold);
     RUN_TEST(test_without_either_the_drive_is_ready_at_once);
     RUN_TEST(test_the_hold_current_is_in_when_the_alignment_ends);

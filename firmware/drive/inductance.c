@@ -1,0 +1,75 @@
+#include "firmware/drive/inductance.h"
+
+#include "firmware/drive/drive.h"
+#include "firmware/numeric/quotient.h"
+
+/*
+ * What iron takes of an inductance is not known better than this: one that is nearer is that of the
+ * settings. Of iron that takes nothing 6 % too much has been added (inductance_measurement.c).
+ */
+#define CONFIRMED_BELOW NUM(-0.03)
+#define CONFIRMED_ABOVE NUM(0.075)
+
+/* At once: of what is in force. */
+#define MORE_MAX NUM(0.45)
+
+static void scale_gains(struct invariant_ekf_gain_set *gain, num_t more)
+{
+    gain->speed_q = coef_more(gain->speed_q, more);
+    gain->angle_d = coef_more(gain->angle_d, more);
+    gain->angle_q = coef_more(gain->angle_q, more);
+    gain->load_q = coef_more(gain->load_q, more);
+    gain->bias_q = coef_more(gain->bias_q, more);
+    gain->resistance = coef_more(gain->resistance, more);
+}
+
+static void scale_model(struct motor_model_params *model, num_t less)
+{
+    const coef_t per_resistance = coef_more(model->admittance_per_resistance, less);
+
+    model->rate = coef_more(model->rate, less);
+    model->admittance_per_resistance = coef_more(per_resistance, less);
+    model->nominal_admittance += num_mul(model->nominal_admittance, less);
+}
+
+/* What has been designed, from what is in force to what is above that by a share `more`; `less`:
+   1 / (1 + more) - 1. */
+static void put_in_force(struct drive_params *params, num_t more, num_t less)
+{
+    struct invariant_ekf_params *ekf = &params->estimator.invariant_ekf;
+
+    scale_model(&params->model, less);
+    ekf->model = params->model;
+    scale_gains(&ekf->moving, more);
+    scale_gains(&ekf->holding, more);
+    scale_gains(&ekf->unloaded, more);
+    scale_gains(&ekf->following, more);
+    params->current_control.proportional = coef_more(params->current_control.proportional, more);
+    params->current_control.reactance = coef_more(params->current_control.reactance, more);
+    params->current_control.unwind = coef_more(params->current_control.unwind, less);
+}
+
+bool inductance_put(struct drive *drive, num_t more)
+{
+    const num_t before = drive->enabling.inductance_change;
+    const num_t found = before + more + num_mul(before, more);
+
+    if (num_abs(more) > MORE_MAX || found < NUM(-INDUCTANCE_LESS_MAX) ||
+        found > NUM(INDUCTANCE_MORE_MAX)) {
+        return false;
+    }
+    const bool confirmed = found > CONFIRMED_BELOW && found < CONFIRMED_ABOVE;
+
+    drive->enabling.inductance_change = confirmed ? NUM(0.0) : found;
+    const num_t by = confirmed ? before : more;
+    const num_t back = quotient(-by, NUM(1.0) + by); /* 1 / (1 + by) - 1 */
+
+    put_in_force(&drive->params, confirmed ? back : by, confirmed ? by : back);
+    return true;
+}
+
+double inductance_in_force_H(const struct drive *drive)
+{
+    return drive->settings.motor.inductance_H *
+           (1.0 + num_to_double(drive->enabling.inductance_change));
+}
