@@ -232,7 +232,7 @@ static void test_what_runs_between_switched_off_and_operation(void)
     BEGINS_ANEW(struct phase_balance, phase_balance_start(block, 5u),
                 PADDING(struct phase_balance, stage, held),
                 PADDING(struct phase_balance, periods, mean),
-                LEAVES_UP_TO(struct phase_balance, difference, reciprocal));
+                LEAVES_UP_TO(struct phase_balance, difference, sum));
     BEGINS_ANEW(struct standstill_pulses,
                 standstill_pulses_reset(block, &drive.standstill.params, NUM(0.1)),
                 PADDING(struct standstill_pulses, at_rest, command),
