@@ -127,7 +127,6 @@
           AT_ENABLE, "quadrature counts; 0: as the board has it")                                  \
     COUNT(0x2125, node_id, "", FIXED(1.0), FIXED(127.0), FIXED(1.0), AT_ENABLE,                    \
           "the drive's number on a fieldbus; acts when the channel is opened")                     \
-    FLAG(0x2126, modbus_rtu, false, AT_ENABLE, "the serial line carries Modbus RTU from power-up") \
     REAL(0x2132, encoder_zero_rad, "rad", FIXED(-1e4), FIXED(1e4), FIXED(0.0), AT_ENABLE,          \
          "rotor angle where count 0 begins")                                                       \
     REAL(0x2133, initial_load_torque_Nm, "N m", FIXED(-100.0), FIXED(100.0), FIXED(0.0),           \
@@ -135,6 +134,7 @@
     FLAG(0x2134, encoder_zero_known, false, AT_ENABLE,                                             \
          "absolute encoder or indexed: the rotor's angle follows from the count, else it is "      \
          "initial_angle_rad at the end of the hold")                                               \
+    FLAG(0x2126, modbus_rtu, false, AT_ENABLE, "the serial line carries Modbus RTU from power-up") \
     REAL(0x2135, initial_torque_constant_change, "", FIXED(-0.2), FIXED(0.2), FIXED(0.0),          \
          AT_ENABLE, "where torque_constant_change begins: store keeps here what was learned")      \
     FLAG(0x2140, calibrate_offsets, true, AT_ENABLE,                                               \
