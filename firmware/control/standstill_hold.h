@@ -85,10 +85,10 @@ void standstill_hold_follow(struct standstill_hold *hold, angle_t reference, num
 
 /* Every fourth period of a hold is for its slow work: where it leads its rotor the frame turns,
    where it rests the resistance is adapted. What else takes its time and can wait leaves it alone.
- */
-static inline bool standstill_hold_works_in(uint32_t period)
+   `periods`: in this state, whenever the drive was switched on. */
+static inline bool standstill_hold_works_in(uint32_t periods)
 {
-    return (period & 3u) == 1u;
+    return (periods & 3u) == 1u;
 }
 
 /* One period of the ramp: moves the d current by at most `step` towards `target`; returns it. */

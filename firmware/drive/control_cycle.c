@@ -9,6 +9,7 @@
  */
 #include "firmware/drive/modulate.h"
 #include "firmware/drive/drive.h"
+#include "firmware/drive/phase_balancing.h"
 #include "firmware/drive/position_detecting.h"
 #include "firmware/drive/prepared_input.h"
 #include "firmware/drive/standstill_angle.h"
@@ -225,7 +226,8 @@ static void lead_rotor(struct drive *drive)
 /* Whether a hold may do its slow work. */
 IN_PLACE bool hold_works(const struct drive *drive)
 {
-    return RARE(standstill_hold_works_in(drive->supervision.period)) &&
+    return RARE(standstill_hold_works_in(drive->supervision.period -
+                                         drive->supervision.state_since)) &&
            !state_machine_period_is_claimed(drive);
 }
 
@@ -233,7 +235,8 @@ IN_PLACE bool hold_works(const struct drive *drive)
 __attribute__((noinline)) static void work_on_hold(struct drive *drive)
 {
     state_machine_claim_period(drive);
-    estimator_adapt_resistance(&drive->estimator, &drive->params.estimator, drive->hold.leads);
+    estimator_adapt_resistance(&drive->estimator, &drive->params.estimator,
+                               drive->hold.leads || phase_balancing_swings(drive));
     if (drive->hold.leads) {
         lead_rotor(drive);
     }

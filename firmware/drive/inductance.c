@@ -51,6 +51,7 @@ static void put_in_force(struct drive_params *params, num_t more, num_t less)
 
 bool inductance_put(struct drive *drive, num_t more)
 {
+    struct winding *winding = &drive->estimator.estimate.winding;
     const num_t before = drive->enabling.inductance_change;
     const num_t found = before + more + num_mul(before, more);
 
@@ -65,6 +66,7 @@ bool inductance_put(struct drive *drive, num_t more)
     const num_t back = quotient(-by, NUM(1.0) + by); /* 1 / (1 + by) - 1 */
 
     put_in_force(&drive->params, confirmed ? back : by, confirmed ? by : back);
+    winding_set_resistance(winding, &drive->params.model, winding->resistance);
     return true;
 }
 

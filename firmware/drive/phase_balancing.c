@@ -26,11 +26,11 @@ uint32_t phase_balancing_design(struct drive *drive, const struct drive_settings
         return 0u;
     }
     drive->enabling.balance_params = phase_balance_design(&task);
-    drive->enabling.inductance_params =
-        inductance_measurement_design(&drive->base, settings->hold_current_A,
-                                      settings->identify_inductance && !settings->standstill_pulses
-                                          ? drive->enabling.balance_params.look
-                                          : 0u);
+    drive->enabling.inductance_params = inductance_measurement_design(
+        &drive->base, settings->hold_current_A,
+        FINDS_INDUCTANCE && settings->identify_inductance && !settings->standstill_pulses
+            ? drive->enabling.balance_params.look
+            : 0u);
     return phase_balance_periods(&drive->enabling.balance_params);
 }
 
@@ -87,13 +87,15 @@ enum phase_balancing phase_balancing_step(struct drive *drive, const struct hal_
     const struct phase_balance_params *params = &drive->enabling.balance_params;
     struct channels winding = {{NUM(0.0), NUM(0.0)}, {NUM(0.0), NUM(0.0)}};
 
-    if (drive->enabling.inductance.complete) {
+    if (FINDS_INDUCTANCE && drive->enabling.inductance.complete) {
         return put_inductance(drive);
     }
     if (phase_balance_looks(balance)) {
         winding =
             measurement_step(&drive->measurement, &drive->params.measurement, samples).winding;
-        swing_current(drive, &winding);
+        if (FINDS_INDUCTANCE) {
+            swing_current(drive, &winding);
+        }
     }
     const enum phase_balance_event event = phase_balance_step(balance, params, &winding);
 
@@ -103,7 +105,7 @@ enum phase_balancing phase_balancing_step(struct drive *drive, const struct hal_
         break;
     case PHASES_COMPARED:
         scale_currents(drive);
-        drive->enabling.inductance.complete = true;
+        drive->enabling.inductance.complete = drive->enabling.inductance_params.half != 0u;
         break;
     case PHASES_AT_FINAL:
         return PHASES_ARE_BALANCED;

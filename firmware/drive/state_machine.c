@@ -244,6 +244,7 @@ static void take_plan(struct drive *drive, uint32_t wait)
     const struct motion_plan *plan = command_queue_preemption(queue, period + 1u, &wait);
 
     if (plan != NULL) {
+        state_machine_claim_period(drive);
         preempt(drive, plan);
     } else {
         command_queue_rest(queue, period, wait);
@@ -260,6 +261,7 @@ __attribute__((noinline)) static void take_in_turn(struct drive *drive, uint32_t
     struct queued_command *command = command_queue_due(queue, period + 1u, &wait);
 
     if (command != NULL && obey(drive, command)) {
+        state_machine_claim_period(drive);
         command_queue_drop(queue);
         command_queue_rest_if_empty(queue, period, urgent_wait);
     } else {
@@ -277,6 +279,7 @@ __attribute__((noinline)) static void take_urgent(struct drive *drive)
     if (command_queue_take_urgent(queue, &queue->disable, period, &wait)) {
         disable(drive);
     } else if (command_queue_take_urgent(queue, &queue->stop, period + 1u, &wait)) {
+        state_machine_claim_period(drive);
         reference_stop(&drive->reference);
         command_queue_stop_acted(queue, period + 1u);
         command_queue_rest_if_empty(queue, period, wait);
@@ -287,12 +290,12 @@ __attribute__((noinline)) static void take_urgent(struct drive *drive)
 
 /*
  * One command a period, and in the next the rest is looked at: short worst case. The reference has
- * been moved to S(k+1): what is asked of it for the period that follows is put to it now.
+ * been moved to S(k+1): what is asked of it for the period that follows is put to it now. What acts
+ * claims the period; that something is looked at depends on when the background has posted it.
  */
 static void take_commands(struct drive *drive)
 {
     command_queue_look(&drive->commands, drive->supervision.period);
-    state_machine_claim_period(drive);
     if (RARE(drive->supervision.asked_for != DRIVE_FAULT_NONE)) {
         enter_fault_asked_for(drive);
     } else if (RARE(command_queue_holds_urgent(&drive->commands))) {

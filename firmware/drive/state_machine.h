@@ -25,7 +25,8 @@ static inline uint32_t state_machine_begin_period(struct drive *drive)
 
 /*
  * At most one rare thing a period, so that no interrupt pays for two: what has its time, commands
- * and what begins with them, claims the period, and what can wait leaves a claimed one alone.
+ * that act and what begins with them, claims the period, and what can wait leaves a claimed one
+ * alone.
  */
 static inline void state_machine_claim_period(struct drive *drive)
 {

@@ -96,10 +96,11 @@ static inline void estimator_begin_hold(struct estimator *estimator,
 /* Held, every few periods: what a hold shows of the resistance. Only this one leaves it until then.
  */
 static inline void estimator_adapt_resistance(struct estimator *estimator,
-                                              const struct estimator_params *params, bool leads)
+                                              const struct estimator_params *params, bool disturbed)
 {
     if (estimator_is(params, ESTIMATOR_INVARIANT_EKF)) {
-        invariant_ekf_adapt_resistance(&estimator->invariant_ekf, &params->invariant_ekf, leads);
+        invariant_ekf_adapt_resistance(&estimator->invariant_ekf, &params->invariant_ekf,
+                                       disturbed);
     }
 }
 

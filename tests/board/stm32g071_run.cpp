@@ -69,6 +69,7 @@ class Reference
 
         hal_sil_init(&hal_, &facts);
         drive_settings_default(&settings, &motor);
+        settings.identify_inductance = false; /* the image has no room for it */
         if (!image_.init(drive_.data(), &hal_.board, &settings, error)) {
             throw std::runtime_error(error);
         }

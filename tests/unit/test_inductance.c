@@ -213,9 +213,12 @@ static void test_in_force_the_model_is_that_of_the_inductance_and_each_gain_goes
 static void test_what_is_found_again_and_again_counts_from_the_settings(void)
 {
     const struct drive_params nominal = designed_for(bench_params.inductance_H);
+    const double admittance = num_to_double(drive.estimator.estimate.winding.admittance);
 
     TEST_ASSERT_TRUE(inductance_put(&drive, NUM(0.2)));
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.2, signals().inductance_change);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01 * admittance, admittance / 1.2,
+                              num_to_double(drive.estimator.estimate.winding.admittance));
     TEST_ASSERT_TRUE(inductance_put(&drive, NUM(-0.25)));
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, -0.1, signals().inductance_change);
     is_scaled(0.9, drive.params.current_control.proportional, nominal.current_control.proportional);
