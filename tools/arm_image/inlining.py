@@ -42,6 +42,8 @@ class Inlining:
     def _collect(self, unit, die, depth, spans):
         for child in die.iter_children():
             below = depth
+            if _is_discarded(child):
+                continue
             if child.tag in CODE:
                 ranges = [r for r in self._ranges(unit, child) if r[0] < r[1]]
                 frame = self._frame(child) if ranges else None
@@ -108,6 +110,12 @@ class Inlining:
                 names[index] = os.path.relpath(full, self._root) if own else full
             self._files[unit.cu_offset] = names
         return self._files[unit.cu_offset]
+
+
+def _is_discarded(die):
+    """Of a function that the linker has left out only the debug information stays, at address 0."""
+    low = die.attributes.get("DW_AT_low_pc")
+    return die.tag == "DW_TAG_subprogram" and low is not None and low.value == 0
 
 
 def _flatten(spans):
