@@ -9,7 +9,6 @@
  */
 #include "firmware/drive/modulate.h"
 #include "firmware/drive/drive.h"
-#include "firmware/drive/phase_balancing.h"
 #include "firmware/drive/position_detecting.h"
 #include "firmware/drive/prepared_input.h"
 #include "firmware/drive/standstill_angle.h"
@@ -235,8 +234,7 @@ IN_PLACE bool hold_works(const struct drive *drive)
 __attribute__((noinline)) static void work_on_hold(struct drive *drive)
 {
     state_machine_claim_period(drive);
-    estimator_adapt_resistance(&drive->estimator, &drive->params.estimator,
-                               drive->hold.leads || phase_balancing_swings(drive));
+    estimator_adapt_resistance(&drive->estimator, &drive->params.estimator, drive->hold.leads);
     if (drive->hold.leads) {
         lead_rotor(drive);
     }

@@ -6,7 +6,6 @@
 #define STEADYSTEP_PHASE_BALANCING_H
 
 #include "firmware/drive/drive.h"
-#include "firmware/drive/inductance.h"
 
 enum phase_balancing {
     PHASES_ARE_BEING_BALANCED,
@@ -25,14 +24,5 @@ __attribute__((noinline)) void phase_balancing_start(struct drive *drive);
 /* One period: the hold's angle and speed, and what is made of the samples of S(k). */
 __attribute__((noinline)) enum phase_balancing
 phase_balancing_step(struct drive *drive, const struct hal_samples *samples);
-
-/* The hold's current swings: with an inductance that is not the model's its innovations show a
-   resistance that is none. */
-static inline bool phase_balancing_swings(const struct drive *drive)
-{
-    return FINDS_INDUCTANCE && drive->supervision.state == DRIVE_ALIGNING &&
-           drive->enabling.inductance_params.half != 0u &&
-           phase_balance_looks(&drive->enabling.balance);
-}
 
 #endif

@@ -96,11 +96,10 @@ static inline void estimator_begin_hold(struct estimator *estimator,
 /* Held, every few periods: what a hold shows of the resistance. Only this one leaves it until then.
  */
 static inline void estimator_adapt_resistance(struct estimator *estimator,
-                                              const struct estimator_params *params, bool disturbed)
+                                              const struct estimator_params *params, bool leads)
 {
     if (estimator_is(params, ESTIMATOR_INVARIANT_EKF)) {
-        invariant_ekf_adapt_resistance(&estimator->invariant_ekf, &params->invariant_ekf,
-                                       disturbed);
+        invariant_ekf_adapt_resistance(&estimator->invariant_ekf, &params->invariant_ekf, leads);
     }
 }
 

@@ -160,13 +160,13 @@ void invariant_ekf_watch_hold(struct invariant_ekf *ekf, const struct invariant_
 #define ADAPTING_SUM_MAX NUM(8.0)
 
 void invariant_ekf_adapt_resistance(struct invariant_ekf *ekf,
-                                    const struct invariant_ekf_params *params, bool disturbed)
+                                    const struct invariant_ekf_params *params, bool leads)
 {
     struct estimate *x = &ekf->estimate;
     const num_t sum = num_headroom(ekf->innovation_sum, ADAPTING_SUM_MAX);
 
     invariant_ekf_carry_sum(ekf);
-    if (!disturbed) {
+    if (!leads) {
         const num_t i_d = park(x->next.current, x->next.frame).d;
         const num_t change = num_mul_coef(num_mul(sum, i_d), params->holding.resistance);
 

@@ -127,10 +127,9 @@ static inline num_t invariant_ekf_take_innovation_sum(struct invariant_ekf *ekf,
 }
 
 /* In hold, every few periods, at their end: the resistance by the innovations since the last call.
-   Not if something else shows in nu_d: the lag of a rotor that is led behind its frame, or a
-   current that swings. */
+   Not if the hold leads its rotor, whose lag behind its frame shows in nu_d, too. */
 void invariant_ekf_adapt_resistance(struct invariant_ekf *ekf,
-                                    const struct invariant_ekf_params *params, bool disturbed);
+                                    const struct invariant_ekf_params *params, bool leads);
 
 /* A load step in a settled hold. Of the offset stays what has lasted: the rest may have been
  * motion. */
