@@ -5,6 +5,7 @@
 #ifndef STEADYSTEP_PLANT_INTEGRATOR_H
 #define STEADYSTEP_PLANT_INTEGRATOR_H
 
+#include "sil/plant/in_place.h"
 #include "sil/plant/motor.h"
 #include "sil/plant/taylor.h"
 
@@ -41,8 +42,8 @@ struct Terminals {
 
 /* Coefficients k + 1 and later from those before; the equations are in motor.h. */
 template <bool floating, int k, int order>
-[[gnu::always_inline]] inline void expand(Series<order> &x, const MotorCoefficients &motor,
-                                          Phases voltage_V, Phases conducting)
+IN_PLACE void expand(Series<order> &x, const MotorCoefficients &motor, Phases voltage_V,
+                     Phases conducting)
 {
     const MotorCoefficients::Share &share = motor.share[k];
     Phases current = share.resistance * x.current[k];
@@ -67,9 +68,8 @@ template <bool floating, int k, int order>
 }
 
 template <bool floating, int order>
-[[gnu::always_inline]] inline void expand(Series<order> &x, const MotorState &start,
-                                          const MotorCoefficients &motor, Phases voltage_V,
-                                          Phases conducting)
+IN_PLACE void expand(Series<order> &x, const MotorState &start, const MotorCoefficients &motor,
+                     Phases voltage_V, Phases conducting)
 {
     x.current[0] = start.current_A;
     x.q_axis[0] = start.q_axis;
@@ -139,8 +139,8 @@ void add_energies(const Course &course, const Series<order> &x, const Segment &s
 
 /* The state at the end of the step. */
 template <bool track_energy, int order>
-[[gnu::always_inline]] inline void accept(const Course &course, const Series<order> &x,
-                                          const Segment &segment, Phases voltage_V, double h)
+IN_PLACE void accept(const Course &course, const Series<order> &x, const Segment &segment,
+                     Phases voltage_V, double h)
 {
     const Phases step = in_both_lanes(h);
     course.integrals.voltage_Vs += step * voltage_V;
@@ -232,8 +232,7 @@ template <int order, bool track_energy>
 
 /* A step in dead time: advances by h or to the first event before; returns the time that passed. */
 template <int order, bool track_energy>
-[[gnu::always_inline]] inline double step_in_dead_time(const Course &course, const Segment &segment,
-                                                       double h)
+IN_PLACE double step_in_dead_time(const Course &course, const Segment &segment, double h)
 {
     const Phases before_A = course.state.current_A;
     const Phases diodes_V = segment.if_negative_V - segment.if_positive_V;
@@ -253,7 +252,7 @@ template <int order, bool track_energy>
 }
 
 template <int order, bool track_energy>
-[[gnu::always_inline]] inline double step(const Course &course, const Segment &segment, double h)
+IN_PLACE double step(const Course &course, const Segment &segment, double h)
 {
     if (segment.dead_time) {
         return step_in_dead_time<order, track_energy>(course, segment, h);
@@ -266,8 +265,7 @@ template <int order, bool track_energy>
 
 /* To the end of a stretch of constant switches, in steps of at most longest_s. */
 template <int order, bool track_energy>
-[[gnu::always_inline]] inline void cross(const Course &course, const Segment &segment,
-                                         double longest_s)
+IN_PLACE void cross(const Course &course, const Segment &segment, double longest_s)
 {
     double left_s = segment.duration_s;
     while (left_s > 0.0) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sil/plant/elementary.h"
+#include "sil/plant/in_place.h"
 #include "sil/plant/integrator.h"
 #include "sil/plant/real_motor.h"
 #include "sil/plant/taylor.h"
@@ -86,14 +87,12 @@ struct Course {
 
 /* Sum of F_j times coefficient k of psi^j. */
 template <int k, typename X, typename Turned, int... j>
-[[gnu::always_inline]] inline X composed(const X *at, const Turned &turned,
-                                         std::integer_sequence<int, j...>)
+IN_PLACE X composed(const X *at, const Turned &turned, std::integer_sequence<int, j...>)
 {
     return ((at[j + 1] * turned[j + 1][k - 1 - j]) + ...);
 }
 
-template <int k, typename X, typename Turned>
-[[gnu::always_inline]] inline X composed(const X *at, const Turned &turned)
+template <int k, typename X, typename Turned> IN_PLACE X composed(const X *at, const Turned &turned)
 {
     if constexpr (k == 0) {
         return at[0];
@@ -103,8 +102,7 @@ template <int k, typename X, typename Turned>
 }
 
 /* Coefficient k of psi and its powers from the speed's coefficients before it. */
-template <int k, int j, int order, bool belted>
-[[gnu::always_inline]] inline void raise(Series<order, belted> &x)
+template <int k, int j, int order, bool belted> IN_PLACE void raise(Series<order, belted> &x)
 {
     if constexpr (j <= k) {
         x.turned[j][k - j] = cauchy_product<k - j>(x.turned[1], x.turned[j - 1]);
@@ -113,7 +111,7 @@ template <int k, int j, int order, bool belted>
 }
 
 template <int k, int order, bool belted>
-[[gnu::always_inline]] inline void turn(Series<order, belted> &x, const RealCoefficients &motor)
+IN_PLACE void turn(Series<order, belted> &x, const RealCoefficients &motor)
 {
     if constexpr (k > 0) {
         x.turned[1][k - 1] = motor.share[k - 1].teeth * x.omega[k - 1];
@@ -123,7 +121,7 @@ template <int k, int order, bool belted>
 
 /* Coefficient k of the current, the flux's being known. */
 template <bool turning, int k, int order, bool belted>
-[[gnu::always_inline]] inline void magnetise(Series<order, belted> &x, const Magnetics &magnetics)
+IN_PLACE void magnetise(Series<order, belted> &x, const Magnetics &magnetics)
 {
     x.flux_squared[k] = cauchy_square<k>(x.flux);
     x.current[k] =
@@ -138,8 +136,7 @@ template <bool turning, int k, int order, bool belted>
 
 /* Coefficient k of the belt's pull at the rotor, over its inertia; k + 1 of what is behind it. */
 template <int k, int order, bool belted>
-[[gnu::always_inline]] inline Phases pull_of_belt(Series<order, belted> &x,
-                                                  const RealCoefficients &motor)
+IN_PLACE Phases pull_of_belt(Series<order, belted> &x, const RealCoefficients &motor)
 {
     constexpr double part = 1.0 / (k + 1);
     const Phases ahead = x.load_omega[k] - x.omega[k];
@@ -155,8 +152,7 @@ template <int k, int order, bool belted>
 
 /* Coefficients k + 1 and later from those before; the equations are in real_motor.h. */
 template <bool floating, bool turning, int k, int order, bool belted>
-[[gnu::always_inline]] inline void expand(Series<order, belted> &x, const RealCoefficients &motor,
-                                          const Mode &mode)
+IN_PLACE void expand(Series<order, belted> &x, const RealCoefficients &motor, const Mode &mode)
 {
     const RealCoefficients::Share &share = motor.share[k];
     const Magnetics &magnetics = motor.magnetics;
@@ -220,8 +216,8 @@ template <bool floating, bool turning, int k, int order, bool belted>
 
 /* Taylor coefficients j and later in psi, of f and of the detent torque. */
 template <int j, int order, bool belted>
-[[gnu::always_inline]] inline void differentiate(Series<order, belted> &x,
-                                                 const RealCoefficients &motor, const Axes &axes)
+IN_PLACE void differentiate(Series<order, belted> &x, const RealCoefficients &motor,
+                            const Axes &axes)
 {
     if constexpr (j < order) {
         const RealCoefficients::InAngle &share = motor.in_angle[j];
@@ -239,8 +235,8 @@ template <int j, int order, bool belted>
 
 /* Coefficients 0, and those in psi. */
 template <int order, bool belted>
-[[gnu::always_inline]] inline void start(Series<order, belted> &x, const RealCoefficients &motor,
-                                         const RealMotorState &state)
+IN_PLACE void start(Series<order, belted> &x, const RealCoefficients &motor,
+                    const RealMotorState &state)
 {
     const Magnetics &magnetics = motor.magnetics;
     const Axes axes = axes_of(state.axis);
@@ -273,9 +269,8 @@ struct Terminal {
 
 /* Of a phase, with a leg in dead time or not: see integrator::Terminal. */
 template <int order, bool belted>
-[[gnu::always_inline]] inline Terminal
-terminal(int phase, const Segment &segment, const Series<order, belted> &x,
-         const RealCoefficients &motor, const RealMotorState &state)
+IN_PLACE Terminal terminal(int phase, const Segment &segment, const Series<order, belted> &x,
+                           const RealCoefficients &motor, const RealMotorState &state)
 {
     const double legs = segment.diode_V[phase];
     if (legs == 0.0) {
@@ -302,9 +297,8 @@ terminal(int phase, const Segment &segment, const Series<order, belted> &x,
 
 /* At rest the rotor sticks as long as friction can hold it. */
 template <int order, bool belted>
-[[gnu::always_inline]] inline void set_friction(Mode &mode, const Series<order, belted> &x,
-                                                const RealCoefficients &motor,
-                                                const RealMotorState &state)
+IN_PLACE void set_friction(Mode &mode, const Series<order, belted> &x,
+                           const RealCoefficients &motor, const RealMotorState &state)
 {
     mode.stuck = false;
     if (motor.coulomb == 0.0) {
@@ -323,9 +317,8 @@ template <int order, bool belted>
 }
 
 template <int order, bool belted>
-[[gnu::always_inline]] inline void set_bus(Mode &mode, const Series<order, belted> &x,
-                                           const RealCoefficients &motor,
-                                           const RealMotorState &state)
+IN_PLACE void set_bus(Mode &mode, const Series<order, belted> &x, const RealCoefficients &motor,
+                      const RealMotorState &state)
 {
     const Supply &supply = motor.supply;
     mode.per_capacitance = supply.per_capacitance;
@@ -363,9 +356,8 @@ inline void break_open(Mode &mode, const RealMotorState &state)
 
 /* Every member by itself: clearing the structure first takes a sixth of a step's time. */
 template <int order, bool belted>
-[[gnu::always_inline]] inline Mode mode_of(const Series<order, belted> &x, const Segment &segment,
-                                           const RealCoefficients &motor,
-                                           const RealMotorState &state)
+IN_PLACE Mode mode_of(const Series<order, belted> &x, const Segment &segment,
+                      const RealCoefficients &motor, const RealMotorState &state)
 {
     Mode mode;
     if (segment.dead_time) {
@@ -446,8 +438,7 @@ template <int order, bool belted>
 }
 
 /* The bus without a load goes to the source's voltage. */
-template <bool track_energy>
-[[gnu::always_inline]] inline void relax(const Course &course, double h)
+template <bool track_energy> IN_PLACE void relax(const Course &course, double h)
 {
     const Supply &supply = course.motor.supply;
     const double below_V = supply.source_V - course.state.bus_V;
@@ -484,9 +475,8 @@ Phases induced_V(const Series<order, belted> &x, const Magnetics &magnetics, dou
 
 /* Voltage at the bridge of the phases at t = h, where the bus has bus_V. */
 template <int order, bool belted>
-[[gnu::always_inline]] inline Phases
-terminal_V(const Course &course, const Series<order, belted> &x, const Segment &segment,
-           const Mode &mode, double h, Phases bus_V)
+IN_PLACE Phases terminal_V(const Course &course, const Series<order, belted> &x,
+                           const Segment &segment, const Mode &mode, double h, Phases bus_V)
 {
     Phases voltage_V = mode.share * bus_V + mode.drop_V;
     if (mode.floating) {
@@ -502,9 +492,8 @@ terminal_V(const Course &course, const Series<order, belted> &x, const Segment &
 
 /* Behind the filter at t = h, of a voltage that is taken as a straight line within the step. */
 template <int order, bool belted>
-[[gnu::always_inline]] inline void filter(const Course &course, const Series<order, belted> &x,
-                                          const Segment &segment, const Mode &mode, double h,
-                                          Phases bus_V)
+IN_PLACE void filter(const Course &course, const Series<order, belted> &x, const Segment &segment,
+                     const Mode &mode, double h, Phases bus_V)
 {
     const Phases first_V = terminal_V(course, x, segment, mode, 0.0, x.bus[0]);
     const Phases last_V = terminal_V(course, x, segment, mode, h, bus_V);
@@ -516,8 +505,8 @@ template <int order, bool belted>
 
 /* The state at the end of the step. */
 template <bool track_energy, bool turning, int order, bool belted>
-[[gnu::always_inline]] inline void accept(const Course &course, const Series<order, belted> &x,
-                                          const Segment &segment, const Mode &mode, double h)
+IN_PLACE void accept(const Course &course, const Series<order, belted> &x, const Segment &segment,
+                     const Mode &mode, double h)
 {
     RealMotorState &state = course.state;
     const Phases span_s = in_both_lanes(h);
@@ -702,9 +691,8 @@ inline void hold_open(RealMotorState &state, const Magnetics &magnetics, int pha
 
 /* Whether a mode ends within a step, which is the exception. */
 template <bool turning, bool dead_time, int order, bool belted>
-[[gnu::always_inline]] inline bool
-mode_ends(const Series<order, belted> &x, const RealCoefficients &motor,
-          const RealMotorState &state, const Mode &mode, double h)
+IN_PLACE bool mode_ends(const Series<order, belted> &x, const RealCoefficients &motor,
+                        const RealMotorState &state, const Mode &mode, double h)
 {
     const Supply &supply = motor.supply;
     const Phases span_s = in_both_lanes(h);
@@ -731,8 +719,7 @@ mode_ends(const Series<order, belted> &x, const RealCoefficients &motor,
 
 /* All series; the current's last coefficient where somebody wants it. */
 template <bool floating, bool turning, bool whole_current, int order, bool belted>
-[[gnu::always_inline]] inline void expand_all(Series<order, belted> &x,
-                                              const RealCoefficients &motor, const Mode &mode)
+IN_PLACE void expand_all(Series<order, belted> &x, const RealCoefficients &motor, const Mode &mode)
 {
     expand<floating, turning, 0>(x, motor, mode);
     if constexpr (whole_current) {
@@ -806,9 +793,8 @@ template <int order, bool belted, bool track_energy>
 
 /* A step in which no phase floats; returns the time that passed. */
 template <bool turning, bool dead_time, bool track_energy, int order, bool belted>
-[[gnu::always_inline]] inline double step_through(const Course &course, Series<order, belted> &x,
-                                                  const Segment &segment, const Mode &mode,
-                                                  double h)
+IN_PLACE double step_through(const Course &course, Series<order, belted> &x, const Segment &segment,
+                             const Mode &mode, double h)
 {
     expand_all<false, turning, track_energy || dead_time>(x, course.motor, mode);
     if (mode_ends<turning, dead_time>(x, course.motor, course.state, mode, h)) {
@@ -820,7 +806,7 @@ template <bool turning, bool dead_time, bool track_energy, int order, bool belte
 
 /* Advances by h or to the first event before; returns the time that passed. */
 template <int order, bool belted, bool track_energy, bool dead_time>
-[[gnu::always_inline]] inline double step(const Course &course, const Segment &segment, double h)
+IN_PLACE double step(const Course &course, const Segment &segment, double h)
 {
     Series<order, belted> x;
     start(x, course.motor, course.state);
@@ -834,8 +820,7 @@ template <int order, bool belted, bool track_energy, bool dead_time>
 
 /* To the end of a stretch of constant switches, in steps of at most longest_s. */
 template <int order, bool belted, bool track_energy>
-[[gnu::always_inline]] inline void cross(const Course &course, const Segment &segment,
-                                         double longest_s)
+IN_PLACE void cross(const Course &course, const Segment &segment, double longest_s)
 {
     double left_s = segment.duration_s;
     while (left_s > 0.0) {

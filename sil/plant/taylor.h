@@ -2,6 +2,8 @@
 #ifndef STEADYSTEP_PLANT_TAYLOR_H
 #define STEADYSTEP_PLANT_TAYLOR_H
 
+#include "sil/plant/in_place.h"
+
 namespace plant
 {
 
@@ -37,7 +39,7 @@ template <int k, typename X> inline auto cauchy_square(const X *x)
  * it is known. A recursion, because a compiler unrolls a loop only at its highest level.
  */
 template <int order, int k, typename X, typename Time>
-[[gnu::always_inline]] inline X terms_from(X total, const X *x, Time h, Time power)
+IN_PLACE X terms_from(X total, const X *x, Time h, Time power)
 {
     total += x[k] * power;
     if constexpr (k < order) {
@@ -48,14 +50,13 @@ template <int order, int k, typename X, typename Time>
 }
 
 /* The series at t = h. */
-template <int order, typename X, typename Time>
-[[gnu::always_inline]] inline X value(const X *x, Time h)
+template <int order, typename X, typename Time> IN_PLACE X value(const X *x, Time h)
 {
     return terms_from<order, 1>(x[0], x, h, h);
 }
 
 template <int order, int k, typename X, typename Time>
-[[gnu::always_inline]] inline X integrals_from(X total, const X *x, Time h, Time power)
+IN_PLACE X integrals_from(X total, const X *x, Time h, Time power)
 {
     total += x[k] * (power * (1.0 / (k + 1)));
     if constexpr (k < order) {
@@ -66,8 +67,7 @@ template <int order, int k, typename X, typename Time>
 }
 
 /* Its integral over 0...h. */
-template <int order, typename X, typename Time>
-[[gnu::always_inline]] inline X integral(const X *x, Time h)
+template <int order, typename X, typename Time> IN_PLACE X integral(const X *x, Time h)
 {
     return integrals_from<order, 1>(x[0] * h, x, h, h * h);
 }
