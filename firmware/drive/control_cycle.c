@@ -192,8 +192,9 @@ static void act_at_once(struct drive *drive)
                       actuation_act(&drive->actuation));
 }
 
-/* The detent torque at the instant of action, learned from what the observer has left of it. A
-   period in which a motion begins or ends has no time to learn. */
+/* The detent torque at the instant of action, learned from what the encoder's observer has left of
+   it: drive_settings_check() grants it to no other. A period in which a motion begins or ends has
+   no time to learn. */
 IN_PLACE void compensate_detent(struct drive *drive, const struct estimate *estimate,
                                 struct prediction *next)
 {
@@ -202,11 +203,9 @@ IN_PLACE void compensate_detent(struct drive *drive, const struct estimate *esti
     detent_compensation_step(&drive->detent, &drive->params.detent, next->rotor.position.fraction,
                              next->frame, next->rotor.speed, estimate->rotor.load_torque,
                              drive->reference.now.moving == drive->reference.next.moving);
-    if (estimator_is(&drive->params.estimator, ESTIMATOR_ENCODER_OBSERVER)) {
-        encoder_observer_set_known_torque(&drive->estimator.encoder_observer,
-                                          &drive->params.estimator.encoder_observer,
-                                          drive->detent.torque);
-    }
+    encoder_observer_set_known_torque(&drive->estimator.encoder_observer,
+                                      &drive->params.estimator.encoder_observer,
+                                      drive->detent.torque);
     next->load_torque_change = drive->detent.torque - before;
     next->rotor.load_torque = estimate->rotor.load_torque + drive->detent.torque;
 }
@@ -405,23 +404,13 @@ __attribute__((noinline)) static void watch_synchronism(struct drive *drive,
     }
 }
 
-/* Apart, so that the voltage of drives without pulses stays in registers. */
-__attribute__((noinline, cold)) static struct phases with_pulses(struct drive *drive,
-                                                                 const struct estimate *estimate,
-                                                                 struct current_control before,
-                                                                 struct phases voltage)
-{
-    standstill_angle_step(drive, estimate, &before, &voltage);
-    return voltage;
-}
-
 /* A law or the hold, with all that only some drives have. */
 static void control_with_all(struct drive *drive, const struct estimate *estimate,
                              struct passage passage, struct hal_outputs *outputs)
 {
     const struct drive_params *params = &drive->params;
     const bool held = drive->hold.active;
-    struct current_control before; /* this period; for pulses alone */
+    const struct dq integral = drive->current_control.integral;
     struct prediction next;
     struct phases voltage;
 
@@ -434,14 +423,15 @@ static void control_with_all(struct drive *drive, const struct estimate *estimat
     if (ESTIMATORS_READ_ENCODER && params->path.detent_learning && !drive->supervision.aligns) {
         compensate_detent(drive, estimate, &next);
     }
-    if (RARE(params->path.standstill_pulses)) {
-        before = drive->current_control;
-    }
     voltage = !held && position_law_gives_voltage(params->position_law)
                   ? regulate_voltage(drive, estimate, &next)
                   : regulate_current(drive, &next, held, params->path.feed_forward);
     if (RARE(params->path.standstill_pulses)) {
-        voltage = with_pulses(drive, estimate, before, voltage);
+        if (held) {
+            voltage = standstill_angle_step(drive, estimate, integral, voltage);
+        } else {
+            standstill_angle_rest(drive);
+        }
     }
     remember_demand(drive, estimate, &next, passage.mid_period, voltage);
     modulate(drive,

@@ -15,9 +15,10 @@ struct measurement_params measurement_design(const struct hal_facts *facts,
 
 void measurement_reset(struct measurement *measurement, const struct measurement_params *params)
 {
-    const struct channels none = {{NUM(0.0), NUM(0.0)}, {NUM(0.0), NUM(0.0)}};
+    const struct phases none = {NUM(0.0), NUM(0.0)};
 
-    measurement->offset = none;
+    measurement->offset.current = none;
+    measurement->offset.voltage = none;
     measurement->current_a = params->current;
     measurement->current_b = params->current;
 }

@@ -27,10 +27,15 @@ struct offset_calibration_params offset_calibration_design(const struct hal_fact
 
 void offset_calibration_reset(struct offset_calibration *calibration)
 {
-    const struct offset_channel zero = {.sum = 0};
-
     for (int n = 0; n < OFFSET_CHANNELS; n++) {
-        calibration->channel[n] = zero;
+        struct offset_channel *channel = &calibration->channel[n];
+
+        channel->sum = 0;
+        channel->reference = 0;
+        channel->deviation = 0;
+        channel->sum_off = 0;
+        channel->deviation_max = 0;
+        channel->flowing = 0;
     }
     calibration->samples = 0;
     calibration->bridge_on = false;

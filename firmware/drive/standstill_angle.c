@@ -65,24 +65,28 @@ void standstill_angle_begin(struct drive *drive)
     }
 }
 
-void standstill_angle_step(struct drive *drive, const struct estimate *estimate,
-                           const struct current_control *before, struct phases *voltage)
+void standstill_angle_rest(struct drive *drive)
+{
+    standstill_pulses_stop(&drive->standstill.pulses);
+    drive->standstill.bias_of_motion = estimated_bias(drive);
+}
+
+struct phases standstill_angle_step(struct drive *drive, const struct estimate *estimate,
+                                    struct dq integral, struct phases voltage)
 {
     struct standstill_pulses *pulses = &drive->standstill.pulses;
     struct standstill_angle shown;
 
-    if (!drive->hold.active || drive->supervision.state != DRIVE_OPERATION_ENABLED ||
-        pulses->signal == NUM(0.0)) {
-        standstill_pulses_stop(pulses);
-        drive->standstill.bias_of_motion = estimated_bias(drive);
-        return;
+    if (drive->supervision.state != DRIVE_OPERATION_ENABLED || pulses->signal == NUM(0.0)) {
+        standstill_angle_rest(drive);
+        return voltage;
     }
     if (standstill_pulses_add(pulses, &drive->standstill.params, estimate->current,
-                              drive->actuation.loss, voltage)) {
-        current_control_preset(&drive->current_control, before->integral);
+                              drive->actuation.loss, &voltage)) {
+        current_control_preset(&drive->current_control, integral);
     }
-    shown = standstill_pulses_result(pulses, &drive->standstill.params);
-    if (shown.found) {
+    if (standstill_pulses_result(pulses, &drive->standstill.params, &shown)) {
         preset_estimator(drive, &shown);
     }
+    return voltage;
 }

@@ -17,10 +17,16 @@ void standstill_angle_blank_sample(struct drive *drive, struct channels *winding
 void standstill_angle_begin(struct drive *drive);
 
 /*
- * One period of operation: lays the pulses over the voltage that the hold wants, and presets in
- * the estimator what they have shown. `before`: the current control before this period.
+ * One period of the hold: its voltage with the pulses laid over it; presets in the estimator what
+ * they have shown. `integral`: of the current control before this period. Not
+ * inlined, so that the voltage of drives without pulses stays in registers.
  */
-void standstill_angle_step(struct drive *drive, const struct estimate *estimate,
-                           const struct current_control *before, struct phases *voltage);
+__attribute__((noinline)) struct phases standstill_angle_step(struct drive *drive,
+                                                              const struct estimate *estimate,
+                                                              struct dq integral,
+                                                              struct phases voltage);
+
+/* One period in which the rotor is not held: a pulse that ran is given up. */
+__attribute__((noinline)) void standstill_angle_rest(struct drive *drive);
 
 #endif

@@ -226,13 +226,12 @@ static num_t length_of(struct phases x)
     return num_sqrt(num_mul(x.a, x.a) + num_mul(x.b, x.b));
 }
 
-struct standstill_angle standstill_pulses_result(struct standstill_pulses *pulses,
-                                                 const struct standstill_pulses_params *params)
+bool standstill_pulses_result(struct standstill_pulses *pulses,
+                              const struct standstill_pulses_params *params,
+                              struct standstill_angle *shown)
 {
-    struct standstill_angle result = {.found = false};
-
     if (pulses->number < IMPULSES) {
-        return result;
+        return false;
     }
     const struct phases held = {num_mul_unit(pulses->current.a, UNIT(1.0 / IMPULSES)),
                                 num_mul_unit(pulses->current.b, UNIT(1.0 / IMPULSES))};
@@ -242,16 +241,15 @@ struct standstill_angle standstill_pulses_result(struct standstill_pulses *pulse
     const struct phases first = of_magnet(pulses, params, held, signal);
     const num_t difference = length_of(first) - signal;
     /* What the magnet is longer than expected, the whole signal is: 1 / (1 + i_d / I_f) of it. */
-    const num_t shown = signal + num_mul_unit(difference, UNIT(0.7));
-    const struct phases magnet = of_magnet(pulses, params, held, shown);
+    const num_t whole = signal + num_mul_unit(difference, UNIT(0.7));
+    const struct phases magnet = of_magnet(pulses, params, held, whole);
 
-    /* A disturbance has another size. */
-    result.found = num_abs(difference) < num_mul_unit(signal, UNIT(0.4));
-    result.angle = angle_of_vector(magnet.a, magnet.b);
-    result.current = pulses->mean;
+    shown->angle = angle_of_vector(magnet.a, magnet.b);
+    shown->current = pulses->mean;
     shrink(pulses, params);
     grow(pulses, params);
     rest_from_pulses(pulses);
     pulses->period = params->rest_periods - params->pause_periods;
-    return result;
+    /* A disturbance has another size. */
+    return num_abs(difference) < num_mul_unit(signal, UNIT(0.4));
 }

@@ -99,13 +99,14 @@ bool standstill_pulses_add(struct standstill_pulses *pulses,
 
 /* What sixteen pulses have shown. */
 struct standstill_angle {
-    bool found;
     angle_t angle;         /* electrical, of the rotor */
     struct phases current; /* mean, pulses included: its torque has held the rotor there */
 };
 
-/* In the period in which the last pulse has ended; else nothing is found. */
-struct standstill_angle standstill_pulses_result(struct standstill_pulses *pulses,
-                                                 const struct standstill_pulses_params *params);
+/* Whether the angle is found: in the period in which the last pulse has ended. Else `shown` is left
+   as it is. */
+bool standstill_pulses_result(struct standstill_pulses *pulses,
+                              const struct standstill_pulses_params *params,
+                              struct standstill_angle *shown);
 
 #endif

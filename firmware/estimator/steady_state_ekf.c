@@ -82,13 +82,12 @@ struct passage steady_state_ekf_predict(struct steady_state_ekf *ekf,
 
 struct passage steady_state_ekf_step(struct steady_state_ekf *ekf,
                                      const struct steady_state_ekf_params *params,
-                                     struct phases current, struct phases voltage,
-                                     struct phases in_force)
+                                     const struct channels *winding, struct phases in_force)
 {
     struct estimate *x = &ekf->estimate;
 
-    move_on(ekf, params, park(voltage, ekf->mid_period));
-    correct(ekf, params, park(current, x->next.frame));
-    x->current = current;
+    move_on(ekf, params, park(winding->voltage, ekf->mid_period));
+    correct(ekf, params, park(winding->current, x->next.frame));
+    x->current = winding->current;
     return steady_state_ekf_predict(ekf, params, in_force);
 }

@@ -41,11 +41,11 @@ struct passage steady_state_ekf_predict(struct steady_state_ekf *ekf,
                                         const struct steady_state_ekf_params *params,
                                         struct phases voltage);
 
-/* From S(k-1) to S(k), and the same. `voltage`: mean over that period; `current`: sampled at S(k);
-   `in_force`: voltage that is expected over S(k)...S(k+1). */
+/* From S(k-1) to S(k), and the same. `winding`: current sampled at S(k), mean voltage over that
+   period; `in_force`: voltage that is expected over S(k)...S(k+1). */
 __attribute__((noinline)) struct passage
 steady_state_ekf_step(struct steady_state_ekf *ekf, const struct steady_state_ekf_params *params,
-                      struct phases current, struct phases voltage, struct phases in_force);
+                      const struct channels *winding, struct phases in_force);
 
 static inline void steady_state_ekf_begin(struct steady_state_ekf *ekf,
                                           const struct steady_state_ekf_params *params,
@@ -59,8 +59,7 @@ static inline struct passage steady_state_ekf_observe(struct steady_state_ekf *e
                                                       const struct steady_state_ekf_params *params,
                                                       const struct estimator_input *input)
 {
-    return steady_state_ekf_step(ekf, params, input->winding.current, input->winding.voltage,
-                                 input->in_force);
+    return steady_state_ekf_step(ekf, params, &input->winding, input->in_force);
 }
 
 static inline void steady_state_ekf_preset_current(struct steady_state_ekf *ekf,

@@ -78,9 +78,11 @@ void tearDown(void)
 {
 }
 
-/* A hold at angle 0 with the rotor displaced; the estimator's current is the true one outside the
-   pulses, the model's within. */
-static struct standstill_angle look(double rotor_rad, uint32_t *periods)
+static struct standstill_angle shown; /* found last */
+
+/* A hold at angle 0 with the rotor displaced; whether its angle is found. The estimator's current
+   is the true one outside the pulses, the model's within. */
+static bool look(double rotor_rad, uint32_t *periods)
 {
     const double hold_V = bench_params.resistance_ohm * HOLD_A;
     struct winding winding;
@@ -96,7 +98,7 @@ static struct standstill_angle look(double rotor_rad, uint32_t *periods)
     for (*periods = 0; *periods < 2000u; (*periods)++) {
         const struct phases measured = bench_phases(current_of(&a), current_of(&b), base.current_A);
         struct phases wanted = {num_from_double(hold_V / base.voltage_V), NUM(0.0)};
-        struct standstill_angle found;
+        bool found;
 
         if (standstill_pulses_blanks_sample(&pulses, &params)) {
             static const struct sincos no_turn = {UNIT(1.0), UNIT(0.0)};
@@ -107,8 +109,8 @@ static struct standstill_angle look(double rotor_rad, uint32_t *periods)
             estimated = measured;
         }
         (void)standstill_pulses_add(&pulses, &params, estimated, no_loss, &wanted);
-        found = standstill_pulses_result(&pulses, &params);
-        if (found.found || (pulses.at_rest && *periods > 400u)) {
+        found = standstill_pulses_result(&pulses, &params, &shown);
+        if (found || (pulses.at_rest && *periods > 400u)) {
             return found;
         }
         in_force = command;
@@ -117,7 +119,7 @@ static struct standstill_angle look(double rotor_rad, uint32_t *periods)
         drive(&b, num_to_double(command.b) * base.voltage_V);
         command = wanted;
     }
-    return (struct standstill_angle){.found = false};
+    return false;
 }
 
 static double degrees_of(angle_t angle)
@@ -150,12 +152,10 @@ static void test_the_design_in_figures(void)
 static void test_the_angle_of_a_displaced_rotor_is_found(void)
 {
     for (int degrees = -60; degrees <= 60; degrees += 15) {
-        struct standstill_angle shown;
         uint32_t periods;
 
         setUp();
-        shown = look(degrees * DEGREE, &periods);
-        TEST_ASSERT_TRUE(shown.found);
+        TEST_ASSERT_TRUE(look(degrees * DEGREE, &periods));
         TEST_ASSERT_DOUBLE_WITHIN(2.0, (double)degrees, degrees_of(shown.angle));
         TEST_ASSERT_DOUBLE_WITHIN(0.02, HOLD_A, num_to_double(shown.current.a) * base.current_A);
     }
@@ -195,7 +195,7 @@ static void test_a_disturbance_of_another_size_shows_no_angle(void)
     uint32_t periods;
 
     pulses.signal = pulses.signal + pulses.signal;
-    TEST_ASSERT_FALSE(look(0.3, &periods).found);
+    TEST_ASSERT_FALSE(look(0.3, &periods));
 }
 
 static void test_pulses_adapt_to_another_inductance(void)
@@ -284,7 +284,6 @@ static void test_the_load_is_the_torque_of_all_current_pulses_included(void)
 {
     const struct phases hold = {NUM(0.1), NUM(0.0)}, pulse = {NUM(0.1), NUM(0.06)};
     const uint32_t length = 2u * params.pulse_periods + 9u;
-    struct standstill_angle shown;
 
     (void)go_on(301u, hold, no_loss);
     TEST_ASSERT_FALSE(pulses.at_rest);
@@ -293,7 +292,7 @@ static void test_the_load_is_the_torque_of_all_current_pulses_included(void)
         (void)go_on(1u, pulse, no_loss);
         (void)go_on(length - 3u, hold, no_loss);
     }
-    shown = standstill_pulses_result(&pulses, &params);
+    (void)standstill_pulses_result(&pulses, &params, &shown);
     TEST_ASSERT_NUM_WITHIN(1e-5, 0.1, shown.current.a);
     TEST_ASSERT_NUM_WITHIN(1e-5, 0.06 / length, shown.current.b);
 }

@@ -74,11 +74,13 @@ static void set(struct state x)
 
 static void step(struct bench_vector voltage, struct bench_vector current)
 {
-    const struct phases u = bench_phases(voltage.a, voltage.b, base.voltage_V);
+    const struct channels winding = {
+        .voltage = bench_phases(voltage.a, voltage.b, base.voltage_V),
+        .current = bench_phases(current.a, current.b, base.current_A),
+    };
 
-    (void)steady_state_ekf_predict(&ekf, &params, u);
-    (void)steady_state_ekf_step(&ekf, &params, bench_phases(current.a, current.b, base.current_A),
-                                u, u);
+    (void)steady_state_ekf_predict(&ekf, &params, winding.voltage);
+    (void)steady_state_ekf_step(&ekf, &params, &winding, winding.voltage);
 }
 
 static void test_a_step_is_that_of_the_paper(void)

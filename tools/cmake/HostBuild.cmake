@@ -1,9 +1,9 @@
 # Programs that a cross build runs on the host: this project's host build, in a folder of its own,
-# unless STEADYSTEP_HOST_BUILD names one that has them.
+# unless STEADYSTEP_HOST_BUILD names one that has them. So does a sanitized build for what it runs none of.
 include_guard(GLOBAL)
 
 set(STEADYSTEP_HOST_BUILD "" CACHE PATH
-  "Folder of the preset sil, built, that the cross build takes its host programs from; empty: make one")
+  "Folder of the preset sil, built, that other builds take host programs from; empty: make one")
 
 # host_build(<target> <variable> PROGRAMS <host target>... [BYPRODUCTS <path>...])
 # <target>: builds the host targets. <variable>: receives the folder of the host build. BYPRODUCTS:

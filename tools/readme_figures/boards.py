@@ -229,6 +229,7 @@ def cycles(sources):
             found[f"{name}-us"] = f"{row['worst_us']:.1f}"
         if not name.startswith("encoder"):
             found[f"{name}-mean"] = f"{row['mean_cycles']:,}"
+        found[f"{name}-bound"] = f"{row['must_cycles']:,}"
     found |= {"ram": spelled(float_row["ram_B"] / 1000, 1),
               "start-up": spelled(float_row["start_up_ms"], 0),
               "start-up-m0plus": spelled(small["start_up_ms"], 0)}
