@@ -11,7 +11,7 @@ static inline struct estimator_input copy_of(const struct estimator_input *input
         .surprise = input->surprise,
         .in_force = input->in_force,
         .encoder_count = input->encoder_count,
-        .hold = {input->hold.active, input->hold.leads, input->hold.frame},
+        .hold = {input->hold.active, input->hold.frame},
     };
 }
 
