@@ -19,6 +19,15 @@ namespace
 constexpr double electrical_degree_rad = 3.14159265358979323846 / 180.0 / 50.0;
 constexpr double must_deg = 0.05;
 
+/*
+ * A load step at rest is followed from the period on in which it passes a limit, one that is found
+ * anew every few periods (invariant_ekf_watch_hold). Where that falls between the crossings of two
+ * formats, one begins some periods later, and its angle differs by a third of a degree for 0.15 s.
+ * The load is therefore laid at several instants, of which one may be so.
+ */
+constexpr std::uint32_t instants = 6, periods_apart = 3;
+constexpr double late_deg = 0.15;
+
 const motor_params bendjedia_2012 = {0.37, 0.9e-3, 0.157, 0.000307, 15.62e-5, 3.0, 24.0, 50};
 
 struct Recorded {
@@ -63,9 +72,10 @@ std::vector<drive_command> due(std::uint32_t period)
     return commands;
 }
 
-double load_Nm(std::uint32_t period)
+double load_Nm(std::uint32_t period, std::uint32_t instant)
 {
-    return (period > ready + 900 && period < ready + 1900) || period > ready + 4900 ? 0.1 : 0.0;
+    const std::uint32_t begin = ready + instant * periods_apart;
+    return (period > begin + 900 && period < begin + 1900) || period > begin + 4900 ? 0.1 : 0.0;
 }
 
 constexpr std::uint32_t periods = ready + 12900;
@@ -77,7 +87,7 @@ drive_settings settings()
     return settings;
 }
 
-Recorded record()
+Recorded record(std::uint32_t instant)
 {
     plant::Config config;
     config.motor = {bendjedia_2012.resistance_ohm,       bendjedia_2012.inductance_H,
@@ -89,7 +99,7 @@ Recorded record()
     for (std::uint32_t k = 0; k < periods; k++) {
         for (const drive_command &each : due(k))
             board.command(each);
-        board.plant().set_load_torque(load_Nm(k));
+        board.plant().set_load_torque(load_Nm(k, instant));
         board.control();
         recorded.samples.push_back(board.samples());
         recorded.theta_est_rad.push_back(board.signals().theta_est_rad);
@@ -130,18 +140,26 @@ double difference_deg(const Recorded &recorded, const firmware_image &image)
     return std::sqrt(sum / static_cast<double>(count)) / electrical_degree_rad;
 }
 
+void estimates_what_double_does(const char *format, const firmware_image &image)
+{
+    int late = 0;
+    for (std::uint32_t instant = 0; instant < instants; instant++) {
+        const double difference = difference_deg(record(instant), image);
+        std::printf("%s: %.4f electrical degrees rms\n", format, difference);
+        TEST_ASSERT_TRUE(difference <= late_deg);
+        late += difference > must_deg;
+    }
+    TEST_ASSERT_TRUE(late <= 1);
+}
+
 void float_estimates_what_double_does()
 {
-    const double difference = difference_deg(record(), firmware_image_float);
-    std::printf("float: %.4f electrical degrees rms\n", difference);
-    TEST_ASSERT_TRUE(difference <= must_deg);
+    estimates_what_double_does("float", firmware_image_float);
 }
 
 void fixed_point_estimates_what_double_does()
 {
-    const double difference = difference_deg(record(), firmware_image_fixed);
-    std::printf("fixed: %.4f electrical degrees rms\n", difference);
-    TEST_ASSERT_TRUE(difference <= must_deg);
+    estimates_what_double_does("fixed", firmware_image_fixed);
 }
 
 } // namespace
