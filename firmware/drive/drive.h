@@ -17,6 +17,7 @@
 #include "firmware/drive/expectation.h"
 #include "firmware/drive/following_error.h"
 #include "firmware/drive/idle_current.h"
+#include "firmware/drive/inductance.h"
 #include "firmware/drive/inductance_measurement.h"
 #include "firmware/drive/measurement.h"
 #include "firmware/drive/offset_calibration.h"
@@ -138,6 +139,7 @@ struct enabling {
         struct {
             struct phase_balance balance;
             struct inductance_measurement inductance;
+            struct inductance_put inductance_put;
         };
         struct encoder_alignment alignment;
     };

@@ -10,6 +10,9 @@
 #define CONFIRMED_BELOW NUM(-0.03)
 #define CONFIRMED_ABOVE NUM(0.075)
 
+/* The gains of motion, of the hold, of that without a load and of what follows one; the model. */
+#define PARTS 5u
+
 /* At once: of what is in force. */
 #define MORE_MAX NUM(0.45)
 
@@ -32,26 +35,36 @@ static void scale_model(struct motor_model_params *model, num_t less)
     model->nominal_admittance += num_mul(model->nominal_admittance, less);
 }
 
-/* What has been designed, from what is in force to what is above that by a share `more`; `less`:
-   1 / (1 + more) - 1. */
-static void put_in_force(struct drive_params *params, num_t more, num_t less)
+static void scale_current_control(struct current_control_params *control,
+                                  const struct inductance_put *put)
 {
-    struct invariant_ekf_params *ekf = &params->estimator.invariant_ekf;
+    control->proportional = coef_more(control->proportional, put->more);
+    control->reactance = coef_more(control->reactance, put->more);
+    control->unwind = coef_more(control->unwind, put->less);
+}
 
-    scale_model(&params->model, less);
+void inductance_put_part(struct drive *drive)
+{
+    struct inductance_put *put = &drive->enabling.inductance_put;
+    struct drive_params *params = &drive->params;
+    struct invariant_ekf_params *ekf = &params->estimator.invariant_ekf;
+    struct winding *winding = &drive->estimator.estimate.winding;
+    struct invariant_ekf_gain_set *const gains[] = {&ekf->moving, &ekf->holding, &ekf->unloaded,
+                                                    &ekf->following};
+
+    put->left--;
+    if (put->left < sizeof gains / sizeof gains[0]) {
+        scale_gains(gains[put->left], put->more);
+        return;
+    }
+    scale_current_control(&params->current_control, put);
+    scale_model(&params->model, put->less);
     ekf->model = params->model;
-    scale_gains(&ekf->moving, more);
-    scale_gains(&ekf->holding, more);
-    scale_gains(&ekf->unloaded, more);
-    scale_gains(&ekf->following, more);
-    params->current_control.proportional = coef_more(params->current_control.proportional, more);
-    params->current_control.reactance = coef_more(params->current_control.reactance, more);
-    params->current_control.unwind = coef_more(params->current_control.unwind, less);
+    winding_set_resistance(winding, &params->model, winding->resistance);
 }
 
 bool inductance_put(struct drive *drive, num_t more)
 {
-    struct winding *winding = &drive->estimator.estimate.winding;
     const num_t before = drive->enabling.inductance_change;
     const num_t found = before + more + num_mul(before, more);
 
@@ -65,8 +78,8 @@ bool inductance_put(struct drive *drive, num_t more)
     const num_t by = confirmed ? before : more;
     const num_t back = quotient(-by, NUM(1.0) + by); /* 1 / (1 + by) - 1 */
 
-    put_in_force(&drive->params, confirmed ? back : by, confirmed ? by : back);
-    winding_set_resistance(winding, &drive->params.model, winding->resistance);
+    drive->enabling.inductance_put = (struct inductance_put){
+        .more = confirmed ? back : by, .less = confirmed ? by : back, .left = PARTS};
     return true;
 }
 

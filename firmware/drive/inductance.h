@@ -11,6 +11,7 @@
 #define STEADYSTEP_INDUCTANCE_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "firmware/numeric/num.h"
 
@@ -27,9 +28,18 @@ enum { FINDS_INDUCTANCE = 1 };
 
 struct drive;
 
+/* How what is designed follows: a part in a period. */
+struct inductance_put {
+    num_t more;
+    num_t less;   /* 1 / (1 + more) - 1 */
+    uint8_t left; /* parts */
+};
+
 /* In the first hold: the inductance is by a share `more` above what is in force. false: beyond what
-   is sound. */
+   is sound. It comes into force in as many calls of inductance_put_part() as `left` then says. */
 __attribute__((noinline)) bool inductance_put(struct drive *drive, num_t more);
+
+__attribute__((noinline)) void inductance_put_part(struct drive *drive);
 
 /* Background. */
 __attribute__((noinline)) double inductance_in_force_H(const struct drive *drive);

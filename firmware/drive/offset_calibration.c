@@ -150,9 +150,6 @@ enum offset_result offset_calibration_step(struct offset_calibration *calibratio
         samples->phase_voltage_b,
     };
 
-    if (calibration->samples == OFFSET_SAMPLES) {
-        return OFFSETS_DONE;
-    }
     add(calibration, code);
     if (calibration->samples < OFFSET_SAMPLES) {
         return OFFSETS_PENDING;

@@ -73,8 +73,13 @@ struct offset_calibration_params offset_calibration_design(const struct hal_fact
 
 void offset_calibration_reset(struct offset_calibration *calibration);
 
-/* Found with the last sample, done a period behind it: what follows costs enough by itself. */
-enum offset_result { OFFSETS_PENDING, OFFSETS_FOUND, OFFSETS_DONE, OFFSETS_OUT_OF_RANGE };
+enum offset_result { OFFSETS_PENDING, OFFSETS_FOUND, OFFSETS_OUT_OF_RANGE };
+
+/* From the period behind the last sample's on: what follows costs enough by itself. */
+static inline bool offset_calibration_is_done(const struct offset_calibration *calibration)
+{
+    return calibration->samples == OFFSET_SAMPLES;
+}
 
 /*
  * What is to be added to the offsets of the voltages once the resistance is known: the currents
@@ -86,8 +91,8 @@ struct phases offset_calibration_drop_error(const struct offset_calibration *cal
                                             const struct measurement_params *scales,
                                             num_t resistance);
 
-/* One period. The bridge is to be on with all legs at half duty as soon as bridge_on is set. Apart:
-   compiled into its caller, it would be made large. */
+/* One period, unless it is done. The bridge is to be on with all legs at half duty as soon as
+   bridge_on is set. Apart: compiled into its caller, it would be made large. */
 __attribute__((noinline)) enum offset_result
 offset_calibration_step(struct offset_calibration *calibration,
                         const struct offset_calibration_params *params,

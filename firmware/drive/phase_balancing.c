@@ -26,6 +26,7 @@ uint32_t phase_balancing_design(struct drive *drive, const struct drive_settings
         return 0u;
     }
     drive->enabling.balance_params = phase_balance_design(&task);
+    drive->enabling.inductance_put.left = 0u;
     drive->enabling.inductance_params = inductance_measurement_design(
         &drive->base, settings->hold_current_A,
         FINDS_INDUCTANCE && settings->identify_inductance && !settings->standstill_pulses
@@ -87,6 +88,10 @@ enum phase_balancing phase_balancing_step(struct drive *drive, const struct hal_
     const struct phase_balance_params *params = &drive->enabling.balance_params;
     struct channels winding = {{NUM(0.0), NUM(0.0)}, {NUM(0.0), NUM(0.0)}};
 
+    if (FINDS_INDUCTANCE && drive->enabling.inductance_put.left > 0u) {
+        inductance_put_part(drive);
+        return PHASES_ARE_BEING_BALANCED;
+    }
     if (FINDS_INDUCTANCE && drive->enabling.inductance.complete) {
         return put_inductance(drive);
     }

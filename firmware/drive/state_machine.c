@@ -315,6 +315,10 @@ static void calibrate_offsets(struct drive *drive, const struct hal_samples *sam
             return;
         }
     }
+    if (offset_calibration_is_done(&drive->enabling.calibration)) {
+        find_position_or_power_up(drive);
+        return;
+    }
     switch (offset_calibration_step(&drive->enabling.calibration,
                                     &drive->enabling.calibration_params, &drive->params.measurement,
                                     samples, &offset)) {
@@ -322,9 +326,6 @@ static void calibrate_offsets(struct drive *drive, const struct hal_samples *sam
         break;
     case OFFSETS_FOUND:
         measurement_set_offset(&drive->measurement, offset);
-        break;
-    case OFFSETS_DONE:
-        find_position_or_power_up(drive);
         break;
     case OFFSETS_OUT_OF_RANGE:
         state_machine_fault(drive, DRIVE_FAULT_OFFSET_RANGE);

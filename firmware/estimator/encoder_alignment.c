@@ -213,12 +213,14 @@ static num_t displacement(const struct encoder_alignment_params *params, num_t c
 /* Of the angles' zeros the one that is furthest from their mean: what it adds to that. */
 static num_t outlier(const struct encoder_alignment *alignment)
 {
-    num_t mean = NUM(0.0);
+    num_t sum = NUM(0.0);
     num_t worst = NUM(0.0);
 
     for (int i = 0; i < ANGLES; i++) {
-        mean += num_mul(alignment->zero_at[i], NUM(1.0 / ANGLES));
+        sum += alignment->zero_at[i];
     }
+    const num_t mean = num_mul(sum, NUM(1.0 / ANGLES));
+
     for (int i = 0; i < ANGLES; i++) {
         const num_t beside = num_abs(alignment->zero_at[i] - mean);
 

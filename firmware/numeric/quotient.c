@@ -2,7 +2,13 @@
 
 #include <stdint.h>
 
-#define DOUBLINGS 16u
+static void scale(num_t *dividend, num_t *divisor, num_t below, int32_t by)
+{
+    if (*divisor < below) {
+        *divisor *= (num_t)by;
+        *dividend *= (num_t)by;
+    }
+}
 
 /* Errors of 1/2, 1/4, 1/16, 4e-3, 2e-5, 2e-10. */
 #define NEWTON_STEPS 6u
@@ -11,10 +17,10 @@ num_t quotient(num_t dividend, num_t divisor)
 {
     num_t reciprocal = NUM(1.0);
 
-    for (uint32_t i = 0u; i < DOUBLINGS && divisor < NUM(0.75); i++) {
-        divisor += divisor;
-        dividend += dividend;
-    }
+    scale(&dividend, &divisor, NUM(1.0 / 256.0), 256);
+    scale(&dividend, &divisor, NUM(1.0 / 16.0), 16);
+    scale(&dividend, &divisor, NUM(1.0 / 4.0), 4);
+    scale(&dividend, &divisor, NUM(1.0 / 2.0), 2);
     for (uint32_t i = 0u; i < NEWTON_STEPS; i++) {
         reciprocal = num_mul(reciprocal, NUM(2.0) - num_mul(divisor, reciprocal));
     }

@@ -1,5 +1,5 @@
 /*
- * A division where there is none: the divisor is scaled to 3/4...3/2, the dividend with it, and
+ * A division where there is none: the divisor is scaled to 1/2...3/2, the dividend with it, and
  * the reciprocal found by Newton's method, whose error of 1/2 at most is squared by each step.
  * Some 150 cycles.
  */

@@ -348,7 +348,7 @@ MUTANTS = [
            "found > NUM(INDUCTANCE_MORE_MAX)", "found > NUM(0.42)"),
     Mutant(DRIVE + "inductance.c", "inductance",
            "in_force_the_model_is_that_of_the_inductance_and_each_gain_goes_with_it",
-           "scale_gains(&ekf->following, more);", "(void)more;"),
+           "&ekf->following};", "&ekf->unloaded};"),
     Mutant(DRIVE + "inductance.c", "inductance",
            "what_is_found_again_and_again_counts_from_the_settings",
            "before + more + num_mul(before, more)", "more"),

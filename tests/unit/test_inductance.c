@@ -162,6 +162,17 @@ static struct drive_params designed_for(double inductance_H)
     return drive.params;
 }
 
+/* Until all of it is in force. */
+static bool put(num_t more)
+{
+    const bool is_sound = inductance_put(&drive, more);
+
+    while (drive.enabling.inductance_put.left > 0u) {
+        inductance_put_part(&drive);
+    }
+    return is_sound;
+}
+
 static void is_scaled(double by, coef_t gain, coef_t as_designed)
 {
     TEST_ASSERT_DOUBLE_WITHIN(2e-4 * fabs(of(as_designed)) + 5e-5, by * of(as_designed), of(gain));
@@ -191,7 +202,7 @@ static void test_in_force_the_model_is_that_of_the_inductance_and_each_gain_goes
         const struct invariant_ekf_params *before = &nominal.estimator.invariant_ekf;
         const struct invariant_ekf_params *ekf = &drive.params.estimator.invariant_ekf;
 
-        TEST_ASSERT_TRUE(inductance_put(&drive, num_from_double(scales[i] - 1.0)));
+        TEST_ASSERT_TRUE(put(num_from_double(scales[i] - 1.0)));
         /* T R/L of the bench is 0.04, and b of (1 - T R/2L) T/L */
         TEST_ASSERT_DOUBLE_WITHIN(0.008 * num_to_double(anew.model.nominal_admittance),
                                   num_to_double(anew.model.nominal_admittance),
@@ -215,18 +226,18 @@ static void test_what_is_found_again_and_again_counts_from_the_settings(void)
     const struct drive_params nominal = designed_for(bench_params.inductance_H);
     const double admittance = num_to_double(drive.estimator.estimate.winding.admittance);
 
-    TEST_ASSERT_TRUE(inductance_put(&drive, NUM(0.2)));
+    TEST_ASSERT_TRUE(put(NUM(0.2)));
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.2, signals().inductance_change);
     TEST_ASSERT_DOUBLE_WITHIN(0.01 * admittance, admittance / 1.2,
                               num_to_double(drive.estimator.estimate.winding.admittance));
-    TEST_ASSERT_TRUE(inductance_put(&drive, NUM(-0.25)));
+    TEST_ASSERT_TRUE(put(NUM(-0.25)));
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, -0.1, signals().inductance_change);
     is_scaled(0.9, drive.params.current_control.proportional, nominal.current_control.proportional);
-    TEST_ASSERT_TRUE(inductance_put(&drive, NUM(0.15))); /* 3.5 % more: confirms them */
+    TEST_ASSERT_TRUE(put(NUM(0.15))); /* 3.5 % more: confirms them */
     TEST_ASSERT_EQUAL_DOUBLE(0.0, signals().inductance_change);
     is_scaled(1.0, drive.params.current_control.proportional, nominal.current_control.proportional);
-    TEST_ASSERT_TRUE(inductance_put(&drive, NUM(0.3)));
-    TEST_ASSERT_FALSE(inductance_put(&drive, NUM(0.1))); /* 43 % more than the settings */
+    TEST_ASSERT_TRUE(put(NUM(0.3)));
+    TEST_ASSERT_FALSE(put(NUM(0.1))); /* 43 % more than the settings */
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.3, signals().inductance_change);
 }
 
@@ -236,7 +247,7 @@ static void test_what_no_sound_motor_has_is_refused(void)
 
     power_up();
     for (size_t i = 0; i < 3; i++) {
-        TEST_ASSERT_FALSE(inductance_put(&drive, num_from_double(beyond[i])));
+        TEST_ASSERT_FALSE(put(num_from_double(beyond[i])));
         TEST_ASSERT_EQUAL_DOUBLE(0.0, signals().inductance_change);
     }
 }
