@@ -410,7 +410,7 @@ static void control_with_all(struct drive *drive, const struct estimate *estimat
 {
     const struct drive_params *params = &drive->params;
     const bool held = drive->hold.active;
-    const struct dq integral = drive->current_control.integral;
+    struct dq integral; /* before this period; for pulses alone */
     struct prediction next;
     struct phases voltage;
 
@@ -422,6 +422,9 @@ static void control_with_all(struct drive *drive, const struct estimate *estimat
     expect_current(drive, estimate, &next);
     if (ESTIMATORS_READ_ENCODER && params->path.detent_learning && !drive->supervision.aligns) {
         compensate_detent(drive, estimate, &next);
+    }
+    if (RARE(params->path.standstill_pulses)) {
+        integral = drive->current_control.integral;
     }
     voltage = !held && position_law_gives_voltage(params->position_law)
                   ? regulate_voltage(drive, estimate, &next)

@@ -21,12 +21,12 @@ void standstill_angle_begin(struct drive *drive);
  * they have shown. `integral`: of the current control before this period. Not
  * inlined, so that the voltage of drives without pulses stays in registers.
  */
-__attribute__((noinline)) struct phases standstill_angle_step(struct drive *drive,
-                                                              const struct estimate *estimate,
-                                                              struct dq integral,
-                                                              struct phases voltage);
+__attribute__((noinline, cold)) struct phases standstill_angle_step(struct drive *drive,
+                                                                    const struct estimate *estimate,
+                                                                    struct dq integral,
+                                                                    struct phases voltage);
 
 /* One period in which the rotor is not held: a pulse that ran is given up. */
-__attribute__((noinline)) void standstill_angle_rest(struct drive *drive);
+__attribute__((noinline, cold)) void standstill_angle_rest(struct drive *drive);
 
 #endif

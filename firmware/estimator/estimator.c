@@ -3,18 +3,6 @@
 /* Named, so that the image can place it beside the code. */
 static const struct passage at_rest = {{UNIT(1.0), UNIT(0.0)}, {UNIT(1.0), UNIT(0.0)}};
 
-/* Member by member: as a whole it would first be written to memory. */
-static inline struct estimator_input copy_of(const struct estimator_input *input)
-{
-    return (struct estimator_input){
-        .winding = {input->winding.current, input->winding.voltage},
-        .surprise = input->surprise,
-        .in_force = input->in_force,
-        .encoder_count = input->encoder_count,
-        .hold = {input->hold.active, input->hold.frame},
-    };
-}
-
 /* Each gets a copy of its own, so that the one compiled into its place keeps its input in
    registers. */
 struct passage estimator_observe(struct estimator *estimator, const struct estimator_params *params,
@@ -22,7 +10,7 @@ struct passage estimator_observe(struct estimator *estimator, const struct estim
 {
 #define ESTIMATOR_OBSERVE(constant, name)                                                          \
     if (estimator_is(params, ESTIMATOR_##constant)) {                                              \
-        const struct estimator_input own = copy_of(input);                                         \
+        const struct estimator_input own = *input;                                                 \
         return name##_observe(&estimator->name, &params->name, &own);                              \
     }
     ESTIMATORS(ESTIMATOR_OBSERVE)
