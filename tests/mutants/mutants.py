@@ -1023,7 +1023,7 @@ MUTANTS = [
            "sdo->length + count > object_bytes(&sdo->object)", "sdo->length + count > 9u"),
     Mutant("firmware/drive/inductance.c", "inductance",
            "what_is_found_again_and_again_counts_from_the_settings",
-           "winding_set_resistance(winding, &drive->params.model, winding->resistance);", ""),
+           "winding_set_resistance(winding, &params->model, winding->resistance);", ""),
     Mutant(LINK + "modbus.c", "modbus", "an_array_is_read_from_its_first_value_on",
            "done + registers_of(&values.object) > count) {\n            return MODBUS_VALUE", "count > 125u) {\n            return MODBUS_VALUE"),
     Mutant(LINK + "modbus.c", "modbus", "what_cannot_be_is_an_exception",
