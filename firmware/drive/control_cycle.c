@@ -410,7 +410,7 @@ static void control_with_all(struct drive *drive, const struct estimate *estimat
 {
     const struct drive_params *params = &drive->params;
     const bool held = drive->hold.active;
-    struct dq integral; /* before this period; for pulses alone */
+    struct dq integral = {NUM(0.0), NUM(0.0)}; /* before this period; for pulses alone */
     struct prediction next;
     struct phases voltage;
 

@@ -180,8 +180,8 @@ struct drive {
     struct detent_compensation detent;
 
     struct supervision supervision;
-    struct axis axis;
     int32_t encoder_count; /* of this S(k) */
+    struct axis axis;
     struct {
         uint16_t a, b;
     } current_codes; /* of the last S(k) of a bridge that is on */

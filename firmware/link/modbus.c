@@ -137,10 +137,14 @@ static bool get_registers(const struct object *object, const uint8_t *registers,
 {
     const size_t bytes = 2u * registers_of(object);
 
+    if (object_bytes(object) == 1u) {
+        value[0] = registers[1];
+        return registers[0] == (is_negative(object, value[0]) ? 0xff : 0);
+    }
     for (size_t i = 0; i < bytes; i++) {
         value[i] = registers[bytes - 1u - i];
     }
-    return object_bytes(object) != 1u || value[1] == (is_negative(object, value[0]) ? 0xff : 0);
+    return true;
 }
 
 static enum modbus_exception exception_of(enum object_abort abort)
