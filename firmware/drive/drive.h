@@ -172,6 +172,7 @@ struct drive {
     struct dq current;
     struct dq current_reference;
     struct dq voltage_command;
+    int32_t encoder_count; /* of this S(k) */
 
     struct drive_params params;
 
@@ -180,11 +181,10 @@ struct drive {
     struct detent_compensation detent;
 
     struct supervision supervision;
-    int32_t encoder_count; /* of this S(k) */
-    struct axis axis;
     struct {
         uint16_t a, b;
     } current_codes; /* of the last S(k) of a bridge that is on */
+    struct axis axis;
     struct expectation expectation;
     struct synchronism_supervision synchronism;
     struct following_error following; /* with an encoder, in the monitor's place */
