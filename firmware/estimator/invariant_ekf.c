@@ -76,6 +76,7 @@ void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_p
     ekf->bias = (struct phases){NUM(0.0), NUM(0.0)};
     ekf->innovation_sum = NUM(0.0);
     ekf->adapted_sum = NUM(0.0);
+    ekf->adapted_at = NUM(0.0);
     ekf->usual_change = NUM(0.0);
     ekf->swings = 0u;
     ekf->swung_up = false;
@@ -164,11 +165,13 @@ void invariant_ekf_adapt_resistance(struct invariant_ekf *ekf,
 {
     struct estimate *x = &ekf->estimate;
     const num_t sum = num_headroom(ekf->innovation_sum, ADAPTING_SUM_MAX);
+    const num_t i_d = park(x->next.current, x->next.frame).d;
+    const num_t mean = num_half(i_d + ekf->adapted_at);
 
+    ekf->adapted_at = i_d;
     invariant_ekf_carry_sum(ekf);
     if (!leads) {
-        const num_t i_d = park(x->next.current, x->next.frame).d;
-        const num_t change = num_mul_coef(num_mul(sum, i_d), params->holding.resistance);
+        const num_t change = num_mul_coef(num_mul(sum, mean), params->holding.resistance);
 
         winding_set_resistance(&x->winding, &params->model, x->winding.resistance + change);
     }

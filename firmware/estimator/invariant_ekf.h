@@ -32,7 +32,9 @@
  * steps on end show: there what exceeds three times the mean difference of late is a step.
  *
  * The resistance has some 20 ms to be found, so it need not move in every period: all that nu_d has
- * been since it moved last moves it by as much as if it had done so in each, while i_d stays.
+ * been since it moved last moves it by as much as if it had done so in each. i_d is its mean of
+ * then and now: where an inductance is wrong nu_d is as the change of i_d, and a current that
+ * swings leaves nothing of a product that is the change of a square.
  *
  * Gains: design/invariant_ekf_design.h.
  */
@@ -79,6 +81,7 @@ struct invariant_ekf {
     struct phases settled_bias; /* of it, what has lasted in a settled hold */
     num_t innovation_sum;       /* of nu_d since it was taken last; runs on if nobody does */
     num_t adapted_sum;   /* of those that the resistance has taken, for the synchronism monitor */
+    num_t adapted_at;    /* i_d when it last did */
     num_t settled_load;  /* torque that a hold returns to */
     num_t step_limit;    /* beyond which a change of the load is a step */
     num_t usual_change;  /* three times the mean of the load's change of late */

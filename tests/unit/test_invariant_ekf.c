@@ -115,16 +115,21 @@ static void turn(double speed_rad_s, int periods)
 }
 
 /* i_d in a frame fixed at angle 0, as the drive holds a reference of 0. */
-static void hold(double i_q, int periods)
+static void hold_at(double i_d, double i_q, int periods)
 {
     for (int k = 0; k < periods; k++) {
         const double stiffness = 0.3 * motor.motor.inductance_H / PERIOD_S;
         const struct bench_vector voltage = {
-            motor.motor.resistance_ohm * motor.i_a + stiffness * (HOLD_A - motor.i_a),
+            motor.motor.resistance_ohm * motor.i_a + stiffness * (i_d - motor.i_a),
             motor.motor.resistance_ohm * motor.i_b + stiffness * (i_q - motor.i_b)};
 
         period(voltage, true);
     }
+}
+
+static void hold(double i_q, int periods)
+{
+    hold_at(HOLD_A, i_q, periods);
 }
 
 /* The state of the header's equations, SI. */
@@ -272,6 +277,7 @@ static double resistance_after(struct state start, int sums, bool leads)
     for (int k = 1; k < sums; k++) {
         ekf.innovation_sum += nu_d;
     }
+    ekf.adapted_at = park(ekf.estimate.next.current, ekf.estimate.next.frame).d;
     invariant_ekf_adapt_resistance(&ekf, &params, leads);
     TEST_ASSERT_TRUE(ekf.innovation_sum == NUM(0.0));
     return estimated_resistance_ohm();
@@ -299,6 +305,25 @@ static void test_a_hold_that_leads_its_rotor_leaves_the_resistance_alone(void)
     static const struct state start = {1.4, 0.3, 0.4, 3.3, 0.1, 0.11, 0.0, 0.0, 0.37};
 
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, start.resistance, resistance_after(start, 4, true));
+}
+
+/* What a swing up makes of the resistance the swing down takes back. */
+static void test_a_current_that_swings_is_no_resistance_whatever_the_inductance(void)
+{
+    static const double scales[] = {0.75, 0.8, 1.25};
+
+    for (unsigned i = 0; i < sizeof scales / sizeof scales[0]; i++) {
+        start_at(0.0, 0.0);
+        motor.motor.inductance_H *= scales[i];
+        hold(0.0, 1500);
+        const double before = estimated_resistance_ohm();
+
+        for (int swing = 0; swing < 24; swing++) {
+            hold_at(swing % 2 == 0 ? 1.25 * HOLD_A : 0.75 * HOLD_A, 0.0, 22);
+        }
+        hold(0.0, 22);
+        TEST_ASSERT_DOUBLE_WITHIN(0.003 * before, before, estimated_resistance_ohm());
+    }
 }
 
 /* Of a hold only those that the resistance has taken; the others come with the next block. */
@@ -680,6 +705,7 @@ static void test_a_reset_forgets_all_but_what_it_is_set_to(void)
     ekf.following_periods = 7;
     ekf.bias.a = NUM(0.1);
     ekf.settled_load = NUM(0.1);
+    ekf.adapted_at = NUM(0.1);
     invariant_ekf_reset(&ekf, &params, position_from_rad(1.0, 50), NUM(0.1), 9);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.0, position_to_rad(ekf.estimate.rotor.position, 50));
     TEST_ASSERT_NUM_WITHIN(0.0, 0.0, ekf.estimate.rotor.speed);
@@ -687,6 +713,7 @@ static void test_a_reset_forgets_all_but_what_it_is_set_to(void)
     TEST_ASSERT_NUM_WITHIN(0.0, 0.0, ekf.estimate.current.a);
     TEST_ASSERT_NUM_WITHIN(0.0, 0.0, ekf.bias.a);
     TEST_ASSERT_NUM_WITHIN(0.0, 0.0, ekf.settled_load);
+    TEST_ASSERT_NUM_WITHIN(0.0, 0.0, ekf.adapted_at);
     TEST_ASSERT_EQUAL_UINT32(9, ekf.unloaded_periods);
     TEST_ASSERT_EQUAL_UINT32(0, ekf.following_periods);
     TEST_ASSERT_NUM_WITHIN(NUM_ROUNDING, 0.1, ekf.estimate.winding.resistance);
@@ -698,6 +725,7 @@ int main(void)
     RUN_TEST(test_a_step_is_that_of_the_equations_in_motion_and_in_hold);
     RUN_TEST(test_the_resistance_moves_by_all_innovations_since_it_moved_last);
     RUN_TEST(test_a_hold_that_leads_its_rotor_leaves_the_resistance_alone);
+    RUN_TEST(test_a_current_that_swings_is_no_resistance_whatever_the_inductance);
     RUN_TEST(test_each_innovation_is_taken_once_by_the_monitor);
     RUN_TEST(test_a_voltage_that_was_another_than_expected_is_made_up_for);
     RUN_TEST(test_a_right_start_is_tracked_from_rest_through_an_acceleration);
