@@ -208,7 +208,7 @@ static void test_a_large_resistance_leaves_no_more_than_the_noise_of_both_sensor
 {
     const double drop_codes = small_motor.resistance_ohm * 12.0 / 62.4;
     const double sample_noise = sqrt((1.0 + 1.0 / 12.0) * (1.0 + square(drop_codes)));
-    const int calibrations = EMULATED ? 25 : 100;
+    const int calibrations = EMULATED ? 60 : 100;
     double sum_of_squares = 0.0;
 
     offsets(12.37, -8.81, 3.14, -30.59);
