@@ -57,12 +57,13 @@ static double law_bandwidth_max(const struct drive_settings *settings, double pe
     }
 }
 
+/* Behind a spring that gives the law's gain acts on the rotor alone: there it is as designed. */
 static double law_bandwidth_wanted(const struct drive_settings *settings)
 {
     const bool stiff = settings->law == POSITION_LAW_FEEDBACK_LINEARISATION ||
                        settings->law == POSITION_LAW_STATE_FEEDBACK;
 
-    return fast(settings) ? 900.0 : stiff ? 300.0 : 200.0;
+    return settings->rotor_inertia_share * (fast(settings) ? 900.0 : stiff ? 300.0 : 200.0);
 }
 
 static bool bears(const struct drive_settings *settings, double period_s, double hold_current_A)

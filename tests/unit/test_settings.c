@@ -270,6 +270,14 @@ static void test_defaults_fit_a_longer_period(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 1400.0, settings.observer_bandwidth_rad_s);
 }
 
+/* Behind a spring that gives the law has the rotor alone before it. */
+static void test_a_law_s_bandwidth_is_less_where_most_of_the_inertia_is_behind_a_belt(void)
+{
+    settings.rotor_inertia_share = 0.3;
+    default_settings_apply(&settings, 1e-4, 0u);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.3 * 300.0, settings.law_bandwidth_rad_s);
+}
+
 /* The rotor alone: in the hold of half the rated current, and against a winding of little L. */
 static void test_an_observer_follows_a_light_rotor(void)
 {
@@ -476,6 +484,7 @@ int main(void)
     RUN_TEST(test_every_law_has_its_bandwidths);
     RUN_TEST(test_what_is_given_stays);
     RUN_TEST(test_defaults_fit_a_longer_period);
+    RUN_TEST(test_a_law_s_bandwidth_is_less_where_most_of_the_inertia_is_behind_a_belt);
     RUN_TEST(test_an_observer_follows_a_light_rotor);
     RUN_TEST(test_an_observer_does_not_chase_counts);
     RUN_TEST(test_every_setting_is_refused_beyond_its_range_by_name_bound_and_unit);

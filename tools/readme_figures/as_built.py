@@ -1,7 +1,7 @@
 """README.md, sil/README.md: boards and motors as they leave their factories, beside `bench`."""
 from readme_figures.campaigns import campaign
 from readme_figures.reading import mrad, spelled, up
-from readme_figures.registry import Cost, entry
+from readme_figures.registry import Cost, entry, table
 from readme_figures.sensorless import RESTS
 
 AS_BUILT = {"plant.model": "as-built"}
@@ -28,6 +28,22 @@ def corners(sources):
     run = campaign(sources, "as-built-corners", "1-36")
     return {"held": f"{run['verdicts'].get('held', 0)}",
             "worst": up(run["figures"]["estimate_error_max_deg_electrical"]["worst"], 0)}
+
+
+@entry("stiff-belts", "steadystep-sil campaign as-built --seeds 1-24 --set motor=MOTOR "
+       "--set plant.belt_frequency_Hz=HZ --set plant.belt_inertia_share=0.7 [--set drive.rotor_inertia_share=0.3]",
+       Cost.DEAR, probe=("campaign as-built --seeds 1-2 --json --set plant.belt_frequency_Hz=350 "
+                         "--set plant.belt_inertia_share=0.7 --set drive.rotor_inertia_share=0.3",))
+def stiff_belts(sources):
+    def held(motor, frequency_Hz, *share):
+        run = campaign(sources, "as-built", "1-24", "--set", f"motor={motor}", "--set", "plant.belt_inertia_share=0.7",
+                       "--set", f"plant.belt_frequency_Hz={frequency_Hz}", *share)
+        return f"{run['verdicts'].get('held', 0)}"
+
+    belts = ("170", "250", "350")
+    rows = [[motor] + [f"{held(motor, belt)}, {held(motor, belt, '--set', 'drive.rotor_inertia_share=0.3')}"
+                       for belt in belts] for motor in ("bendjedia-2012", "23he22-2804s", "17hs4417", "sh2861-5141")]
+    return {"table": table(["of 24 runs held: default, with the share", *(f"{belt} Hz" for belt in belts)], rows)}
 
 
 @entry("as-built-long", "steadystep-sil campaign long-run --seeds 1-100 --set plant=as-built",
