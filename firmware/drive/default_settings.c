@@ -62,8 +62,9 @@ static double law_bandwidth_wanted(const struct drive_settings *settings)
 {
     const bool stiff = settings->law == POSITION_LAW_FEEDBACK_LINEARISATION ||
                        settings->law == POSITION_LAW_STATE_FEEDBACK;
+    const double rigid_rad_s = fast(settings) ? 900.0 : stiff ? 300.0 : 200.0;
 
-    return settings->rotor_inertia_share * (fast(settings) ? 900.0 : stiff ? 300.0 : 200.0);
+    return 0.01 * settings->rotor_inertia_percent * rigid_rad_s;
 }
 
 static bool bears(const struct drive_settings *settings, double period_s, double hold_current_A)

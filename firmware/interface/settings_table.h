@@ -68,9 +68,6 @@
     REAL(0x2111, current_bandwidth_rad_s, "rad/s", FIXED(10.0), FIXED(1e6), FOLLOWS, AT_ENABLE,    \
          "of the current loop inside it: 1500, with feedback-linearisation 2000, twice the swing " \
          "of a quicker hold, or what the period bears")                                            \
-    REAL(0x2112, rotor_inertia_share, "", FIXED(0.05), FIXED(1.0), FIXED(1.0), AT_ENABLE,          \
-         "of inertia_kgm2 what turns before a belt or a coupling that gives: the default "         \
-         "law_bandwidth_rad_s is less by it")                                                      \
     REALS(0x2180, law_gains, DRIVE_LAW_GAINS, "", FIXED(-1e12), FIXED(1e12), FOLLOWS, AT_ENABLE,   \
           "the law's gains by its own names, instead of what the bandwidths make of them")         \
     REALS(0x21c0, detent_torque_Nm, DRIVE_DETENT_COEFFICIENTS, "N m", FIXED(-100.0), FIXED(100.0), \
@@ -118,6 +115,9 @@
         0x2162, outputs_low, "", FIXED(0.0), FIXED(7.0), FIXED(0.0), AT_ENABLE,                    \
         "outputs that are low while active, added up: 1 alarm, 2 in position, 4 brake released; "  \
         "acts at once")                                                                            \
+    COUNT(0x2112, rotor_inertia_percent, "%", FIXED(5.0), FIXED(100.0), FIXED(100.0), AT_ENABLE,   \
+          "of inertia_kgm2 what turns before a belt or a coupling that gives: the default "        \
+          "law_bandwidth_rad_s is less by it")                                                     \
     REAL(                                                                                          \
         0x2163, holding_brake_s, "s", FIXED(0.0), FIXED(2.0), FIXED(0.0), AT_ENABLE,               \
         "so long before `disable` takes the current the holding brake engages; 0: none is fitted") \

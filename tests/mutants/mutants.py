@@ -640,7 +640,7 @@ MUTANTS = [
            "#define HOLD_CURRENT_SHARE      1.0", "#define HOLD_CURRENT_SHARE      0.5"),
     Mutant(DRIVE + "default_settings.c", "settings",
            "a_law_s_bandwidth_is_less_where_most_of_the_inertia_is_behind_a_belt",
-           "return settings->rotor_inertia_share * (", "return 1.0 * ("),
+           "0.01 * settings->rotor_inertia_percent * rigid_rad_s", "rigid_rad_s"),
     Mutant(DRIVE + "default_settings.c", "settings", "defaults_fit_a_longer_period",
            "LINEARISED_LAW_BANDWIDTH_PERIOD_MAX / period_s", "1e9"),
     Mutant("firmware/interface/simulation_only.c", "settings",

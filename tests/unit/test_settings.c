@@ -273,7 +273,7 @@ static void test_defaults_fit_a_longer_period(void)
 /* Behind a spring that gives the law has the rotor alone before it. */
 static void test_a_law_s_bandwidth_is_less_where_most_of_the_inertia_is_behind_a_belt(void)
 {
-    settings.rotor_inertia_share = 0.3;
+    settings.rotor_inertia_percent = 30u;
     default_settings_apply(&settings, 1e-4, 0u);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.3 * 300.0, settings.law_bandwidth_rad_s);
 }

@@ -31,19 +31,19 @@ def corners(sources):
 
 
 @entry("stiff-belts", "steadystep-sil campaign as-built --seeds 1-24 --set motor=MOTOR "
-       "--set plant.belt_frequency_Hz=HZ --set plant.belt_inertia_share=0.7 [--set drive.rotor_inertia_share=0.3]",
+       "--set plant.belt_frequency_Hz=HZ --set plant.belt_inertia_share=0.7 [--set drive.rotor_inertia_percent=30]",
        Cost.DEAR, probe=("campaign as-built --seeds 1-2 --json --set plant.belt_frequency_Hz=350 "
-                         "--set plant.belt_inertia_share=0.7 --set drive.rotor_inertia_share=0.3",))
+                         "--set plant.belt_inertia_share=0.7 --set drive.rotor_inertia_percent=30",))
 def stiff_belts(sources):
-    def held(motor, frequency_Hz, *share):
+    def held(motor, frequency_Hz, *given):
         run = campaign(sources, "as-built", "1-24", "--set", f"motor={motor}", "--set", "plant.belt_inertia_share=0.7",
-                       "--set", f"plant.belt_frequency_Hz={frequency_Hz}", *share)
+                       "--set", f"plant.belt_frequency_Hz={frequency_Hz}", *given)
         return f"{run['verdicts'].get('held', 0)}"
 
     belts = ("170", "250", "350")
-    rows = [[motor] + [f"{held(motor, belt)}, {held(motor, belt, '--set', 'drive.rotor_inertia_share=0.3')}"
+    rows = [[motor] + [f"{held(motor, belt)}, {held(motor, belt, '--set', 'drive.rotor_inertia_percent=30')}"
                        for belt in belts] for motor in ("bendjedia-2012", "23he22-2804s", "17hs4417", "sh2861-5141")]
-    return {"table": table(["of 24 runs held: default, with the share", *(f"{belt} Hz" for belt in belts)], rows)}
+    return {"table": table(["of 24 runs held: default, with the percentage", *(f"{belt} Hz" for belt in belts)], rows)}
 
 
 @entry("as-built-long", "steadystep-sil campaign long-run --seeds 1-100 --set plant=as-built",
