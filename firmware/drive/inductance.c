@@ -10,8 +10,9 @@
 #define CONFIRMED_BELOW NUM(-0.03)
 #define CONFIRMED_ABOVE NUM(0.075)
 
-/* The gains of motion, of the hold, of that without a load and of what follows one; the model. */
-#define PARTS 5u
+/* Sets of gains: of motion, of the hold, of that without a load, of what follows one. The model
+   comes into force before them. */
+enum { GAIN_SETS = 4, PARTS = GAIN_SETS + 1 };
 
 /* At once: of what is in force. */
 #define MORE_MAX NUM(0.45)
@@ -49,11 +50,11 @@ void inductance_put_part(struct drive *drive)
     struct drive_params *params = &drive->params;
     struct invariant_ekf_params *ekf = &params->estimator.invariant_ekf;
     struct winding *winding = &drive->estimator.estimate.winding;
-    struct invariant_ekf_gain_set *const gains[] = {&ekf->moving, &ekf->holding, &ekf->unloaded,
-                                                    &ekf->following};
+    struct invariant_ekf_gain_set *const gains[GAIN_SETS] = {&ekf->moving, &ekf->holding,
+                                                             &ekf->unloaded, &ekf->following};
 
     put->left--;
-    if (put->left < sizeof gains / sizeof gains[0]) {
+    if (put->left < GAIN_SETS) {
         scale_gains(gains[put->left], put->more);
         return;
     }

@@ -15,7 +15,7 @@ struct measurement_params measurement_design(const struct hal_facts *facts,
 
 void measurement_reset(struct measurement *measurement, const struct measurement_params *params)
 {
-    const struct phases none = {NUM(0.0), NUM(0.0)};
+    const struct phases none = {NUM(0.0), NUM(0.0)}; /* of both at once a call clears them */
 
     measurement->offset.current = none;
     measurement->offset.voltage = none;

@@ -27,6 +27,7 @@ struct offset_calibration_params offset_calibration_design(const struct hal_fact
 
 void offset_calibration_reset(struct offset_calibration *calibration)
 {
+    /* Member by member: a whole structure is cleared by a call of memset. */
     for (int n = 0; n < OFFSET_CHANNELS; n++) {
         struct offset_channel *channel = &calibration->channel[n];
 

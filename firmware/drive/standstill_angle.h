@@ -18,8 +18,8 @@ void standstill_angle_begin(struct drive *drive);
 
 /*
  * One period of the hold: its voltage with the pulses laid over it; presets in the estimator what
- * they have shown. `integral`: of the current control before this period. Not
- * inlined, so that the voltage of drives without pulses stays in registers.
+ * they have shown. `integral`: of the current control before this period. Not inlined, so that the
+ * voltage of drives without pulses stays in registers.
  */
 __attribute__((noinline, cold)) struct phases standstill_angle_step(struct drive *drive,
                                                                     const struct estimate *estimate,
