@@ -142,9 +142,9 @@ void synchronism_monitor_take(struct synchronism_monitor *monitor,
                               const struct synchronism_monitor_params *params, num_t innovation_sum,
                               bool holding)
 {
-    const coef_t per_sum =
-        holding ? params->voltage_per_sum_holding : params->voltage_per_sum_moving;
-    const num_t mean = num_mul_coef(innovation_sum, per_sum);
+    const coef_t *per_sum =
+        holding ? &params->voltage_per_sum_holding : &params->voltage_per_sum_moving;
+    const num_t mean = num_mul_coef(innovation_sum, *per_sum);
 
     monitor->disturbance = num_abs(num_half(mean + monitor->past_mean));
     monitor->past_mean = mean;
