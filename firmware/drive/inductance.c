@@ -15,7 +15,7 @@
 enum { GAIN_SETS = 4, PARTS = GAIN_SETS + 1 };
 
 /* At once: of what is in force. */
-#define MORE_MAX NUM(0.45)
+#define MORE_MAX NUM(0.65)
 
 static void scale_gains(struct invariant_ekf_gain_set *gain, num_t more)
 {

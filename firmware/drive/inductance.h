@@ -24,7 +24,7 @@ enum { FINDS_INDUCTANCE = 1 };
 
 /* What a sound motor has less or more than its settings. */
 #define INDUCTANCE_LESS_MAX 0.35
-#define INDUCTANCE_MORE_MAX 0.4
+#define INDUCTANCE_MORE_MAX 0.6
 
 struct drive;
 

@@ -78,7 +78,7 @@
           STANDS, "let it cool; give it more air, or the motor less current")                      \
     FAULT(ENCODER, 0x7305, "encoder", "it miscounts", NO_LIMIT, UNCERTAIN,                         \
           "check the encoder, its cable and its supply; free the axis if it is held")              \
-    FAULT(INDUCTANCE, 0xff07, "inductance", "it is not 0.65 to 1.4 of", LIMIT(motor.inductance_H), \
+    FAULT(INDUCTANCE, 0xff07, "inductance", "it is not 0.65 to 1.6 of", LIMIT(motor.inductance_H), \
           STANDS, "correct inductance_H")
 
 #endif

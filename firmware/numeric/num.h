@@ -133,7 +133,7 @@ static inline num_t num_mul_coef(num_t a, coef_t k)
 #endif
 }
 
-/* k (1 + more), for |more| < 1/2 and a gain below 2^14. */
+/* k (1 + more), for |more| < 1 and a gain below 2^14. */
 static inline coef_t coef_more(coef_t k, num_t more)
 {
     const int32_t factor = (more >> (NUM_FRACTION_BITS - 15)) + (1 << 15);

@@ -348,7 +348,7 @@ MUTANTS = [
            "offset_and_resistance_that_are_wrong_do_not_err_it",
            "num_mul(current - measurement->begin, share)", "num_mul(current, share)"),
     Mutant(DRIVE + "inductance.c", "inductance", "what_no_sound_motor_has_is_refused",
-           "found > NUM(INDUCTANCE_MORE_MAX)", "found > NUM(0.42)"),
+           "found > NUM(INDUCTANCE_MORE_MAX)", "found > NUM(0.62)"),
     Mutant(DRIVE + "inductance.c", "inductance",
            "in_force_the_model_is_that_of_the_inductance_and_each_gain_goes_with_it",
            "&ekf->following};", "&ekf->unloaded};"),

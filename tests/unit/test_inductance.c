@@ -193,10 +193,10 @@ static void are_scaled(double by, const struct invariant_ekf_gain_set *gain,
 
 static void test_in_force_the_model_is_that_of_the_inductance_and_each_gain_goes_with_it(void)
 {
-    static const double scales[] = {0.75, 1.25};
+    static const double scales[] = {0.75, 1.25, 1.55};
 
     settings.current_bandwidth_rad_s = 1500.0;
-    for (size_t i = 0; i < 2; i++) {
+    for (size_t i = 0; i < 3; i++) {
         const struct drive_params anew = designed_for(scales[i] * bench_params.inductance_H);
         const struct drive_params nominal = designed_for(bench_params.inductance_H);
         const struct invariant_ekf_params *before = &nominal.estimator.invariant_ekf;
@@ -236,14 +236,14 @@ static void test_what_is_found_again_and_again_counts_from_the_settings(void)
     TEST_ASSERT_TRUE(put(NUM(0.15))); /* 3.5 % more: confirms them */
     TEST_ASSERT_EQUAL_DOUBLE(0.0, signals().inductance_change);
     is_scaled(1.0, drive.params.current_control.proportional, nominal.current_control.proportional);
-    TEST_ASSERT_TRUE(put(NUM(0.3)));
-    TEST_ASSERT_FALSE(put(NUM(0.1))); /* 43 % more than the settings */
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.3, signals().inductance_change);
+    TEST_ASSERT_TRUE(put(NUM(0.5)));
+    TEST_ASSERT_FALSE(put(NUM(0.1))); /* 65 % more than the settings */
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.5, signals().inductance_change);
 }
 
 static void test_what_no_sound_motor_has_is_refused(void)
 {
-    static const double beyond[] = {-0.36, 0.41, 1.0};
+    static const double beyond[] = {-0.36, 0.61, 1.0};
 
     power_up();
     for (size_t i = 0; i < 3; i++) {

@@ -386,7 +386,7 @@ static void test_a_gain_is_changed_by_a_share(void)
 {
     static const double gains[] = {1.0,  0.99,   0.75,    -0.99, 1e-3,
                                    31.9, 1000.0, 12000.0, -3e-4, 1.8e-3};
-    static const double shares[] = {-0.45, -0.1, -1e-3, 0.0, 1e-3, 0.02, 0.1, 0.45};
+    static const double shares[] = {-0.45, -0.1, -1e-3, 0.0, 1e-3, 0.02, 0.1, 0.65};
 
     for (int g = 0; g < 10; g++) {
         for (int s = 0; s < 8; s++) {
