@@ -42,6 +42,7 @@ static void test_a_long_value_is_written_with_or_without_its_size(void)
     asked("0000000000000000", "2000000000000000");
     asked("1D40000000000000", "3000000000000000");
     TEST_ASSERT_TRUE(bench.application.chosen.current_limit_A == 2.0);
+    asked("0000000000000000", "8020210001000405"); /* a segment behind the last */
     asked("2120210008000000", "6020210000000000");
     asked("0000000000000000", "2000000000000000");
     asked("4000100000000000", "4300100092010400"); /* another transfer ends it */

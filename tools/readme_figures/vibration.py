@@ -21,11 +21,22 @@ def vibration(sources):
     return found
 
 
-@entry("picture-envelope", "tools/envelope", Cost.CAMPAIGN, picture="envelope.png",
-       probe=("run load-step hold-transition --json --set plant.model=real",
-              "run load-step --json --set plant.model=real --set plant.km_scale=0.9"))
-def envelope(sources):
-    folder = sources.build / "envelope"
-    sources.tool("envelope", "--program", sources.program, "--out", folder)
-    sources.keep_picture(folder / "envelope.png", "envelope.png")
+def keep_envelope(sources, plant, name):
+    folder = sources.build / f"envelope-{plant}"
+    sources.tool("envelope", "--plant", plant, "--program", sources.program, "--out", folder)
+    sources.keep_picture(folder / "envelope.png", name)
     return {}
+
+
+@entry("picture-envelope", "tools/envelope", Cost.CAMPAIGN, picture="envelope.png",
+       probe=("run load-step hold-transition --json --set plant.model=as-built",
+              "run load-step --json --set plant.model=as-built --set plant.km_scale=0.9"))
+def envelope(sources):
+    return keep_envelope(sources, "as-built", "envelope.png")
+
+
+@entry("picture-envelope-bench", "tools/envelope --plant bench", Cost.CAMPAIGN, picture="envelope-bench.png",
+       probe=("run load-step hold-transition --json --set plant.model=bench",
+              "run load-step --json --set plant.model=bench --set plant.km_scale=0.9"))
+def envelope_on_bench(sources):
+    return keep_envelope(sources, "bench", "envelope-bench.png")
