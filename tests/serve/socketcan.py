@@ -7,6 +7,7 @@ kernel installs it.
 
 usage: socketcan.py SIL
 """
+import contextlib
 import math
 import os
 import pathlib
@@ -35,32 +36,28 @@ def boot(served):
     # TMPDIR holds the machine's memory, for which a container's /dev/shm is too small.
     with open(console, "wb") as output:
         machine = subprocess.Popen(
-            ["setpriv", "--pdeathsig", "TERM", "linux.uml", "mem=96M", "quiet",
-             "rootfstype=hostfs", "rootflags=/", "ro", f"uml_dir={served.folder}", "umid=machine",
+            ["linux.uml", "mem=96M", "quiet", "rootfstype=hostfs", "rootflags=/", "ro",
+             f"uml_dir={served.folder}", "umid=machine",
              "con=null", "con0=null,fd:1", "ssl=null", f"ssl0=tty:{served.link.resolve()}",
              f"init={INIT}", "--", sys.executable],
             env={**os.environ, "TMPDIR": str(served.folder)}, start_new_session=True,
             stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT)
+    # A machine is a group of processes, which would outlive this one if it is killed.
+    guard = subprocess.Popen(
+        ["sh", "-c", 'read -r _ || kill -KILL "$@"', "sh", f"-{machine.pid}",
+         str(served.process.pid)], start_new_session=True, stdin=subprocess.PIPE)
     end = time.monotonic() + LONGEST_S
     try:
         while machine.poll() is None and time.monotonic() < end:
             states.append(knobs.ask("state"))
             time.sleep(0.05)
     finally:
-        switch_off(machine)
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(machine.pid, signal.SIGKILL)
+        machine.wait()
+        guard.communicate(b"\n")
         knobs.close()
     return console.read_text(errors="replace").splitlines(), states
-
-
-def switch_off(machine):
-    """A Linux that is terminated ends its processes, one that is killed leaves them."""
-    if machine.poll() is None:
-        machine.terminate()
-        try:
-            machine.wait(timeout=5)
-        except subprocess.TimeoutExpired:
-            os.killpg(machine.pid, signal.SIGKILL)
-            machine.wait()
 
 
 def the_client_is_content(said):
@@ -78,7 +75,7 @@ def the_kernel_has_nothing_to_complain_of(said):
 
 def candump_shows(said):
     """Frames of both directions, as "ID#DATA", in the order in which the kernel saw them."""
-    frames = [found[1] for found in (re.match(r"frame \(\d+\.\d+\) can0 (\S+)$", line)
+    frames = [found[1] for found in (re.match(r"\(\d+\.\d+\) can0 (\S+)$", line)
                                      for line in said) if found]
     CHECKS.that(frames[:2] == ["601#4000100000000000", "581#4300100092010400"],
                 f"cansend asks for 1000h, the drive answers: {frames[:2]}")
