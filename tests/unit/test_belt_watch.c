@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "firmware/drive/belt_watch.h"
-#include "tests/unit/num_assert.h"
+#include "tests/unit/drive_bench.h"
 
 static struct belt_watch watch;
 
@@ -52,11 +52,37 @@ static void test_slower_quicker_and_smaller_ones_are_none(void)
     TEST_ASSERT_FALSE(shows(20000, 40.0, 0.009));
 }
 
+/* What the current control weighs an error with, behind a swing of the speed in this state. */
+static double gain_behind_a_swing(enum drive_state state, bool watches)
+{
+    drive_bench_reset();
+    power_up();
+    drive.supervision.state = state;
+    drive.belt_watch = (struct belt_watch){
+        .swing = NUM(0.02), .soonest = 14, .latest = 40, .watches = watches};
+    for (uint32_t k = 0; k < 400u; k++) {
+        drive.supervision.period = k;
+        drive.estimator.estimate.rotor.speed = num_from_double(0.05 * sin(0.157 * k));
+        belt_watch_background(&drive);
+    }
+    return coef_to_double(drive.params.current_control.proportional);
+}
+
+static void test_the_current_loop_of_a_drive_in_operation_becomes_the_widest(void)
+{
+    const double as_designed = gain_behind_a_swing(DRIVE_SWITCH_ON_DISABLED, true);
+
+    TEST_ASSERT_DOUBLE_WITHIN(0.05 * as_designed, 2.0 * as_designed, /* 3000 of 1500 rad/s */
+                              gain_behind_a_swing(DRIVE_OPERATION_ENABLED, true));
+    TEST_ASSERT_EQUAL_DOUBLE(as_designed, gain_behind_a_swing(DRIVE_OPERATION_ENABLED, false));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_swing_of_125_to_350_hertz_is_seen_within_eight_cycles);
     RUN_TEST(test_a_few_cycles_are_none);
     RUN_TEST(test_slower_quicker_and_smaller_ones_are_none);
+    RUN_TEST(test_the_current_loop_of_a_drive_in_operation_becomes_the_widest);
     return UNITY_END();
 }

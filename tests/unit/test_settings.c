@@ -176,6 +176,18 @@ static void test_what_is_not_given_follows_from_motor_and_period(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-5, 4.2 / 388.3, settings.hold_delay_s);
 }
 
+/* They were another law's. */
+static void test_bandwidths_that_were_given_do_not_outlive_their_law(void)
+{
+    settings.law_bandwidth_rad_s = 111.0;
+    settings.current_bandwidth_rad_s = 2222.0;
+    settings.observer_bandwidth_rad_s = 333.0;
+    drive_settings_select_law(&settings, POSITION_LAW_PID);
+    TEST_ASSERT_DOUBLE_IS_NAN(settings.law_bandwidth_rad_s);
+    TEST_ASSERT_DOUBLE_IS_NAN(settings.current_bandwidth_rad_s);
+    TEST_ASSERT_DOUBLE_IS_NAN(settings.observer_bandwidth_rad_s);
+}
+
 /* The rotor alone, without its load: it swings seven times as fast in the hold. */
 static void test_a_light_rotor_gets_a_wider_and_sooner_hold(void)
 {
@@ -479,6 +491,7 @@ int main(void)
     RUN_TEST(test_ranges_and_units_are_those_of_the_contract);
     RUN_TEST(test_every_setting_may_take_the_bounds_of_its_range);
     RUN_TEST(test_what_is_not_given_follows_from_motor_and_period);
+    RUN_TEST(test_bandwidths_that_were_given_do_not_outlive_their_law);
     RUN_TEST(test_a_light_rotor_gets_a_wider_and_sooner_hold);
     RUN_TEST(test_a_hold_that_a_motor_does_not_bear_gets_less_current_in_steps);
     RUN_TEST(test_every_law_has_its_bandwidths);
