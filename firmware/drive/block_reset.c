@@ -12,6 +12,15 @@ void drive_reset_control(struct drive *drive)
     expectation_reset(&drive->expectation);
 }
 
+void drive_preset_current_control(struct drive *drive)
+{
+    const num_t resistance = drive->estimator.estimate.winding.resistance;
+    const struct dq drop = {num_mul(resistance, drive->current.d),
+                            num_mul(resistance, drive->current.q)};
+
+    current_control_preset(&drive->current_control, drop);
+}
+
 void drive_reset_motion(struct drive *drive)
 {
     const struct drive_params *params = &drive->params;

@@ -23,6 +23,8 @@ bool command_queue_put(struct command_queue *queue, const struct queued_command 
         entry->request = command->request;
     } else if (command->kind == DRIVE_COMMAND_SET_POSITION) { /* of a drive at rest */
         entry->position = command->position;
+    } else if (command->kind == DRIVE_COMMAND_TORQUE) {
+        entry->torque = command->torque;
     }
     atomic_signal_fence(memory_order_release);
     queue->written = queue->written + 1u;

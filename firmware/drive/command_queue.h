@@ -12,6 +12,7 @@
 #ifndef STEADYSTEP_COMMAND_QUEUE_H
 #define STEADYSTEP_COMMAND_QUEUE_H
 
+#include "firmware/drive/torque_mode.h"
 #include "firmware/interface/drive_interface.h"
 #include "firmware/motion/profile.h"
 #include "firmware/motion/sine.h"
@@ -34,6 +35,7 @@ struct queued_command {
         struct profile profile;        /* of a move */
         struct motion_request request; /* of a command the background plans */
         struct position position;      /* of set-position, the user's */
+        struct torque_mode torque;
     };
 };
 

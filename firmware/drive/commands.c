@@ -197,6 +197,10 @@ bool drive_command_asked_in(struct drive *drive, const struct drive_command *com
         !set_position(drive, command, &queued, error)) {
         return false;
     }
+    if (command->kind == DRIVE_COMMAND_TORQUE &&
+        !planner_request_torque(drive, command, &queued.torque, error)) {
+        return false;
+    }
     if (queued_command_is_planned(&queued)) {
         planner_follow(drive);
         if (command->kind == DRIVE_COMMAND_SET_POINT && drive->planner.set_points_open) {

@@ -8,6 +8,7 @@
  * with the voltage already committed, and compared with the reference of S(k+1).
  */
 #include "firmware/drive/modulate.h"
+#include "firmware/drive/block_reset.h"
 #include "firmware/drive/drive.h"
 #include "firmware/drive/position_detecting.h"
 #include "firmware/drive/prepared_input.h"
@@ -99,6 +100,19 @@ IN_PLACE void move_rotor(struct current_demand *demand, struct drive *drive,
     demand->frame.speed = next->rotor.speed;
 }
 
+/* Current control. */
+IN_PLACE struct phases drive_current(struct drive *drive, const struct prediction *next,
+                                     const struct current_demand *demand)
+{
+    drive->current_reference = demand->current;
+    drive->current = park(next->current, demand->frame.begin);
+    drive->voltage_command = current_control_step(
+        &drive->current_control, &drive->params.current_control, demand->current, drive->current,
+        (struct rotation){demand->frame.speed, next->rotor.speed},
+        modulator_voltage_limit(&drive->modulator, &drive->params.modulator));
+    return inverse_park(drive->voltage_command, demand->frame.middle);
+}
+
 /* Hold or current law, then current control. */
 IN_PLACE struct phases regulate_current(struct drive *drive, const struct prediction *next,
                                         bool held, bool feed_forward)
@@ -110,13 +124,48 @@ IN_PLACE struct phases regulate_current(struct drive *drive, const struct predic
     } else {
         move_rotor(&demand, drive, next, feed_forward);
     }
-    drive->current_reference = demand.current;
-    drive->current = park(next->current, demand.frame.begin);
-    drive->voltage_command = current_control_step(
-        &drive->current_control, &drive->params.current_control, demand.current, drive->current,
-        (struct rotation){demand.frame.speed, next->rotor.speed},
-        modulator_voltage_limit(&drive->modulator, &drive->params.modulator));
-    return inverse_park(drive->voltage_command, demand.frame.middle);
+    return drive_current(drive, next, &demand);
+}
+
+/* The current of the torque that is commanded, within those that keep the speed. */
+static num_t torque_current(const struct drive *drive, const struct rotor *rotor)
+{
+    const struct standstill_hold_params *hold = &drive->params.hold;
+    const num_t speed = drive->torque.speed;
+
+    return num_clamp(
+        drive->torque.current,
+        standstill_hold_torque_current(hold, rotor->speed + speed, rotor->load_torque),
+        standstill_hold_torque_current(hold, rotor->speed - speed, rotor->load_torque));
+}
+
+/* In torque mode no law answers, and the reference follows the rotor. Apart: rare. */
+__attribute__((noinline)) static struct phases regulate_torque(struct drive *drive,
+                                                               const struct prediction *next)
+{
+    const num_t half_turns = half_period_turns(&drive->params.model, next->rotor.speed);
+    struct current_demand demand;
+
+    demand.current.d = standstill_hold_motion_current(&drive->hold, &drive->params.hold);
+    demand.current.q = torque_current(drive, &next->rotor);
+    demand.frame.begin = next->frame;
+    demand.frame.middle = sincos_add(next->frame, next->half_turn);
+    demand.frame.speed = next->rotor.speed;
+    reference_place_in_motion(&drive->reference, next->rotor.position, next->rotor.speed,
+                              (int32_t)angle_from_turns(half_turns));
+    return drive_current(drive, next, &demand);
+}
+
+/* Whether torque is commanded; it ends with a stop of the reference, or as that begins anew. */
+IN_PLACE bool torque_leads(struct drive *drive)
+{
+    if (!ESTIMATORS_READ_ENCODER || !RARE(drive->torque.speed != NUM(0.0))) {
+        return false;
+    }
+    if (!reference_follows(&drive->reference)) {
+        drive->torque.speed = NUM(0.0);
+    }
+    return drive->torque.speed != NUM(0.0);
 }
 
 /* A voltage law. */
@@ -279,23 +328,13 @@ IN_PLACE void enter_or_leave_hold(struct drive *drive, bool held)
     }
 }
 
-/* Bumpless: the hold begins with the voltage that its current takes. */
-static void preset_hold(struct drive *drive, const struct estimate *estimate)
-{
-    const num_t resistance = estimate->winding.resistance;
-    const struct dq drop = {num_mul(resistance, drive->current.d),
-                            num_mul(resistance, drive->current.q)};
-
-    current_control_preset(&drive->current_control, drop);
-}
-
 /* Bumpless, too: of a voltage law that begins nothing of the past is left. */
-IN_PLACE void transfer(struct drive *drive, const struct estimate *estimate, bool held)
+IN_PLACE void transfer(struct drive *drive, bool held)
 {
     enter_or_leave_hold(drive, held);
     if (RARE(drive->hold.active != held)) {
         if (!held) {
-            preset_hold(drive, estimate);
+            drive_preset_current_control(drive);
         } else if (position_law_gives_voltage(drive->params.position_law)) {
             position_law_reset(&drive->law);
         }
@@ -426,9 +465,13 @@ static void control_with_all(struct drive *drive, const struct estimate *estimat
     if (RARE(params->path.standstill_pulses)) {
         integral = drive->current_control.integral;
     }
-    voltage = !held && position_law_gives_voltage(params->position_law)
-                  ? regulate_voltage(drive, estimate, &next)
-                  : regulate_current(drive, &next, held, params->path.feed_forward);
+    if (torque_leads(drive)) {
+        voltage = regulate_torque(drive, &next);
+    } else if (!held && position_law_gives_voltage(params->position_law)) {
+        voltage = regulate_voltage(drive, estimate, &next);
+    } else {
+        voltage = regulate_current(drive, &next, held, params->path.feed_forward);
+    }
     if (RARE(params->path.standstill_pulses)) {
         if (held) {
             voltage = standstill_angle_step(drive, estimate, integral, voltage);
@@ -445,7 +488,7 @@ static void control_with_all(struct drive *drive, const struct estimate *estimat
     if (has_zero_delay(&params->path)) {
         act_at_once(drive);
     }
-    transfer(drive, estimate, held);
+    transfer(drive, held);
 }
 
 /*

@@ -30,6 +30,7 @@
 #include "firmware/drive/rotor_watch.h"
 #include "firmware/drive/thermal_watch.h"
 #include "firmware/drive/torque_constant.h"
+#include "firmware/drive/torque_mode.h"
 #include "firmware/estimator/encoder_alignment.h"
 #include "firmware/estimator/estimator.h"
 #include "firmware/estimator/initial_position.h"
@@ -179,6 +180,7 @@ struct drive {
     /* the blocks that the default does without */
     union position_law_state law;
     struct detent_compensation detent;
+    struct torque_mode torque;
 
     struct supervision supervision;
     struct {

@@ -65,7 +65,13 @@ static inline bool interrupt_view_moves(const struct drive *drive)
     return INTERRUPT_VIEW(enum reference_phase, drive->reference.phase) != REFERENCE_REST;
 }
 
-/* Counts resets of the reference, and stops of its plans. */
+/* Whether a torque is commanded, and no position. */
+static inline bool interrupt_view_torque(const struct drive *drive)
+{
+    return INTERRUPT_VIEW(num_t, drive->torque.speed) != NUM(0.0);
+}
+
+/* Counts resets of the reference, stops of its plans, and begins of torque mode. */
 static inline uint32_t interrupt_view_epoch(const struct drive *drive)
 {
     return INTERRUPT_VIEW(uint32_t, drive->reference.epoch);

@@ -16,6 +16,7 @@
 #define INTERVAL_MAX      65536.0
 #define AMPLITUDE_MIN_rad 1e-6
 #define SPEED_MIN_rad_s   1e-9
+#define SPEED_SHARE_MIN   1e-3 /* of the limit: a torque moves it at least so fast */
 #define FREQUENCY_MIN_Hz  1e-3
 #define CYCLES_MAX        1e9
 
@@ -197,6 +198,45 @@ static bool request_sine(const struct drive *drive, const struct drive_command *
     if (limits->jerk < limits->acceleration * T / stop_s) {
         limits->jerk = limits->acceleration * T / stop_s;
     }
+    return true;
+}
+
+/* How it stops: as quickly as the quick stop of a fieldbus. */
+static struct motion_limits stopping_limits(const struct units *units, double speed,
+                                            double acceleration)
+{
+    const double share = 0.5;
+    const double jerk_s = 5e-3;
+
+    return (struct motion_limits){.speed = speed / units->speed,
+                                  .acceleration = share * acceleration / units->acceleration,
+                                  .jerk = share * acceleration / jerk_s / units->jerk};
+}
+
+bool planner_request_torque(struct drive *drive, const struct drive_command *command,
+                            struct torque_mode *asked, char error[DRIVE_ERROR_TEXT])
+{
+    const struct drive_settings *settings = &drive->settings;
+    const struct units units = units_of(drive);
+    const struct speed_limit limit = speed_limit(drive, &units);
+    const double most_Nm = settings->current_limit_A * settings->motor.torque_constant_Nm_A;
+    const double speed = command->speed_rad_s != 0.0 ? command->speed_rad_s : limit.rad_s;
+
+    if (settings->feedback != DRIVE_FEEDBACK_ENCODER) {
+        return design_refuse(error,
+                             "torque refused: without an encoder the rotor is lost where the "
+                             "load turns it slowly");
+    }
+    if (!planned_end_require_no_stop(drive, error) ||
+        !design_require_within(error, "torque", command->torque_Nm, -most_Nm, most_Nm, "N m",
+                               "current_limit_A") ||
+        !design_require_within(error, "speed", speed, SPEED_SHARE_MIN * limit.rad_s, limit.rad_s,
+                               "rad/s", limit.reason)) {
+        return false;
+    }
+    drive->planner.limits = stopping_limits(&units, limit.rad_s, acceleration_limit(drive, &units));
+    asked->current = num_from_double(command->torque_Nm / drive->base.torque_Nm);
+    asked->speed = num_from_double(speed / drive->base.speed_rad_s);
     return true;
 }
 

@@ -67,8 +67,8 @@ bool planned_end_require_known(struct drive *drive, char error[DRIVE_ERROR_TEXT]
 {
     return planned_end_require_no_stop(drive, error) &&
            (drive->planned_end.known == PLANNED_END_KNOWN ||
-            design_refuse(error, "move refused: the reference follows a sine, set-points or a "
-                                 "speed: stop it, or retarget")) &&
+            design_refuse(error, "move refused: the reference follows a sine, set-points, a "
+                                 "speed or a torque: stop it, or retarget")) &&
            planned_end_require_in_range(drive, drive->planned_end.position, error);
 }
 
@@ -100,7 +100,7 @@ void planned_end_note_command(struct drive *drive, const struct queued_command *
     } else if (queued->kind == DRIVE_COMMAND_RETARGET) {
         drive->planned_end.position = queued->request.target;
         drive->planned_end.known = PLANNED_END_KNOWN;
-    } else if (queued_command_is_planned(queued)) {
+    } else if (queued_command_is_planned(queued) || queued->kind == DRIVE_COMMAND_TORQUE) {
         drive->planned_end.known = PLANNED_END_AFTER_MOTION;
     } else if (queued->kind == DRIVE_COMMAND_SET_POSITION) {
         drive->planned_end.offset = position_minus(queued->position, drive->planned_end.position);

@@ -11,7 +11,7 @@
 enum planned_end_known {
     PLANNED_END_KNOWN,
     PLANNED_END_AFTER_STOP,     /* where the reference comes to rest after a stop */
-    PLANNED_END_AFTER_MOTION,   /* likewise after sine, set-points or velocity */
+    PLANNED_END_AFTER_MOTION,   /* likewise after sine, set-points, velocity or torque */
     PLANNED_END_AFTER_ENABLING, /* where the rotor is when the drive is ready */
 };
 

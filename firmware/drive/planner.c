@@ -51,14 +51,14 @@ void planner_follow(struct drive *drive)
     struct command_queue *queue = &drive->commands;
     const uint32_t epoch = interrupt_view_epoch(drive);
 
-    if (p->epoch != epoch) { /* a reset, or the stop of a plan */
+    if (p->epoch != epoch) { /* a reset, the stop of a plan, or torque mode */
         command_queue_withdraw_preemption(queue);
         reference_continue(&drive->reference, NULL);
         p->epoch = epoch;
         p->offered = NULL;
         p->motion = PLANNER_IDLE;
         p->set_points_open = false;
-        p->stop_due = true;
+        p->stop_due = !interrupt_view_torque(drive);
         if (drive->reference.phase != REFERENCE_PLANNED) { /* a reset */
             p->lead_periods = lead_periods(drive, DRIVE_LEAD_s);
         }
@@ -334,6 +334,7 @@ static void take_command(struct drive *drive)
         !may_begin(drive, command)) {
         return;
     }
+    torque_mode_end(drive);
     plan = free_plan(drive);
     if (begin_plan(drive, plan, at_period)) {
         const enum planner_motion motion = plan_command(p, plan, command, creep_speed(drive));

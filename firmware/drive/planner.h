@@ -71,6 +71,10 @@ struct drive;
 bool planner_request(struct drive *drive, const struct drive_command *command,
                      struct motion_request *request, char error[DRIVE_ERROR_TEXT]);
 
+/* The same of a torque, which is not planned but stopped by a plan. */
+bool planner_request_torque(struct drive *drive, const struct drive_command *command,
+                            struct torque_mode *asked, char error[DRIVE_ERROR_TEXT]);
+
 /* DRIVE_LEAD_s in control periods. */
 uint32_t planner_lead_periods(const struct drive *drive);
 

@@ -76,15 +76,17 @@ void settings_in_motion_derate(struct drive *drive)
     const double set_A = drive->thermal.limit_A;
     const double base_A = drive->base.current_A;
     const num_t set = num_from_double(set_A / base_A);
-    const num_t left = thermal_watch_limit(&drive->thermal, set, params->hold.motion_current);
+    num_t left = thermal_watch_limit(&drive->thermal, set, params->hold.motion_current);
 
     if (of_law != NULL) {
         put(of_law, left);
         put(&drive->synchronism.params.full_current, num_mul_unit(left, UNIT(FULL_CURRENT)));
         drive->settings.current_limit_A = left < set ? num_to_double(left) * base_A : set_A;
     }
-    put(&params->hold.current_limit,
-        thermal_watch_limit(&drive->thermal, set, params->hold.current));
+    if (params->hold.enters_at_rest) {
+        left = thermal_watch_limit(&drive->thermal, set, params->hold.current);
+    }
+    put(&params->hold.current_limit, left);
 }
 
 bool settings_in_motion_change(struct drive *drive, const struct drive_settings *wanted,

@@ -196,6 +196,16 @@ __attribute__((noinline)) static void obey_at_rest(struct drive *drive,
     }
 }
 
+/* Torque waits for no rest; false: it is another command. */
+static inline bool take_torque(struct drive *drive, const struct queued_command *command)
+{
+    if (!ESTIMATORS_READ_ENCODER || command->kind != DRIVE_COMMAND_TORQUE) {
+        return false;
+    }
+    torque_mode_take(drive, &command->torque);
+    return true;
+}
+
 /* true: done with the command; false: it waits for its period or for the reference to rest. */
 static inline bool obey(struct drive *drive, struct queued_command *command)
 {
@@ -210,7 +220,8 @@ static inline bool obey(struct drive *drive, struct queued_command *command)
         return true;
     }
     if (reference_busy(&drive->reference)) {
-        return false; /* and so the profile in use stays in the queue's memory */
+        /* and so the profile in use stays in the queue's memory */
+        return take_torque(drive, command);
     }
     if (moves) {
         if (!reference_load(&drive->reference, &command->profile)) {
@@ -223,6 +234,8 @@ static inline bool obey(struct drive *drive, struct queued_command *command)
     }
     if (command->kind == DRIVE_COMMAND_HOLD) {
         reference_count_as_slow(&drive->reference);
+    } else {
+        (void)take_torque(drive, command);
     }
     return true;
 }

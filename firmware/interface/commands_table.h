@@ -31,9 +31,11 @@
     PARAMETER(0x2207, cycles, "", 0.0, 1e9, "whole or half ones; 0: until a stop")                 \
     PARAMETER(0x2208, interval_s, "s", 1e-6, 1.0,                                                  \
               "between set-points, at least 3 control periods; rounded to whole ones")             \
-    PARAMETER(0x2209, speed_rad_s, "rad/s", -1e5, 1e5, "signed; of a retarget the largest")        \
+    PARAMETER(0x2209, speed_rad_s, "rad/s", -1e5, 1e5,                                             \
+              "signed; of a retarget or a torque the largest")                                     \
     PARAMETER(0x220a, acceleration_rad_s2, "rad/s2", 1e-6, 1e12, "largest")                        \
-    PARAMETER(0x220b, jerk_rad_s3, "rad/s3", 1e-6, 1e15, "largest")
+    PARAMETER(0x220b, jerk_rad_s3, "rad/s3", 1e-6, 1e15, "largest")                                \
+    PARAMETER(0x220c, torque_Nm, "N m", -1e3, 1e3, "of the currents, signed")
 
 #define DRIVE_COMMANDS_TABLE(COMMAND)                                                              \
     COMMAND(1, ENABLE, "enable", 0, 0, OUTSIDE_FAULT, IN_TURN,                                     \
@@ -67,6 +69,8 @@
             "keeps settings and what was learned; not while a sine or "                            \
             "set-points go on")                                                                    \
     COMMAND(13, SET_POSITION, "set-position", WITH(position_rad), 0, READY_OR_DISABLED, IN_TURN,   \
-            "the axis is at this position from now on, nothing moves; not in motion")
+            "the axis is at this position from now on, nothing moves; not in motion")              \
+    COMMAND(14, TORQUE, "torque", WITH(torque_Nm), WITH(speed_rad_s), IN_OPERATION, IN_TURN,       \
+            "with an encoder: a torque for ever, up to a speed, from whatever motion")
 
 #endif

@@ -55,6 +55,22 @@ void reference_place(struct reference *r, struct position position)
     r->now.position = position;
 }
 
+void reference_follow(struct reference *r)
+{
+    r->phase = REFERENCE_PLANNED;
+    r->periods_left = UINT32_MAX;
+    r->creeps = false;
+    r->stop_requested = false;
+    r->jerks = false;
+    r->at.acceleration = 0;
+    r->next.acceleration = NUM(0.0);
+    r->next.moving = true;
+    r->now.moving = true;
+    r->slow_periods = 0u;
+    r->course = REFERENCE_STEADY;
+    r->epoch++;
+}
+
 bool reference_load(struct reference *r, struct profile *profile)
 {
     if (r->phase != REFERENCE_REST || r->next.position.turns != profile->start.turns ||

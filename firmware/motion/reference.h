@@ -131,6 +131,29 @@ void reference_reset(struct reference *reference, struct position position);
 /* Of a reference at rest while nothing follows it: the position is now this one. */
 void reference_place(struct reference *reference, struct position position);
 
+/* From whatever motion: goes on for ever at its speed, where it is placed meanwhile. In a new
+   epoch: what was planned is void. */
+void reference_follow(struct reference *reference);
+
+/* Behind a step of such a reference: the rotor as it will be at S(k+1); `half_turns` are those of
+   half a period, `speed` per-unit. */
+static inline void reference_place_in_motion(struct reference *reference, struct position position,
+                                             num_t speed, int32_t half_turns)
+{
+    reference->at.turns = position.turns;
+    reference->at.fraction = (uint64_t)position.fraction << 32;
+    reference->at.speed = (int64_t)half_turns * ((int64_t)1 << 33);
+    reference->next.position = position;
+    reference->next.speed = speed;
+    reference->periods_left = UINT32_MAX;
+}
+
+/* It goes on so, and has neither been stopped nor taken over. */
+static inline bool reference_follows(const struct reference *reference)
+{
+    return reference->course == REFERENCE_STEADY;
+}
+
 /* A profile is loaded or runs: another one would be refused. */
 static inline bool reference_busy(const struct reference *reference)
 {

@@ -392,7 +392,7 @@ void post_commands(sil::Board &board, const Scenario &scenario)
             throw InputError(event.location.text() + ": " + refusal.what());
         }
         if (kind == DRIVE_COMMAND_SINE || kind == DRIVE_COMMAND_VELOCITY ||
-            kind == DRIVE_COMMAND_SET_POINT) {
+            kind == DRIVE_COMMAND_SET_POINT || kind == DRIVE_COMMAND_TORQUE) {
             return;
         }
         ++posted;
