@@ -109,6 +109,9 @@ static enum machine_stop stop_of_command(struct application *application,
         break;
     case DRIVE_COMMAND_VELOCITY:
         break;
+    case DRIVE_COMMAND_TORQUE:
+        way = command->torque_Nm;
+        break;
     default:
         return MACHINE_STOP_NONE;
     }
@@ -193,6 +196,18 @@ static void stop(struct application *application, enum machine_stop stop)
     }
 }
 
+/* By its sign. A torque goes where it pushes, whatever a rotor at rest seems to do. */
+static double way_of_motion(struct application *application)
+{
+    const struct drive *drive = &application->drive;
+    struct drive_signals now;
+
+    drive_signals_read(drive, &now);
+    return interrupt_view_torque(drive) && drive->torque.current != NUM(0.0)
+               ? num_to_double(drive->torque.current)
+               : now.omega_ref_rad_s;
+}
+
 static void obey_inputs(struct application *application)
 {
     struct machine_io *io = &application->io;
@@ -202,10 +217,9 @@ static void obey_inputs(struct application *application)
 
     if (state == DRIVE_OPERATION_ENABLED && moves(application) &&
         application->chosen.inputs_used != 0) {
-        struct drive_signals now;
+        const double way = way_of_motion(application);
 
-        drive_signals_read(&application->drive, &now);
-        found = stop_of(application, now.omega_ref_rad_s > 0.0, now.omega_ref_rad_s < 0.0);
+        found = stop_of(application, way > 0.0, way < 0.0);
     } else if (!enabled && !io->engages && state != DRIVE_SWITCH_ON_DISABLED &&
                state != DRIVE_FAULT) {
         command(application, DRIVE_COMMAND_DISABLE);

@@ -5,6 +5,7 @@
 #include "firmware/drive/board_limits.h"
 #include "firmware/drive/interrupt_view.h"
 #include "firmware/link/axis_stream.h"
+#include "firmware/link/axis_torque.h"
 #include "firmware/link/link.h"
 
 /* Bits of the controlword, in the modes that have them. */
@@ -79,6 +80,7 @@ void axis_motion_put_defaults(struct application *application)
     const float unit_rad = units(application);
     const float acceleration = axis_motion_acceleration_limit(application) / unit_rad;
 
+    put_default(&objects->max_speed_rpm, axis_motion_speed_limit(application) / AXIS_RAD_S_PER_RPM);
     put_default(&objects->profile_velocity,
                 0.25f * axis_motion_speed_limit(application) / unit_rad);
     put_default(&objects->profile_acceleration, 0.25f * acceleration);
@@ -234,15 +236,24 @@ static float room_rad(struct application *application, float speed, double *end_
 
 /* More than it takes from a speed to rest, rad: a ramp still ends before, and commands take time.
  */
-static float stopping_rad(struct application *application, float speed)
+static float stopping_rad(struct application *application, float speed, uint32_t deceleration_units)
 {
     const float command_s = 0.01f;
     const float most = axis_motion_acceleration_limit(application);
-    const float asked = units(application) * (float)application->link->objects.profile_deceleration;
+    const float asked = units(application) * (float)deceleration_units;
     const float acceleration = asked < most ? asked : most;
     const float ramp_s = speed / acceleration;
 
     return speed * (0.5f * ramp_s + 1.5f * (jerk_share * ramp_s + jerk_min_s) + command_s);
+}
+
+bool axis_motion_nears_limit(struct application *application, float speed_rad_s, float way)
+{
+    double end_rad;
+
+    return room_rad(application, way, &end_rad) <=
+           stopping_rad(application, (float)magnitude((double)speed_rad_s),
+                        application->link->objects.quick_stop_deceleration);
 }
 
 /* Where a software limit is near, the motion ends there, as one to a position does; beyond it
@@ -256,7 +267,8 @@ static bool ends_at_limit(struct application *application, float *speed)
     const float most = asked > present ? asked : present;
     const float room = room_rad(application, *speed, &to_limit.position_rad);
 
-    if (*speed == 0.0f || room > stopping_rad(application, most)) {
+    if (*speed == 0.0f ||
+        room > stopping_rad(application, most, application->link->objects.profile_deceleration)) {
         return false;
     }
     motion->limited = true;
@@ -377,6 +389,8 @@ void axis_motion_background(struct application *application)
         go_at_speed(application);
     } else if (axis->mode == CIA402_CYCLIC_POSITION) {
         axis_stream_background(application);
+    } else if (axis->mode == CIA402_CYCLIC_TORQUE) {
+        axis_torque_background(application);
     }
 }
 
@@ -447,6 +461,10 @@ uint16_t axis_motion_status(struct application *application)
         off = motion->not_homed;
     } else if (axis->mode == CIA402_CYCLIC_POSITION) {
         of_mode = !motion->halted && axis->stream.owed == 0u; /* follows what is asked for */
+    } else if (axis->mode == CIA402_CYCLIC_TORQUE) {
+        reached = motion->halted && rests;
+        of_mode = interrupt_view_torque(&application->drive);
+        off = false;
     }
     return (uint16_t)((reached ? REACHED : 0u) | (motion->limited ? LIMITED : 0u) |
                       (of_mode ? OF_MODE : 0u) | (off ? OFF : 0u));

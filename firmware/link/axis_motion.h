@@ -36,6 +36,10 @@ float axis_motion_acceleration_limit(const struct application *application);
 /* Cut to limits, which shows in the statusword. */
 float axis_motion_limited(struct application *application, float value, float least, float most);
 
+/* Whether a software limit on this way, up or down by its sign, is no further than what it takes to
+   stop from the speed with 6085h. */
+bool axis_motion_nears_limit(struct application *application, float speed_rad_s, float way);
+
 /* Whether the reference rests and nothing waits. */
 bool axis_motion_rests(const struct application *application);
 

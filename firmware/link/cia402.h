@@ -1,7 +1,8 @@
 /*
  * The drive profile, CiA 402 (IEC 61800-7-201): its state machine on the drive's own, and the modes
- * profile position (1), profile velocity (3), homing on the present position (6) and cyclic
- * synchronous position (8), on the drive's own commands (axis_motion.c).
+ * profile position (1), profile velocity (3), homing on the present position (6), cyclic
+ * synchronous position (8) and, with an encoder, torque (10), on the drive's own commands
+ * (axis_motion.c).
  *
  * Where enabling belongs: "switch on" begins it, SWITCHED ON shows once the bridge is on, and
  * OPERATION ENABLED, if that was asked for, when the drive is ready, 0.35 to 0.45 s behind "switch
@@ -28,7 +29,8 @@ enum cia402_mode {
     CIA402_PROFILE_POSITION = 1,
     CIA402_PROFILE_VELOCITY = 3,
     CIA402_HOMING = 6,
-    CIA402_CYCLIC_POSITION = 8
+    CIA402_CYCLIC_POSITION = 8,
+    CIA402_CYCLIC_TORQUE = 10
 };
 
 struct application;
@@ -39,6 +41,9 @@ struct axis_motion {
     float speed_rad_s;     /* as commanded last, of profile velocity */
     float reference_rad_s; /* a millisecond ago */
     float jerk;            /* of what is in motion */
+    float torque_Nm;       /* as commanded last, and up to which speed */
+    float most_rad_s;
+    float way; /* by its sign to the limit at which a torque has ended */
     uint16_t in_window_ms, off_ms;
     uint8_t steady_ms; /* for so long the reference's speed has been constant */
     bool waits;        /* a set-point has not begun */
@@ -50,7 +55,7 @@ struct axis_motion {
     bool homed;
     bool not_homed; /* the drive has refused to be */
     bool halted;
-    bool at_limit; /* of profile velocity: goes to a software limit, or is there */
+    bool at_limit; /* of profile velocity and torque: goes to a software limit, or is there */
 };
 
 struct cia402 {

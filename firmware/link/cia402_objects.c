@@ -2,10 +2,18 @@
 #include "firmware/application/application.h"
 #include "firmware/drive/interrupt_view.h"
 #include "firmware/link/axis_motion.h"
+#include "firmware/link/axis_torque.h"
 #include "firmware/link/link.h"
 
 /* Bits of the statusword. */
 enum { VOLTAGE_ENABLED = 0x0010, WARNING = 0x0080, REMOTE = 0x0200 };
+
+/* Modes of operation, a bit each from 1 on. */
+enum {
+    MODES = 1 << (CIA402_PROFILE_POSITION - 1) | 1 << (CIA402_PROFILE_VELOCITY - 1) |
+            1 << (CIA402_HOMING - 1) | 1 << (CIA402_CYCLIC_POSITION - 1),
+    MODE_OF_TORQUE = 1 << (CIA402_CYCLIC_TORQUE - 1)
+};
 
 static uint16_t statusword(struct application *application)
 {
@@ -57,6 +65,8 @@ static double rated_share(struct application *application, uint16_t index)
     switch (index) {
     case 0x6072:
         return 1e3 * settings->current_limit_A / rated_A;
+    case 0x6074:
+        return 1e3 * now->i_q_ref_A / rated_A;
     case 0x6075:
         return 1e3 * rated_A;
     case 0x6076:
@@ -127,6 +137,9 @@ void cia402_ask(struct application *application, const struct object *object, ui
         break;
     case 0x6061:
         can_put(value, (uint8_t)axis->mode, 1);
+        break;
+    case 0x6502:
+        can_put(value, MODES | (axis_torque_is_carried(application) ? MODE_OF_TORQUE : 0u), 4);
         break;
     case 0x60fd:
     case 0x60fe:

@@ -2,6 +2,7 @@
 #include "firmware/application/application.h"
 #include "firmware/application/setting_change.h"
 #include "firmware/link/axis_motion.h"
+#include "firmware/link/axis_torque.h"
 #include "firmware/link/link.h"
 
 enum { CURRENT_LIMIT = 0x2120 }; /* its setting */
@@ -131,10 +132,11 @@ enum object_abort link_obey(struct application *application, const struct object
     }
 }
 
-static bool is_mode(int8_t mode)
+static bool is_mode(const struct application *application, int8_t mode)
 {
     return mode == CIA402_PROFILE_POSITION || mode == CIA402_PROFILE_VELOCITY ||
-           mode == CIA402_HOMING || mode == CIA402_CYCLIC_POSITION || mode == 0;
+           mode == CIA402_HOMING || mode == CIA402_CYCLIC_POSITION || mode == 0 ||
+           (mode == CIA402_CYCLIC_TORQUE && axis_torque_is_carried(application));
 }
 
 bool link_accepts(const struct application *application, const struct object *object,
@@ -148,7 +150,7 @@ bool link_accepts(const struct application *application, const struct object *ob
     case 0x2400:
         return object->sub != 2u || number > 0u;
     case 0x6060:
-        return is_mode((int8_t)value[0]);
+        return is_mode(application, (int8_t)value[0]);
     case 0x6098:
         return value[0] == 35u || value[0] == 37u; /* on the present position */
     case 0x60c2:
@@ -159,6 +161,7 @@ bool link_accepts(const struct application *application, const struct object *ob
         return number == 1u || number == 2u;
     case 0x607e: /* the others have no meaning; nothing turns round in motion */
         return (number & 0x3fu) == 0u && application->link->axis.state != CIA402_OPERATION_ENABLED;
+    case 0x6080:
     case 0x6081:
     case 0x6083:
     case 0x6084:

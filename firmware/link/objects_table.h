@@ -106,7 +106,9 @@
     STORED(0x6068, 0, U16, RW, target_ms, 10, "Position window time")                              \
     ASKED(0x606b, 0, I32, RO_T, 0, "Velocity demand value")                                        \
     ASKED(0x606c, 0, I32, RO_T, 0, "Velocity actual value")                                        \
+    STORED(0x6071, 0, I16, RW_R, target_torque, 0, "Target torque")                                \
     ASKED(0x6072, 0, U16, RW_R, 0, "Max torque")                                                   \
+    ASKED(0x6074, 0, I16, RO_T, 0, "Torque demand")                                                \
     ASKED(0x6075, 0, U32, RO, 0, "Motor rated current")                                            \
     ASKED(0x6076, 0, U32, RO, 0, "Motor rated torque")                                             \
     ASKED(0x6077, 0, I16, RO_T, 0, "Torque actual value")                                          \
@@ -116,6 +118,7 @@
     STORED(0x607c, 0, I32, RW, home_offset, 0, "Home offset")                                      \
     STORED(0x607d, 1, I32, RW, position_least, INT32_MIN, "Min position limit")                    \
     STORED(0x607d, 2, I32, RW, position_most, INT32_MAX, "Max position limit")                     \
+    STORED(0x6080, 0, U32, RW_R, max_speed_rpm, 0, "Max motor speed")                              \
     STORED(0x6081, 0, U32, RW_R, profile_velocity, 0, "Profile velocity")                          \
     STORED(0x6083, 0, U32, RW_R, profile_acceleration, 0, "Profile acceleration")                  \
     STORED(0x6084, 0, U32, RW_R, profile_deceleration, 0, "Profile deceleration")                  \
@@ -133,7 +136,7 @@
     ASKED(0x60fd, 0, U32, RO_T, 0, "Digital inputs")                                               \
     ASKED(0x60fe, 1, U32, RO_T, 0, "Physical outputs")                                             \
     STORED(0x60ff, 0, I32, RW_R, target_velocity, 0, "Target velocity")                            \
-    STORED(0x6502, 0, U32, RO, modes, 0x000000a5, "Supported drive modes")                         \
+    ASKED(0x6502, 0, U32, RO, 0x000000a5, "Supported drive modes")                                 \
     STORED(0x607e, 0, U8, RW, polarity, 0, "Polarity")                                             \
     STORED(0x1010, 0, U8, RO, store_highest, 1, "Highest sub-index supported")                     \
     STORED(0x1011, 0, U8, RO, restore_highest, 1, "Highest sub-index supported")                   \

@@ -38,24 +38,26 @@ enum {
 /* One row of a list of commands: a drive_command of which the run uses a few fields. */
 #define REPLAY_PLAIN(kind, at)                                                                     \
     {                                                                                              \
-        kind, at, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0                                                  \
+        kind, at, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0                                               \
     }
 #define REPLAY_MOVE(kind, at, position_rad, duration_s, ramp_s, jerk_s)                            \
     {                                                                                              \
-        kind, at, position_rad, duration_s, ramp_s, jerk_s, 0, 0, 0, 0, 0, 0, 0                    \
+        kind, at, position_rad, duration_s, ramp_s, jerk_s, 0, 0, 0, 0, 0, 0, 0, 0                 \
     }
 #define REPLAY_SINE(at, amplitude_rad, frequency_Hz, cycles, ramp_s)                               \
     {                                                                                              \
-        DRIVE_COMMAND_SINE, at, 0, 0, ramp_s, 0, amplitude_rad, frequency_Hz, cycles, 0, 0, 0, 0   \
+        DRIVE_COMMAND_SINE, at, 0, 0, ramp_s, 0, amplitude_rad, frequency_Hz, cycles, 0, 0, 0, 0,  \
+            0                                                                                      \
     }
 #define REPLAY_SET_POINT(at, position_rad, interval_s, acceleration_rad_s2, jerk_rad_s3)           \
     {                                                                                              \
         DRIVE_COMMAND_SET_POINT, at, position_rad, 0, 0, 0, 0, 0, 0, interval_s, 0,                \
-            acceleration_rad_s2, jerk_rad_s3                                                       \
+            acceleration_rad_s2, jerk_rad_s3, 0                                                    \
     }
 #define REPLAY_TOWARDS(kind, at, position_rad, speed_rad_s, acceleration_rad_s2, jerk_rad_s3)      \
     {                                                                                              \
-        kind, at, position_rad, 0, 0, 0, 0, 0, 0, 0, speed_rad_s, acceleration_rad_s2, jerk_rad_s3 \
+        kind, at, position_rad, 0, 0, 0, 0, 0, 0, 0, speed_rad_s, acceleration_rad_s2,             \
+            jerk_rad_s3, 0                                                                         \
     }
 
 /* A move under load, a rest, a reversal too fast for the supply, a step, a stop. */

@@ -12,7 +12,8 @@ from .settings import Progress, unseen
 
 LOOK_S = 0.01
 
-PROFILE_POSITION, PROFILE_VELOCITY, HOMING = 1, 3, 6
+PROFILE_POSITION, PROFILE_VELOCITY, HOMING, CYCLIC_TORQUE = 1, 3, 6, 10
+TORQUE_CARRIED = 0x0200  # of 6502h
 SHUTDOWN, SWITCH_ON, ENABLE_OPERATION, QUICK_STOP, RESET = 0x06, 0x07, 0x0F, 0x02, 0x80
 NEW_SET_POINT, AT_ONCE, RELATIVE = 0x10, 0x20, 0x40
 REFUSED, REACHED, ACKNOWLEDGED = 0x0080, 0x0400, 0x1000
@@ -206,6 +207,25 @@ class Axis:
         if wait:
             self.wait(timeout_s)
 
+    def torque(self, torque_Nm: float, *, speed_rad_s: float | None = None) -> None:
+        """Of a drive with an encoder: a torque for ever, up to a speed; the load makes the position of it. Of what
+        is more than the current limit allows the drive makes that."""
+        rated_Nm = 1e-3 * self.objects.read(0x6076)
+        thousandths = round(1e3 * torque_Nm / rated_Nm) if math.isfinite(torque_Nm) else 2**15
+        if not abs(thousandths) < 2**15:
+            raise Refused(f"torque_Nm: expected a number in ±{32.767 * rated_Nm:.6g} N m, got {torque_Nm:g}")
+        if self.objects.read(0x6502) & TORQUE_CARRIED == 0:
+            raise Refused("torque: without an encoder the rotor is lost where the load turns it slowly; "
+                          "the drive has the mode with feedback = encoder")
+        if speed_rad_s is not None:
+            rpm = round(speed_rad_s * 30 / math.pi) if math.isfinite(speed_rad_s) else 0
+            if not 0 < rpm < 2**32:
+                raise Refused(f"speed_rad_s: expected a number above 0.053, got {speed_rad_s:g}")
+            self.objects.write(0x6080, rpm)
+        self.objects.write(0x6071, thousandths)
+        self._in_mode(CYCLIC_TORQUE)
+        self._control(ENABLE_OPERATION)
+
     def stop(self, timeout_s: float = 10.0) -> None:
         """Brings it to rest, quickly, and holds. No motion begins until the drive is enabled again."""
         self.quick_stop()
@@ -224,6 +244,8 @@ class Axis:
             self.objects.write(0x605A, 6)  # stays, and holds
             self._control(QUICK_STOP)
             self.objects.write(0x60FF, 0)  # what would go on when enabled
+            if 0x6071 in self.objects.entries:  # not of every version
+                self.objects.write(0x6071, 0)
         elif self.read("reference_moving"):
             self.command("stop")  # the console's motion
 

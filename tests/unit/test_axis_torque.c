@@ -1,0 +1,253 @@
+/* Cyclic synchronous torque of a drive with an encoder, of which the test turns the rotor. */
+#include "firmware/link/axis_torque.h"
+#include "firmware/drive/interrupt_view.h"
+#include "firmware/link/axis_motion.h"
+#include "tests/unit/link_bench.h"
+
+enum { COUNTS = 16384, TURN = 65536, REACHED = 0x0400, LIMITED = 0x0800, OF_MODE = 0x1000 };
+
+enum { LITTLE = 100 };
+
+static double speed_rad_s; /* of the rotor */
+static double angle_rad;
+
+static void start(enum drive_feedback feedback)
+{
+    static struct hal_facts facts;
+    struct drive_settings settings = bench_quick_settings();
+    char error[DRIVE_ERROR_TEXT] = "";
+
+    bench_power_up();
+    facts = bench_stored_facts();
+    facts.encoder_counts_per_turn = COUNTS;
+    drive_settings_select_feedback(&settings, feedback);
+    settings.encoder_zero_known = true;
+    const struct hal board = bench_board(&facts);
+
+    TEST_ASSERT_TRUE_MESSAGE(application_init_with(&bench.application, &board, &settings, error),
+                             error);
+    application_put_link(&bench.application, &bench_link);
+    bench_periods(3);
+    (void)bench_heard();
+    link_bench_open();
+    (void)link_bench_say("t00020101", 1);
+    speed_rad_s = 0.0;
+    angle_rad = 0.0;
+}
+
+void setUp(void)
+{
+    start(DRIVE_FEEDBACK_ENCODER);
+}
+
+void tearDown(void)
+{
+}
+
+static uint16_t current_code(num_t current)
+{
+    const double current_A = num_to_double(current) * bench.application.drive.base.current_A;
+
+    return (uint16_t)(2048.5 + current_A / bench_facts.current_A_per_code);
+}
+
+/* The currents are those that the drive expects. */
+static void run(int periods)
+{
+    for (int k = 0; k < periods; k++) {
+        const struct phases current = bench.application.drive.estimator.estimate.next.current;
+
+        bench.samples.current_a = current_code(current.a);
+        bench.samples.current_b = current_code(current.b);
+        angle_rad += speed_rad_s * PERIOD_S;
+        bench.samples.encoder_count = (int32_t)floor(angle_rad / TWO_PI * COUNTS);
+        bench_period();
+    }
+    TEST_ASSERT_EQUAL_STRING("none", drive_fault_name(bench.application.drive.supervision.fault));
+}
+
+static void put(unsigned index, unsigned sub, unsigned bytes, int32_t value)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(index, sub, bytes, (uint32_t)value));
+}
+
+static int demand(void)
+{
+    run(2);
+    return (int16_t)link_bench_get(0x6074, 0);
+}
+
+static uint32_t status(uint32_t bits)
+{
+    return link_bench_get(0x6041, 0) & bits;
+}
+
+static void enable(void)
+{
+    put(0x6060, 0, 1, 10);
+    put(0x6040, 0, 2, 0x06);
+    run(20);
+    put(0x6040, 0, 2, 0x0f);
+    run(20);
+    TEST_ASSERT_EQUAL_HEX32(0x27, status(0x6f));
+    TEST_ASSERT_EQUAL(10, link_bench_get(0x6061, 0));
+}
+
+static bool leads(void)
+{
+    return interrupt_view_torque(&bench.application.drive);
+}
+
+static void test_the_mode_is_there_with_an_encoder_and_only_so(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0x2a5, link_bench_get(0x6502, 0));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x6060, 0, 1, 10));
+    TEST_ASSERT_EQUAL_HEX32(OBJECT_OUT_OF_RANGE, link_bench_put(0x6060, 0, 1, 4));
+    start(DRIVE_FEEDBACK_SENSORLESS);
+    TEST_ASSERT_EQUAL_HEX32(0xa5, link_bench_get(0x6502, 0));
+    TEST_ASSERT_EQUAL_HEX32(OBJECT_OUT_OF_RANGE, link_bench_put(0x6060, 0, 1, 10));
+    TEST_ASSERT_EQUAL_HEX32(1, link_bench_get(0x6060, 0));
+}
+
+static void test_the_target_is_the_demand_in_thousandths_of_the_rated_torque(void)
+{
+    put(0x6071, 0, 2, LITTLE);
+    enable();
+    TEST_ASSERT_EQUAL(LITTLE, demand());
+    TEST_ASSERT_EQUAL_HEX32(OF_MODE, status(OF_MODE | LIMITED | REACHED));
+    put(0x6071, 0, 2, -LITTLE);
+    TEST_ASSERT_EQUAL(-LITTLE, demand());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, -1e-3 * LITTLE * 0.157 * 3.0,
+                              num_to_double(bench.application.drive.torque.current) *
+                                  bench.application.drive.base.torque_Nm);
+}
+
+static void test_a_target_beyond_the_largest_torque_is_cut_and_said(void)
+{
+    put(0x6072, 0, 2, LITTLE / 2);
+    put(0x6071, 0, 2, LITTLE);
+    enable();
+    TEST_ASSERT_EQUAL(LITTLE / 2, demand());
+    TEST_ASSERT_EQUAL_HEX32(LIMITED, status(LIMITED));
+    put(0x6072, 0, 2, 1000);
+    TEST_ASSERT_EQUAL(LITTLE, demand());
+    TEST_ASSERT_EQUAL_HEX32(0, status(LIMITED));
+}
+
+static void test_the_speed_is_held_below_6080h(void)
+{
+    const double limit = axis_motion_speed_limit(&bench.application) / AXIS_RAD_S_PER_RPM;
+
+    TEST_ASSERT_DOUBLE_WITHIN(1.0, limit, link_bench_get(0x6080, 0));
+    TEST_ASSERT_EQUAL_HEX32(OBJECT_OUT_OF_RANGE, link_bench_put(0x6080, 0, 4, 0));
+    put(0x6080, 0, 4, 60);
+    put(0x6071, 0, 2, LITTLE);
+    enable();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, TWO_PI,
+                              num_to_double(bench.application.drive.torque.speed) *
+                                  bench.application.drive.base.speed_rad_s);
+    put(0x6080, 0, 4, 1000000);
+    run(5);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, axis_motion_speed_limit(&bench.application),
+                              num_to_double(bench.application.drive.torque.speed) *
+                                  bench.application.drive.base.speed_rad_s);
+    put(0x6080, 0, 4, 1); /* less than the drive takes */
+    run(5);
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(0x6041, 0) & 0x0080u);
+    TEST_ASSERT_TRUE(leads());
+}
+
+static void test_a_halt_holds_and_lets_it_go_on(void)
+{
+    put(0x6071, 0, 2, LITTLE);
+    enable();
+    put(0x6040, 0, 2, 0x10f);
+    run(100);
+    TEST_ASSERT_FALSE(leads());
+    TEST_ASSERT_EQUAL_HEX32(REACHED, status(REACHED | OF_MODE));
+    put(0x6040, 0, 2, 0x0f);
+    TEST_ASSERT_EQUAL(LITTLE, demand());
+}
+
+static void test_a_quick_stop_takes_over_the_position(void)
+{
+    put(0x6071, 0, 2, LITTLE);
+    enable();
+    put(0x605a, 0, 2, 6);
+    put(0x6040, 0, 2, 0x02);
+    run(100);
+    TEST_ASSERT_FALSE(leads());
+    TEST_ASSERT_EQUAL_HEX32(0x07, status(0x6f));
+    put(0x6040, 0, 2, 0x0f);
+    TEST_ASSERT_EQUAL(LITTLE, demand());
+}
+
+static void test_another_mode_begins_at_rest(void)
+{
+    put(0x6071, 0, 2, LITTLE);
+    enable();
+    put(0x6060, 0, 1, 8);
+    run(200);
+    TEST_ASSERT_EQUAL(8, link_bench_get(0x6061, 0));
+    TEST_ASSERT_FALSE(leads());
+    put(0x6060, 0, 1, 10);
+    TEST_ASSERT_EQUAL(LITTLE, demand());
+}
+
+static void test_a_torque_ends_where_it_pushes_beyond_a_software_limit(void)
+{
+    put(0x607d, 2, 4, TURN);
+    put(0x6071, 0, 2, LITTLE);
+    enable();
+    TEST_ASSERT_TRUE(leads());
+    put(0x607d, 2, 4, -TURN); /* behind the rotor */
+    run(100);
+    TEST_ASSERT_FALSE(leads());
+    TEST_ASSERT_EQUAL_HEX32(LIMITED, status(LIMITED | OF_MODE));
+    put(0x6071, 0, 2, 0);
+    run(20);
+    TEST_ASSERT_FALSE(leads());
+    put(0x6071, 0, 2, -LITTLE);
+    TEST_ASSERT_EQUAL(-LITTLE, demand());
+    TEST_ASSERT_EQUAL_HEX32(OF_MODE, status(LIMITED | OF_MODE));
+}
+
+static void test_a_torque_ends_before_a_software_limit_by_its_way_to_stop(void)
+{
+    put(0x607d, 1, 4, -TURN);
+    put(0x6085, 0, 4, 1000000); /* 96 rad/s^2 */
+    put(0x6071, 0, 2, 0);
+    enable();
+    speed_rad_s = -20.0;
+    for (int k = 0; k < 3000 && leads(); k++) {
+        run(1);
+    }
+    /* 20 rad/s: a ramp of 2.1 rad, its ends, and what a ramp that is under way may take */
+    TEST_ASSERT_DOUBLE_WITHIN(0.05, -TWO_PI + 3.91, angle_rad);
+}
+
+static void test_the_way_back_from_a_limit_is_free(void)
+{
+    put(0x607d, 2, 4, 1000);
+    put(0x6071, 0, 2, -LITTLE);
+    enable();
+    speed_rad_s = 5.0; /* something pulls it there all the same */
+    run(400);
+    TEST_ASSERT_TRUE(leads());
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_the_mode_is_there_with_an_encoder_and_only_so);
+    RUN_TEST(test_the_target_is_the_demand_in_thousandths_of_the_rated_torque);
+    RUN_TEST(test_a_target_beyond_the_largest_torque_is_cut_and_said);
+    RUN_TEST(test_the_speed_is_held_below_6080h);
+    RUN_TEST(test_a_halt_holds_and_lets_it_go_on);
+    RUN_TEST(test_a_quick_stop_takes_over_the_position);
+    RUN_TEST(test_another_mode_begins_at_rest);
+    RUN_TEST(test_a_torque_ends_where_it_pushes_beyond_a_software_limit);
+    RUN_TEST(test_a_torque_ends_before_a_software_limit_by_its_way_to_stop);
+    RUN_TEST(test_the_way_back_from_a_limit_is_free);
+    return UNITY_END();
+}
