@@ -4,6 +4,7 @@ when something is wrong.
 usage: package.py SIL
 """
 import csv
+import math
 import pathlib
 import sys
 import tempfile
@@ -52,6 +53,28 @@ def what_is_no_setting_is_refused(drive):
         is_read = "node_id" in text  # it is the drive that refuses that
         CHECKS.that((drive.settings["current_limit_A"] == before) != is_read, f"{text}: is read as a whole")
         drive.settings["current_limit_A"] = before
+
+
+def a_torque_is_a_drive_s_with_an_encoder(drive):
+    found = refusal(lambda: drive.torque(0.1))
+    CHECKS.that("without an encoder" in found, f"without one: {found}")
+    with Served("torque") as served, steadystep.Drive(str(served.link)) as drive:  # the scenario's drive
+        drive.enable()
+        drive.torque(0.1, speed_rad_s=10 * math.pi)
+        time.sleep(0.3)
+        CHECKS.that(abs(drive.speed_rad_s - 10 * math.pi) < 0.5, f"up to its speed: {drive.speed_rad_s}")
+        drive.torque(-0.1)
+        time.sleep(0.3)
+        CHECKS.that(abs(drive.speed_rad_s + 10 * math.pi) < 0.5, f"and back: {drive.speed_rad_s}")
+        CHECKS.that("torque_Nm" in refusal(lambda: drive.torque(100.0)), "not any")
+        CHECKS.that("speed_rad_s" in refusal(lambda: drive.torque(0.1, speed_rad_s=0)), "nor up to no speed")
+        drive.stop()
+        CHECKS.that(abs(drive.speed_rad_s) < 2, f"it stops: {drive.speed_rad_s}")
+        drive.enable()
+        time.sleep(0.1)
+        CHECKS.that(abs(drive.speed_rad_s) < 2, f"enabled again nothing pushes it: {drive.speed_rad_s}")
+        drive.move(1.0)
+        CHECKS.that(abs(drive.position_rad - 1.0) < 0.01, "and moves")
 
 
 def it_moves(drive, knobs):
@@ -195,6 +218,7 @@ with tempfile.TemporaryDirectory() as scratch, Simulated(program=SIL) as simulat
     with steadystep.Drive(simulated.place) as DRIVE:
         settings_go_out_and_come_back(DRIVE)
         what_is_no_setting_is_refused(DRIVE)
+        a_torque_is_a_drive_s_with_an_encoder(DRIVE)
         it_moves(DRIVE, simulated.knobs)
         it_captures(DRIVE, FOLDER)
         what_the_drive_records_itself(DRIVE)

@@ -152,6 +152,13 @@ def velocity(drive: Drive, arguments: Arguments) -> None:
     print("goes on until stop, or velocity 0; share the drive to look at it meanwhile")
 
 
+def torque(drive: Drive, arguments: Arguments) -> None:
+    if arguments.enable:
+        drive.enable(progress=Bar())
+    drive.torque(arguments.torque_Nm, speed_rad_s=arguments.speed)
+    print("goes on until stop, or torque 0, which lets it coast")
+
+
 def give_command(drive: Drive, arguments: Arguments) -> None:
     pairs = [pair.partition("=") for pair in arguments.parameters]
     drive.command(arguments.name, **{name: float(value) for name, _, value in pairs})
@@ -224,7 +231,7 @@ def page(arguments: Arguments) -> int:
 # ---- the command line ----
 
 DRIVE_COMMANDS: dict[str, Callable[[Drive, Arguments], object]] = {
-    "state": show_state, "faults": show_faults, "enable": enable, "move": move, "velocity": velocity,
+    "state": show_state, "faults": show_faults, "enable": enable, "move": move, "velocity": velocity, "torque": torque,
     "command": give_command, "capture": capture, "disable": lambda drive, _: drive.disable(),
     "stop": lambda drive, _: drive.stop(), "reset": lambda drive, _: drive.reset(),
     "store": lambda drive, _: drive.store(),

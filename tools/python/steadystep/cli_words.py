@@ -41,8 +41,12 @@ def _add_motion(commands: "Commands") -> None:
     move.add_argument("--no-wait", action="store_true")
     velocity = _add(commands, "velocity", "a speed for ever")
     velocity.add_argument("speed_rad_s", type=float)
+    torque = _add(commands, "torque", "with an encoder: a torque for ever, up to a speed")
+    torque.add_argument("torque_Nm", type=float)
+    torque.add_argument("--speed", type=float, metavar="RAD_S")
     for each in (move, velocity):
         each.add_argument("--acceleration", type=float, metavar="RAD_S2")
+    for each in (move, velocity, torque):
         each.add_argument("--enable", action="store_true", help="first")
     _add(commands, "set-position", "the axis, at rest, is here").add_argument("position_rad", type=float)
     command = _add(commands, "command", "any of the dictionary")
