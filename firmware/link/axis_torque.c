@@ -81,7 +81,8 @@ void axis_torque_background(struct application *application)
     const bool was_limited = motion->limited;
     struct drive_command command = {.kind = DRIVE_COMMAND_TORQUE};
 
-    if (motion->halted || command_queue_holds_any(&application->drive.commands)) {
+    if (motion->halted || application->io.stop != MACHINE_STOP_NONE ||
+        command_queue_holds_any(&application->drive.commands)) {
         return;
     }
     motion->limited = false;

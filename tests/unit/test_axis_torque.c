@@ -18,10 +18,12 @@ static void start(enum drive_feedback feedback)
     char error[DRIVE_ERROR_TEXT] = "";
 
     bench_power_up();
+    bench.inputs = 0; /* none is active */
     facts = bench_stored_facts();
     facts.encoder_counts_per_turn = COUNTS;
     drive_settings_select_feedback(&settings, feedback);
     settings.encoder_zero_known = true;
+    settings.inputs_used = HAL_INPUT_LIMIT_MINUS | HAL_INPUT_LIMIT_PLUS;
     const struct hal board = bench_board(&facts);
 
     TEST_ASSERT_TRUE_MESSAGE(application_init_with(&bench.application, &board, &settings, error),
@@ -236,6 +238,24 @@ static void test_the_way_back_from_a_limit_is_free(void)
     TEST_ASSERT_TRUE(leads());
 }
 
+static void test_a_limit_switch_stops_what_pushes_on_and_lets_the_way_back(void)
+{
+    put(0x6071, 0, 2, LITTLE);
+    enable();
+    bench.inputs = HAL_INPUT_LIMIT_PLUS;
+    run(100);
+    TEST_ASSERT_FALSE(leads());
+    TEST_ASSERT_EQUAL_HEX32(LIMITED, status(LIMITED | OF_MODE));
+    put(0x6071, 0, 2, -LITTLE);
+    TEST_ASSERT_EQUAL(-LITTLE, demand());
+    speed_rad_s = 1.0; /* it goes on for a while, or seems to */
+    run(25);
+    TEST_ASSERT_TRUE(leads());
+    put(0x6071, 0, 2, 0);
+    run(25);
+    TEST_ASSERT_FALSE(leads()); /* coasts further */
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -249,5 +269,6 @@ int main(void)
     RUN_TEST(test_a_torque_ends_where_it_pushes_beyond_a_software_limit);
     RUN_TEST(test_a_torque_ends_before_a_software_limit_by_its_way_to_stop);
     RUN_TEST(test_the_way_back_from_a_limit_is_free);
+    RUN_TEST(test_a_limit_switch_stops_what_pushes_on_and_lets_the_way_back);
     return UNITY_END();
 }

@@ -219,11 +219,36 @@ static void test_a_current_limit_that_falls_cuts_the_torque(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.02, 1.0, q_current_A());
     less.current_limit_A = 3.0;
     TEST_ASSERT_TRUE_MESSAGE(settings_in_motion_change(&drive, &less, error), error);
-    drive.thermal.bridge_derated = 32; /* half of all steps */
+    drive.thermal.motor_derated =
+        32; /* half of all steps: to the rated current, which no hold takes */
+    settings_in_motion_derate(&drive);
+    run(10);
+    TEST_ASSERT_DOUBLE_WITHIN(0.02, 0.4 / 0.157, signals().i_q_ref_A);
+    drive.thermal.bridge_derated = 32;
     settings_in_motion_derate(&drive);
     run(10);
     TEST_ASSERT_DOUBLE_WITHIN(0.1, drive.settings.current_limit_A, signals().i_q_ref_A);
     TEST_ASSERT_TRUE(drive.settings.current_limit_A < 2.0);
+}
+
+static void test_a_torque_that_takes_over_a_load_begins_with_its_current(void)
+{
+    const int periods = 40;
+    double sum = 0.0;
+
+    motor.load_torque_Nm = 0.2;
+    run(1000);
+    post(torque(0.2, 0.0));
+    run(5); /* what the law's noise had made of it */
+    for (int k = 0; k < periods; k++) {
+        run(1);
+        sum += q_current_A();
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(0.03, 0.2 / 0.157, sum / periods);
+    TEST_ASSERT_DOUBLE_WITHIN(0.3, 0.0, motor.speed_rad_s);
+    post((struct drive_command){.kind = DRIVE_COMMAND_STOP});
+    run(300);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, signals().theta_ref_rad, motor.angle_rad);
 }
 
 static void refuses(struct drive_command command, const char *reason)
@@ -267,6 +292,7 @@ int main(void)
     RUN_TEST(test_what_goes_on_when_a_torque_comes_is_void);
     RUN_TEST(test_a_drive_that_is_enabled_anew_controls_the_position);
     RUN_TEST(test_a_current_limit_that_falls_cuts_the_torque);
+    RUN_TEST(test_a_torque_that_takes_over_a_load_begins_with_its_current);
     RUN_TEST(test_what_the_drive_cannot_is_refused);
     RUN_TEST(test_without_an_encoder_it_is_refused);
     return UNITY_END();
