@@ -55,6 +55,17 @@ static void present(struct prediction *next, const struct drive *drive,
     next->reference = &drive->reference.now;
 }
 
+/* To where the answer begins to act. */
+IN_PLACE void look_ahead(struct prediction *next, const struct drive *drive,
+                         const struct estimate *estimate, struct passage passage)
+{
+    if (has_zero_delay(&drive->params.path)) {
+        present(next, drive, estimate, passage);
+    } else {
+        predict(next, drive, estimate, passage);
+    }
+}
+
 IN_PLACE struct position_law_input law_input(const struct prediction *next, bool feed_forward)
 {
     const struct reference_sample *reference = next->reference;
@@ -139,33 +150,38 @@ static num_t torque_current(const struct drive *drive, const struct rotor *rotor
         standstill_hold_torque_current(hold, rotor->speed - speed, rotor->load_torque));
 }
 
-/* In torque mode no law answers, and the reference follows the rotor. Apart: rare. */
+/* In torque mode no law answers, and the reference follows the rotor. Apart: rare, and so that what
+   the laws answer to stays in registers. */
 __attribute__((noinline)) static struct phases regulate_torque(struct drive *drive,
-                                                               const struct prediction *next)
+                                                               struct passage passage)
 {
-    const num_t half_turns = half_period_turns(&drive->params.model, next->rotor.speed);
+    struct prediction next;
     struct current_demand demand;
 
+    look_ahead(&next, drive, &drive->estimator.estimate, passage);
+    next.rotor.load_torque += drive->detent.torque;
     demand.current.d = standstill_hold_motion_current(&drive->hold, &drive->params.hold);
-    demand.current.q = torque_current(drive, &next->rotor);
-    demand.frame.begin = next->frame;
-    demand.frame.middle = sincos_add(next->frame, next->half_turn);
-    demand.frame.speed = next->rotor.speed;
-    reference_place_in_motion(&drive->reference, next->rotor.position, next->rotor.speed,
-                              (int32_t)angle_from_turns(half_turns));
-    return drive_current(drive, next, &demand);
+    demand.current.q = torque_current(drive, &next.rotor);
+    demand.frame.begin = next.frame;
+    demand.frame.middle = sincos_add(next.frame, next.half_turn);
+    demand.frame.speed = next.rotor.speed;
+    reference_place_in_motion(
+        &drive->reference, next.rotor.position, next.rotor.speed,
+        (int32_t)angle_from_turns(half_period_turns(&drive->params.model, next.rotor.speed)));
+    return drive_current(drive, &next, &demand);
 }
 
 /* Whether torque is commanded; it ends with a stop of the reference, or as that begins anew. */
 IN_PLACE bool torque_leads(struct drive *drive)
 {
-    if (!ESTIMATORS_READ_ENCODER || !RARE(drive->torque.speed != NUM(0.0))) {
+    if (!ESTIMATORS_READ_ENCODER || !RARE(num_bits(drive->torque.speed) != 0u)) {
         return false;
     }
     if (!reference_follows(&drive->reference)) {
         drive->torque.speed = NUM(0.0);
+        return false;
     }
-    return drive->torque.speed != NUM(0.0);
+    return true;
 }
 
 /* A voltage law. */
@@ -453,11 +469,7 @@ static void control_with_all(struct drive *drive, const struct estimate *estimat
     struct prediction next;
     struct phases voltage;
 
-    if (has_zero_delay(&params->path)) {
-        present(&next, drive, estimate, passage);
-    } else {
-        predict(&next, drive, estimate, passage);
-    }
+    look_ahead(&next, drive, estimate, passage);
     expect_current(drive, estimate, &next);
     if (ESTIMATORS_READ_ENCODER && params->path.detent_learning && !drive->supervision.aligns) {
         compensate_detent(drive, estimate, &next);
@@ -466,7 +478,7 @@ static void control_with_all(struct drive *drive, const struct estimate *estimat
         integral = drive->current_control.integral;
     }
     if (torque_leads(drive)) {
-        voltage = regulate_torque(drive, &next);
+        voltage = regulate_torque(drive, passage);
     } else if (!held && position_law_gives_voltage(params->position_law)) {
         voltage = regulate_voltage(drive, estimate, &next);
     } else {

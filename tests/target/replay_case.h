@@ -60,6 +60,11 @@ enum {
             jerk_rad_s3, 0                                                                         \
     }
 
+#define REPLAY_TORQUE(at, torque_Nm, speed_rad_s)                                                  \
+    {                                                                                              \
+        DRIVE_COMMAND_TORQUE, at, 0, 0, 0, 0, 0, 0, 0, 0, speed_rad_s, 0, 0, torque_Nm             \
+    }
+
 /* A move under load, a rest, a reversal too fast for the supply, a step, a stop. */
 static const struct drive_command replay_moves[] = {
     REPLAY_PLAIN(DRIVE_COMMAND_ENABLE, 5),
@@ -95,10 +100,19 @@ static const struct drive_command replay_references[] = {
     REPLAY_PLAIN(DRIVE_COMMAND_STOP, REPLAY_READY + 3120),
 };
 
+/* Torques with an encoder, up to a speed: from rest under a load, there and back, faster, to the
+ * end. */
+static const struct drive_command replay_torques[] = {
+    REPLAY_PLAIN(DRIVE_COMMAND_ENABLE, 5),         REPLAY_TORQUE(REPLAY_READY, 0.3, 60.0),
+    REPLAY_TORQUE(REPLAY_READY + 800, -0.1, 60.0), REPLAY_TORQUE(REPLAY_READY + 1200, -0.3, 40.0),
+    REPLAY_TORQUE(REPLAY_READY + 2200, 0.4, 90.0),
+};
+
 #define REPLAY_COUNT(list) ((int)(sizeof(list) / sizeof(list)[0]))
 #define REPLAY_MOVES       replay_moves, REPLAY_COUNT(replay_moves)
 #define REPLAY_SLOW_MOVES  replay_slow_moves, REPLAY_COUNT(replay_slow_moves)
 #define REPLAY_REFERENCES  replay_references, REPLAY_COUNT(replay_references)
+#define REPLAY_TORQUES     replay_torques, REPLAY_COUNT(replay_torques)
 
 enum { REPLAY_GAINS = 2 };
 
@@ -145,6 +159,8 @@ static const struct replay_case replay_cases[] = {
     REPLAY_SENSORLESS("steady-state-ekf", POSITION_LAW_STATE_FEEDBACK,
                       DRIVE_ESTIMATOR_STEADY_STATE_EKF, REPLAY_MOVES),
     REPLAY_ENCODER("feedback-linearisation", POSITION_LAW_FEEDBACK_LINEARISATION),
+    {"torque", POSITION_LAW_FEEDBACK_LINEARISATION, DRIVE_FEEDBACK_ENCODER,
+     DRIVE_ESTIMATOR_INVARIANT_EKF, REPLAY_TORQUES, 0, REPLAY_NO_GAINS},
     REPLAY_ENCODER("microstepping", POSITION_LAW_MICROSTEPPING),
     /* What the law accepts with this winding: 4 R/(N L). */
     {"stmms", POSITION_LAW_STMMS, DRIVE_FEEDBACK_ENCODER, DRIVE_ESTIMATOR_INVARIANT_EKF,
