@@ -170,6 +170,44 @@ struct hal {
     bool (*parameters_read)(void *context, uint32_t offset, void *data, size_t count);
 };
 
+/* A data frame of a CAN bus with an identifier of 11 bits. */
+struct can_frame {
+    uint16_t id;
+    uint8_t length; /* bytes of data, 0...8 */
+    uint8_t data[8];
+};
+
+/* How a board stands to its CAN bus. */
+enum hal_can_state {
+    HAL_CAN_PASSIVE =
+        1u << 0,           /* an error counter has reached 128, and not both are below 96 again */
+    HAL_CAN_OFF = 1u << 1, /* bus-off: nothing goes or comes until 128 times 11 recessive bits */
+    HAL_CAN_LOST = 1u << 2 /* frames have come for which there was no room; said once */
+};
+
+/* Identifiers that a board is asked to receive. */
+enum { HAL_CAN_IDS = 8 };
+
+/*
+ * A board's CAN bus, CAN 2.0, data frames of 11-bit identifiers alone; of a board that has one. It
+ * is on the bus from its start on, and leaves it by its errors alone. Then it is back by itself,
+ * tried once in a second; what was to be sent by then is lost. All of it for the background, none
+ * takes more than 20 us, none waits.
+ */
+struct hal_can {
+    void *context;
+    /* The next frame that has come; false: none. */
+    bool (*receive)(void *context, struct can_frame *frame);
+    /* Frames that there is room for; after a start six at least. */
+    size_t (*room)(void *context);
+    /* Sends, behind what was sent before; lost without room. */
+    void (*send)(void *context, const struct can_frame *frame);
+    /* Receives these alone from now on, NULL: none, as at the start. What has come stays. */
+    void (*accept)(void *context, const uint16_t ids[HAL_CAN_IDS]);
+    /* HAL_CAN_...; to be asked once in some milliseconds. */
+    uint32_t (*state)(void *context);
+};
+
 static inline void hal_defer_interrupts(const struct hal *board, bool defers)
 {
     if (board->defer_interrupts != NULL) {

@@ -456,12 +456,12 @@ static void carry_frames(struct application *application)
 
 void console_background(struct application *application)
 {
-    if (LINK_CARRIED && application->link != NULL && application->link->open) {
+    if (LINK_CARRIED && application->link != NULL && link_has_line(application->link)) {
         carry_frames(application);
         return;
     }
     if (LINK_CARRIED && application->link != NULL) {
-        link_finish(application);
+        link_beside_console(application);
     }
     if (send(application) && (announce(application) || read_line(application))) {
         (void)send(application);

@@ -1,15 +1,11 @@
-/* A data frame of a CAN bus with an identifier of 11 bits. */
+/* What CANopen puts into the frames of a CAN bus (hal.h, struct can_frame). */
 #ifndef STEADYSTEP_CAN_FRAME_H
 #define STEADYSTEP_CAN_FRAME_H
 
 #include <stdint.h>
 #include <string.h>
 
-struct can_frame {
-    uint16_t id;
-    uint8_t length; /* bytes of data, 0...8 */
-    uint8_t data[8];
-};
+#include "hal/hal.h"
 
 /* The bytes of a whole number as CANopen has them: the lowest first. Every core that this runs on
    keeps it so, too. */

@@ -3,6 +3,7 @@
 #include "firmware/application/application.h"
 #include "firmware/drive/interrupt_view.h"
 #include "firmware/interface/dictionary.h"
+#include "firmware/link/can_bus.h"
 #include "firmware/link/modbus.h"
 #include "firmware/link/sdo_block.h"
 #include "firmware/link/slcan.h"
@@ -34,12 +35,20 @@ CALLED_FROM_OUTSIDE void link_put_memory(struct link *link, uint32_t *memory, si
     link->capture.words = (uint32_t)words;
 }
 
+CALLED_FROM_OUTSIDE void link_put_can(struct link *link, const struct hal_can *can)
+{
+    link->can = can;
+}
+
 /* ---- frames out ---- */
 
 bool link_has_room(const struct application *application, size_t count)
 {
     const struct console *console = &application->console;
 
+    if (application->link->on_bus) {
+        return can_bus_room(application->link) >= count;
+    }
     return console->answer_length + count * SLCAN_FRAME_BYTES <= sizeof console->answer;
 }
 
@@ -56,7 +65,9 @@ void link_send(struct application *application, const struct can_frame *frame)
 {
     struct console *console = &application->console;
 
-    if (!application->link->modbus && link_has_room(application, 1)) {
+    if (application->link->on_bus) {
+        can_bus_send(application->link, frame);
+    } else if (!application->link->modbus && link_has_room(application, 1)) {
         console->answer_length += slcan_write(frame, &console->answer[console->answer_length]);
     }
 }
@@ -79,8 +90,9 @@ uint8_t link_error_register(const struct application *application)
                                       [6] = 0x20, [7] = 0x20, [8] = 0x10, [15] = 0x80};
     const enum drive_fault fault = application->link->reported;
 
-    return (uint8_t)((fault == DRIVE_FAULT_NONE ? 0u : 0x01u | kinds[fault_at(fault)->code >> 12]) |
-                     (application->link->unheard ? 0x11u : 0u));
+    return (
+        uint8_t)((fault == DRIVE_FAULT_NONE ? 0u : 0x01u | kinds[fault_at(fault)->code >> 12]) |
+                 (application->link->unheard || application->link->bus_errors != 0u ? 0x11u : 0u));
 }
 
 static void keep_error(struct link *link, uint32_t error)
@@ -187,7 +199,7 @@ static void watch(struct application *application)
 
 /* ---- frames in ---- */
 
-static void reset_communication(struct application *application)
+void link_reset_communication(struct application *application)
 {
     struct link *link = application->link;
 
@@ -226,17 +238,17 @@ static void obey_nmt(struct application *application, enum nmt_command command)
         break;
     case NMT_RESET_NODE:
         cia402_control(application, 0);
-        reset_communication(application);
+        link_reset_communication(application);
         break;
     case NMT_RESET_COMMUNICATION:
-        reset_communication(application);
+        link_reset_communication(application);
         break;
     default:
         break;
     }
 }
 
-static void receive(struct application *application, const struct can_frame *frame)
+void link_receive(struct application *application, const struct can_frame *frame)
 {
     struct link *link = application->link;
     struct can_frame response;
@@ -275,10 +287,11 @@ static void open_channel(struct application *application, bool listens_only)
 {
     struct link *link = application->link;
 
-    if (!link->open) {
+    if (!link_has_line(link)) {
+        can_bus_leave(application);
         link->open = true;
         link->listens_only = listens_only;
-        reset_communication(application);
+        link_reset_communication(application);
     }
 }
 
@@ -311,13 +324,15 @@ static bool obey(struct application *application, const char *line, size_t lengt
     if (meaning == SLCAN_UNKNOWN) {
         return false;
     }
-    put_text(application, slcan_answer(meaning, link->open && !link->listens_only));
+    const bool takes = link_has_line(link) && !link->listens_only;
+
+    put_text(application, slcan_answer(meaning, takes));
     if (meaning == SLCAN_OPENS || meaning == SLCAN_LISTENS) {
         open_channel(application, meaning == SLCAN_LISTENS);
-    } else if (meaning == SLCAN_CLOSES) {
+    } else if (meaning == SLCAN_CLOSES && !link->on_bus) {
         close_channel(application);
-    } else if (meaning == SLCAN_SENDS && link->open && !link->listens_only) {
-        receive(application, &frame);
+    } else if (meaning == SLCAN_SENDS && takes) {
+        link_receive(application, &frame);
     }
     return true;
 }
@@ -408,10 +423,17 @@ bool link_take(struct application *application, char byte)
                                      : take_character(application, byte);
 }
 
-void link_finish(struct application *application)
+void link_beside_console(struct application *application)
 {
-    if (application->link->axis.lost) {
+    struct link *link = application->link;
+
+    link->now_us = (uint32_t)application->board.time_us(application->board.context);
+    if (link->on_bus) {
+        can_bus_background(application);
+    } else if (link->axis.lost) {
         cia402_background(application);
+    } else if (link->can != NULL) {
+        can_bus_join(application);
     }
 }
 
@@ -432,6 +454,9 @@ void link_background(struct application *application)
     cia402_look(application);
     capture_look(application);
     watch(application);
+    if (link->on_bus) {
+        can_bus_watch(application);
+    }
     report_faults(application);
     if (link->nmt == LINK_OPERATIONAL) {
         pdo_look(application);

@@ -1,7 +1,8 @@
 /*
- * The drive as a CANopen node of the profile for drives: CiA 301 and 402, carried as text frames
- * (slcan.h) by the board's serial line. While the channel is open, from the line "O" to "C", the
- * console is silent and the line carries frames alone; what the drive does goes on when it closes.
+ * The drive as a CANopen node of the profile for drives: CiA 301 and 402, carried by the board's
+ * CAN bus, or as text frames (slcan.h) by its serial line. While the line's channel is open, from
+ * the line "O" to "C", the console is silent and the line carries frames alone; what the drive does
+ * goes on when it closes. For so long the node is off its bus (can_bus.h).
  *
  * Or as a server of Modbus RTU on the same dictionary, from the line "modbus" on, or from power-up.
  *
@@ -31,7 +32,8 @@ enum link_nmt { LINK_STOPPED = 0x04, LINK_OPERATIONAL = 0x05, LINK_PRE_OPERATION
 struct application;
 
 struct link {
-    bool open;
+    bool open;                 /* a channel is: the line's, or the bus */
+    bool on_bus;               /* the bus: the line is the console's */
     bool heard;                /* the heartbeat that 1016h names, at least once */
     bool synced;               /* SYNC has come, at least once */
     bool unheard;              /* either no more: an emergency said so */
@@ -53,6 +55,9 @@ struct link {
     struct cia402 axis;
     struct capture capture;
     struct drive_command command; /* parameters put by 2201h and on, for 2200h */
+    const struct hal_can *can;    /* NULL: the board has no bus */
+    uint32_t bus_errors;          /* HAL_CAN_..., as emergencies have said */
+    uint32_t overrun_us;          /* the last emergency that said so */
 };
 
 /* Before the first pass: closed. */
@@ -61,20 +66,36 @@ void link_init(struct link *link);
 /* Behind it: so much memory for the capture, of a board that follows the control (hal.h). */
 void link_put_memory(struct link *link, uint32_t *memory, size_t words);
 
+/* Behind it: a board's CAN bus, where the node lives from the first pass on. */
+void link_put_can(struct link *link, const struct hal_can *can);
+
+/* Whether the serial line carries the link, and not the console. */
+static inline bool link_has_line(const struct link *link)
+{
+    return link->open && !link->on_bus;
+}
+
 /* The line carries Modbus RTU from now on, until the two bytes "C\r" stand alone in it. */
 void link_open_modbus(struct application *application);
 
 /* The console, closed: obeys the line if it is "modbus" or one of slcan. false: it is none. */
 bool link_obey_line(struct application *application, const char *line, size_t length);
 
-/* A byte that has come while the channel is open. true: it ends a frame. */
+/* A byte that has come while the line has the channel. true: it ends a frame. */
 bool link_take(struct application *application, char byte);
 
 /* Background, while the channel is open: what nobody asked for, and what time brings. */
 void link_background(struct application *application);
 
-/* Background, closed: what the drive was in the midst of, a quick stop, ends. */
-void link_finish(struct application *application);
+/* Background, while the line is the console's: the bus; without one, what the drive was in the
+   midst of when the channel closed, a quick stop, ends. */
+void link_beside_console(struct application *application);
+
+/* A frame from the bus. */
+void link_receive(struct application *application, const struct can_frame *frame);
+
+/* Communication begins, as after a reset of it. */
+void link_reset_communication(struct application *application);
 
 /* Whether so many more frames fit into what is being sent. */
 bool link_has_room(const struct application *application, size_t count);

@@ -42,8 +42,11 @@
  *                         enable, quick stop (hal.h, HAL_INPUT_...); pulled up
  *   MACHINE_OUTPUTS_PORT, MACHINE_OUTPUTS_PIN
  *                         of three: alarm, in position, holding brake; pulled down, here and
- * outside ENCODER_TIMER         4, 5 or 8: its channels 1 and 2; 0: none BAUD                  of
- * LPUART1 LED_PORT, LED_PIN
+ *                         outside
+ *   ENCODER_TIMER         4, 5 or 8: its channels 1 and 2; 0: none
+ *   BAUD                  of LPUART1
+ *   CAN_BIT_Hz            bit rate of FDCAN3: 125000, 250000, 500000, 1000000; 0 or not given: no
+ * bus LED_PORT, LED_PIN
  */
 #ifndef STEADYSTEP_STM32G474_BOARD_H
 #define STEADYSTEP_STM32G474_BOARD_H
@@ -55,6 +58,10 @@
 #define BRIDGE_INTEGRATED 2
 
 #include STEADYSTEP_PIN_MAP
+
+#ifndef CAN_BIT_Hz
+#define CAN_BIT_Hz 0
+#endif
 
 enum {
     CORE_Hz = 170000000,
@@ -75,6 +82,13 @@ enum {
     LEG_OVERSAMPLING = CONTROL_PERIOD_us >= 100 ? 8 : 4,
     LEG_GROUP_CYCLES = 125 * LEG_OVERSAMPLING,
     LEG_GROUPS = PWM_PERIOD / LEG_GROUP_CYCLES, /* 17; 34 at 5 kHz */
+
+    /* A bit of the CAN bus is so many quanta of 1/34 us, an eighth of them, rounded up, behind the
+       sample point: 85.3 % at 1 Mbit/s, 86.8 % at 500 kbit/s, 87.5 % below. */
+    CAN_PRESCALER = 5,
+    CAN_QUANTUM_Hz = CORE_Hz / CAN_PRESCALER, /* PCLK1 is the core's clock */
+    CAN_QUANTA = CAN_BIT_Hz > 0 ? CAN_QUANTUM_Hz / (CAN_BIT_Hz + (CAN_BIT_Hz == 0)) : 0,
+    CAN_SEGMENT_2 = (CAN_QUANTA + 7) / 8,
 
     WATCHDOG_ms = 50,
 };

@@ -20,6 +20,7 @@ typedef enum {
     TIM1_BRK_TIM15_IRQn = 24,
     TIM1_UP_TIM16_IRQn = 25,
     TIM2_IRQn = 28,
+    FDCAN3_IT0_IRQn = 88,
     LPUART1_IRQn = 91,
 } IRQn_Type;
 
@@ -37,6 +38,7 @@ enum {
     PRIORITY_GUARD = 0,   /* opens the bridge: deadline, fault of an integrated bridge */
     PRIORITY_CONTROL = 1, /* the control interrupt */
     PRIORITY_LINE = 8,    /* end of a line on the serial line */
+    PRIORITY_CAN = 9,     /* a frame of the CAN bus */
 };
 
 /* Code that runs from CCM SRAM: no wait states, whatever the flash is doing. */

@@ -5,6 +5,7 @@
 int main(void);
 
 void reset_handler(void);
+void fdcan_interrupt(void);       /* a frame has come */
 void serial_line_interrupt(void); /* a line feed has come, or a byte with an error */
 
 #endif

@@ -12,6 +12,7 @@
 #include "hal/stm32g474/cycle_counter.h"
 #include "hal/stm32g474/deadline_guard.h"
 #include "hal/stm32g474/encoder.h"
+#include "hal/stm32g474/fdcan.h"
 #include "hal/stm32g474/flash_errors.h"
 #include "hal/stm32g474/overcurrent_trip.h"
 #include "hal/stm32g474/phase_voltage_sampling.h"
@@ -50,6 +51,9 @@ static void start_board(void)
     pins_connect();
     encoder_configure();
     serial_line_configure();
+    if (CARRIES_CAN) {
+        fdcan_configure();
+    }
     unpack_memory();
 }
 
@@ -90,6 +94,9 @@ int main(void)
     }
     application_put_link(&application, &fieldbus);
     link_put_memory(&fieldbus, capture_memory, HAL_CAPTURE_WORDS);
+    if (CARRIES_CAN) {
+        link_put_can(&fieldbus, &fdcan);
+    }
     start_control();
     watchdog_start();
     pins_led(1);

@@ -94,3 +94,14 @@ REQUIRE(ENCODER_TIMER == 0 || ENCODER_TIMER == 4 || ENCODER_TIMER == 5 || ENCODE
 REQUIRE(ENCODER_TIMER != 0 || ENCODER_COUNTS_PER_TURN == 0,
         "the build names an encoder (STEADYSTEP_ENCODER_COUNTS), the map of none");
 REQUIRE(BAUD >= 9600 && BAUD <= 3000000, "BAUD must be 9600...3000000");
+
+/* ---- CAN ---- */
+REQUIRE(CAN_BIT_Hz == 0 || CAN_BIT_Hz == 125000 || CAN_BIT_Hz == 250000 || CAN_BIT_Hz == 500000 ||
+            CAN_BIT_Hz == 1000000,
+        "CAN_BIT_Hz must be 125000, 250000, 500000 or 1000000, or 0: no CAN bus");
+_Static_assert(CORE_Hz % CAN_PRESCALER == 0 &&
+                   CAN_QUANTA * CAN_BIT_Hz == (CAN_BIT_Hz > 0 ? CAN_QUANTUM_Hz : 0),
+               "quanta of the CAN bus make whole bits");
+_Static_assert(CAN_BIT_Hz == 0 || (8 * (CAN_QUANTA - CAN_SEGMENT_2) <= 7 * CAN_QUANTA &&
+                                   4 * (CAN_QUANTA - CAN_SEGMENT_2) >= 3 * CAN_QUANTA),
+               "the sample point is at 75...87.5 % of a bit");

@@ -74,12 +74,14 @@ struct rcc_registers {
 #define RCC_APB1ENR1_TIM3EN         BIT(1)
 #define RCC_APB1ENR1_TIM4EN         BIT(2)
 #define RCC_APB1ENR1_TIM5EN         BIT(3)
+#define RCC_APB1ENR1_FDCANEN        BIT(25)
 #define RCC_APB1ENR1_PWREN          BIT(28)
 #define RCC_APB1ENR2_LPUART1EN      BIT(0)
 #define RCC_APB2ENR_SYSCFGEN        BIT(0)
 #define RCC_APB2ENR_TIM1EN          BIT(11)
 #define RCC_APB2ENR_TIM8EN          BIT(13)
 #define RCC_CCIPR_LPUART1SEL(value) FIELD(value, 10, 2)
+#define RCC_CCIPR_FDCANSEL(value)   FIELD(value, 24, 2)
 #define RCC_CSR_LSION               BIT(0)
 #define RCC_CSR_LSIRDY              BIT(1)
 #define RCC_CSR_RMVF                BIT(23)
@@ -93,6 +95,7 @@ enum { RCC_HPRE_DIV1 = 0, RCC_HPRE_DIV2 = 8 };     /* HPRE */
 enum { RCC_PLL_SOURCE_HSI16 = 2, RCC_PLL_SOURCE_HSE = 3 };
 enum { RCC_PLLR_DIV2 = 0 };
 enum { RCC_LPUART1_PCLK = 0 };
+enum { RCC_FDCAN_PCLK1 = 2 };
 
 /* ---- Power control ---- */
 struct pwr_registers {
@@ -448,6 +451,66 @@ struct lpuart_registers {
 #define LPUART_ICR_NE         BIT(2)
 #define LPUART_ICR_ORE        BIT(3)
 #define LPUART_ICR_CMF        BIT(17)
+
+/* ---- CAN ---- */
+struct fdcan_registers {
+    volatile uint32_t crel, endn;
+    volatile uint32_t reserved0;
+    volatile uint32_t dbtp, test, rwd, cccr, nbtp, tscc, tscv, tocc, tocv;
+    volatile uint32_t reserved1[4];
+    volatile uint32_t ecr, psr, tdcr;
+    volatile uint32_t reserved2;
+    volatile uint32_t ir, ie, ils, ile;
+    volatile uint32_t reserved3[8];
+    volatile uint32_t rxgfc, xidam, hpms;
+    volatile uint32_t reserved4;
+    volatile uint32_t rxf0s, rxf0a, rxf1s, rxf1a;
+    volatile uint32_t reserved5[8];
+    volatile uint32_t txbc, txfqs, txbrp, txbar, txbcr, txbto, txbcf, txbtie, txbcie, txefs, txefa;
+};
+#define FDCAN3 ((struct fdcan_registers *)0x40006c00u)
+
+#define FDCAN_CCCR_INIT          BIT(0)
+#define FDCAN_CCCR_CCE           BIT(1)
+#define FDCAN_NBTP_NTSEG2(value) FIELD(value, 0, 7)
+#define FDCAN_NBTP_NTSEG1(value) FIELD(value, 8, 8)
+#define FDCAN_NBTP_NBRP(value)   FIELD(value, 16, 9)
+#define FDCAN_NBTP_NSJW(value)   FIELD(value, 25, 7)
+#define FDCAN_PSR_EP             BIT(5)
+#define FDCAN_PSR_EW             BIT(6)
+#define FDCAN_PSR_BO             BIT(7)
+#define FDCAN_IR_RFN             BIT(0)
+#define FDCAN_IR_RFL             BIT(2)
+#define FDCAN_IE_RFNE            BIT(0)
+#define FDCAN_ILE_EINT0          BIT(0)
+#define FDCAN_RXGFC_RRFE         BIT(0)
+#define FDCAN_RXGFC_RRFS         BIT(1)
+#define FDCAN_RXGFC_ANFE(value)  FIELD(value, 2, 2)
+#define FDCAN_RXGFC_ANFS(value)  FIELD(value, 4, 2)
+#define FDCAN_RXGFC_LSS(value)   FIELD(value, 16, 5)
+#define FDCAN_RXF0S_FFL(value)   FIELD(value, 0, 4)
+#define FDCAN_RXF0S_FGI(value)   FIELD(value, 8, 2)
+#define FDCAN_TXFQS_TFQPI(value) FIELD(value, 16, 2)
+#define FDCAN_TXFQS_TFQF         BIT(21)
+
+enum { FDCAN_REJECT = 2 }; /* ANFE, ANFS */
+
+/* Its message RAM (RM0440, FDCAN message RAM): FDCAN1 and FDCAN2 have 0x350 bytes each before it.
+ */
+enum { FDCAN_FIFO_ELEMENTS = 3, FDCAN_TX_ELEMENTS = 3 };
+struct fdcan_element {
+    volatile uint32_t id, control; /* R0 and R1, T0 and T1 */
+    volatile uint32_t data[16];
+};
+struct fdcan_message_ram {
+    volatile uint32_t standard_filter[28];
+    volatile uint32_t extended_filter[16];
+    struct fdcan_element rx_fifo0[FDCAN_FIFO_ELEMENTS], rx_fifo1[FDCAN_FIFO_ELEMENTS];
+    volatile uint32_t tx_events[6];
+    struct fdcan_element tx_buffer[FDCAN_TX_ELEMENTS];
+};
+
+enum { FDCAN_FILTER_DUAL = 1, FDCAN_FILTER_FIFO0 = 1 }; /* SFT, SFEC of a standard filter */
 
 /* ---- Independent watchdog ---- */
 struct iwdg_registers {

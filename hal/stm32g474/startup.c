@@ -9,6 +9,7 @@
 #include "hal/stm32g474/control_interrupt.h"
 #include "hal/stm32g474/deadline_guard.h"
 #include "hal/stm32g474/device.h"
+#include "hal/stm32g474/fdcan.h"
 #include "hal/stm32g474/handlers.h"
 #include "hal/stm32g474/pwm.h"
 
@@ -37,7 +38,9 @@ __attribute__((section(".ccm.vectors"), used, aligned(512))) struct {
             [TIM1_UP_TIM16_IRQn] = control_interrupt,
             [TIM1_UP_TIM16_IRQn + 1 ... TIM2_IRQn - 1] = crash_exception,
             [TIM2_IRQn] = deadline_guard_interrupt,
-            [TIM2_IRQn + 1 ... LPUART1_IRQn - 1] = crash_exception,
+            [TIM2_IRQn + 1 ... FDCAN3_IT0_IRQn - 1] = crash_exception,
+            [FDCAN3_IT0_IRQn] = CARRIES_CAN ? fdcan_interrupt : crash_exception,
+            [FDCAN3_IT0_IRQn + 1 ... LPUART1_IRQn - 1] = crash_exception,
             [LPUART1_IRQn] = serial_line_interrupt,
             [LPUART1_IRQn + 1 ... INTERRUPTS - 1] = crash_exception,
         },

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "firmware/interface/drive_interface.h"
 #include "hal/hal.h"
@@ -40,6 +41,18 @@ class DriveBoard
     void type(const std::string &line)
     {
         send(line + '\n');
+    }
+
+    /* Another node of the drive's CAN bus: a frame that it sends as soon as the bus is free, false:
+       too many wait, or the board has no bus; those it has received since the last call. */
+    virtual bool send_frame(const can_frame &frame)
+    {
+        static_cast<void>(frame);
+        return false;
+    }
+    virtual std::vector<can_frame> take_frames()
+    {
+        return {};
     }
 
     /* The supply fails and returns: the drive starts again, bridge off, with the parameter store as

@@ -57,7 +57,8 @@ struct Options {
     std::string numeric, seed, seeds, out, trace = "csv", folder;
     std::string serve; /* SCENARIO; "": a drive with its defaults */
     serve::ServeOptions serving;
-    int tcp = -1, knobs_tcp = -1; /* -1: not asked for */
+    int tcp = -1, knobs_tcp = -1, can_tcp = -1; /* -1: not asked for */
+    std::string can_link;
     int nodes = 1;
     bool json = false;
     unsigned jobs = default_workers();
@@ -385,6 +386,16 @@ int serve_command(Options options)
     if (options.knobs_tcp >= 0) {
         options.serving.knobs.tcp = static_cast<unsigned>(options.knobs_tcp);
     }
+    if (!options.can_link.empty() || options.can_tcp >= 0) {
+        if (options.given.image.empty()) {
+            throw InputError("--can-link, --can-tcp: expected --image, the simulated board has no "
+                             "CAN bus");
+        }
+        options.serving.can = serve::PortPlace{options.can_link, {}};
+        if (options.can_tcp >= 0) {
+            options.serving.can->tcp = static_cast<unsigned>(options.can_tcp);
+        }
+    }
     if (!options.given.image.empty()) {
         check_image(scenario, firmware.numeric);
     }
@@ -570,6 +581,12 @@ void add_serve_options(CLI::App &command, Options &options)
     command.add_option("--link", serving.serial.link, "symbolic link to the pseudo-terminal")
         ->check(not_empty());
     command.add_option("--tcp", options.tcp, "port on 127.0.0.1 for the same bytes; 0: a free one")
+        ->check(CLI::Range(0, 65535));
+    command
+        .add_option("--can-link", options.can_link,
+                    "of --image: a CAN adapter (slcan) on the board's bus, its pseudo-terminal")
+        ->check(not_empty());
+    command.add_option("--can-tcp", options.can_tcp, "the same adapter, port on 127.0.0.1")
         ->check(CLI::Range(0, 65535));
     command.add_option("--knobs-link", serving.knobs.link, "the same for the knobs")
         ->check(not_empty());

@@ -45,6 +45,9 @@ Server::Server(const scenario::Scenario &scenario,
     : period_s_(scenario.plant.bridge.period_s), serial_(options.serial), knob_port_(options.knobs),
       clock_(options.speed, period_s_)
 {
+    if (options.can) {
+        can_port_.emplace(*options.can);
+    }
     const SerialPace pace(options.baud / bits_per_byte * period_s_);
     for (std::unique_ptr<sil::DriveBoard> &board : boards) {
         stations_.push_back(std::make_unique<Station>(scenario, std::move(board), pace));
@@ -53,7 +56,8 @@ Server::Server(const scenario::Scenario &scenario,
 
 std::string Server::places() const
 {
-    return joined("serial:", serial_.places()) + joined("knobs:", knob_port_.places());
+    return joined("serial:", serial_.places()) + joined("knobs:", knob_port_.places()) +
+           (can_port_ ? joined("can:", can_port_->places()) : "");
 }
 
 void Server::wait()
@@ -61,6 +65,9 @@ void Server::wait()
     std::vector<pollfd> watched;
     serial_.watch(watched);
     knob_port_.watch(watched);
+    if (can_port_) {
+        can_port_->watch(watched);
+    }
     const timespec nap = {0, period_ - heard_in_ < answer_periods ? short_nap_ns : nap_ns};
     ppoll(watched.data(), watched.size(), &nap, nullptr);
 }
@@ -75,6 +82,24 @@ void Server::exchange()
         }
     }
     knob_port_.write(turn_knobs(knob_port_.read()));
+    if (can_port_) {
+        const std::string typed = can_port_->read();
+        heard_in_ = typed.empty() ? heard_in_ : period_;
+        can_port_->write(
+            adapter_.take(typed, [this](const can_frame &frame) { return carry(frame, nullptr); }));
+    }
+}
+
+/* To every board but the one that it is from. false: one of them takes none now. */
+bool Server::carry(const can_frame &frame, const Station *from)
+{
+    bool taken = true;
+    for (const std::unique_ptr<Station> &station : stations_) {
+        if (station.get() != from && !station->board->send_frame(frame)) {
+            taken = false;
+        }
+    }
+    return taken;
 }
 
 /* "2: load_torque_Nm = 0.1" is for node 2; without a number a line is for node 1. */
@@ -129,6 +154,12 @@ void Server::pass_period_of(Station &station)
         serial_.write(sent);
     } else {
         share_frames(station, sent);
+    }
+    for (const can_frame &frame : station.board->take_frames()) {
+        (void)carry(frame, &station);
+        if (can_port_) {
+            can_port_->write(adapter_.show(frame));
+        }
     }
 }
 

@@ -7,11 +7,13 @@
 #define STEADYSTEP_SERVE_SERVER_H
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sil/scenario/scenario_file.h"
 #include "sil/serve/byte_port.h"
+#include "sil/serve/can_adapter.h"
 #include "sil/serve/knobs.h"
 #include "sil/serve/serial_pace.h"
 #include "sil/serve/wall_clock.h"
@@ -21,7 +23,8 @@ namespace serve
 
 struct ServeOptions {
     PortPlace serial, knobs;
-    double speed = 1; /* simulated seconds in a second */
+    std::optional<PortPlace> can; /* of an adapter on the boards' CAN bus */
+    double speed = 1;             /* simulated seconds in a second */
     double baud = 921600;
 };
 
@@ -42,7 +45,7 @@ class Server
   public:
     /* Opens the ports; throws scenario::InputError. Of several boards, node 1 first, the client
        hears every frame, and so does each of the others; console and acknowledgements are the
-       first one's. */
+       first one's. On a CAN bus, of boards that have one, all hear all. */
     Server(const scenario::Scenario &scenario, std::vector<std::unique_ptr<sil::DriveBoard>> boards,
            const ServeOptions &options);
 
@@ -60,9 +63,12 @@ class Server
     void pass_period();
     void pass_period_of(Station &station);
     void share_frames(Station &station, const std::string &bytes);
+    bool carry(const can_frame &frame, const Station *from);
 
     double period_s_;
     BytePort serial_, knob_port_;
+    std::optional<BytePort> can_port_;
+    CanAdapter adapter_;
     WallClock clock_;
     std::vector<std::unique_ptr<Station>> stations_;
     std::string knob_line_; /* that has not ended */

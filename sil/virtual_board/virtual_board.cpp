@@ -276,6 +276,16 @@ void VirtualBoard::send(const std::string &bytes)
     impl_->typed += bytes;
 }
 
+bool VirtualBoard::send_frame(const can_frame &frame)
+{
+    return impl_->device.can().send(frame);
+}
+
+std::vector<can_frame> VirtualBoard::take_frames()
+{
+    return impl_->device.can().take_output();
+}
+
 /*
  * A line takes longer than a period. What is to arrive in this one began as much earlier: bytes
  * whose time has passed come at once, back to back, the others at their pace.

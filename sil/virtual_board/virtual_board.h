@@ -46,6 +46,8 @@ class VirtualBoard : public sil::DriveBoard
     ~VirtualBoard() override;
 
     void send(const std::string &bytes) override;
+    bool send_frame(const can_frame &frame) override;
+    std::vector<can_frame> take_frames() override;
     void power_cycle() override;
     void short_circuit(int leg, double current_A) override;
     void stall_control_interrupt(double until_s) override;

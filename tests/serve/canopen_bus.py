@@ -16,17 +16,20 @@ except ImportError:
 
 
 class Bus:
-    """A network on slcan; `with` connects and disconnects."""
+    """A network on slcan; `with` connects and disconnects. `lives`: the nodes have said so before, and
+    do so again when communication is reset."""
 
-    def __init__(self, place, nodes=(1,), kind=BaseNode402):
+    def __init__(self, place, nodes=(1,), kind=BaseNode402, lives=False):
         self.network = canopen.Network()
-        self.place, self.ids, self.kind = str(place), nodes, kind
+        self.place, self.ids, self.kind, self.lives = str(place), nodes, kind, lives
 
     def __enter__(self):
         self.nodes = [self.network.add_node(self.kind(number, EDS)) for number in self.ids]
         self.network.connect(interface="slcan", channel=self.place, bitrate=500000,
                              sleep_after_open=0)
         self.node = self.nodes[0]
+        if self.lives:
+            self.network.nmt.state = "RESET COMMUNICATION"
         for node in self.nodes:
             node.sdo.RESPONSE_TIMEOUT = 2
             wait_for(lambda node=node: node.nmt.state == "PRE-OPERATIONAL")

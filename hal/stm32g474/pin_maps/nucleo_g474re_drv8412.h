@@ -37,6 +37,10 @@
     /* serial line, through the debugger's virtual port */                                         \
     PIN(A, 2, ALTERNATE, 12, NONE, LPUART1, TX)                                                    \
     PIN(A, 3, ALTERNATE, 12, UP, LPUART1, RX)                                                      \
+    /* CAN bus; until here the pins are JTDI and JTDO, or SWO: debugging goes by SWDIO and SWCLK   \
+     */                                                                                            \
+    PIN(A, 15, ALTERNATE, 11, NONE, FDCAN3, TX)                                                    \
+    PIN(B, 3, ALTERNATE, 11, UP, FDCAN3, RX)                                                       \
     /* switch of the brake resistor, on while high */                                              \
     PIN(C, 6, OUTPUT, 0, DOWN, GPIOC, BRAKE)                                                       \
     /* machine: limit -, limit +, home, enable, quick stop */                                      \
@@ -104,6 +108,8 @@
 #define ENCODER_TIMER 4
 
 #define BAUD 921600
+
+#define CAN_BIT_Hz 500000
 
 #define LED_PORT GPIOA
 #define LED_PIN  5

@@ -72,7 +72,7 @@ const std::vector<Register> rcc_registers = {
     {0x78, "APB1SMENR1", 0xd2fecd3f, 0xd2fecd3f},
     {0x7c, "APB1SMENR2", 0x103, 0x103},
     {0x80, "APB2SMENR", 0x0437f801, 0x0437f801},
-    {CCIPR, "CCIPR", 0xf0000c00},
+    {CCIPR, "CCIPR", 0xf3000c00},
     {BDCR, "BDCR", 0},
     {CSR, "CSR", 0x1, 0x0c000000, 0xfe800002},
 };

@@ -79,6 +79,10 @@ class Rcc : public RegisterBlock
     {
         return field(at(0x88), 10, 2);
     }
+    unsigned fdcan_source() const /* 0: HSE, 1: PLL, 2: PCLK1 */
+    {
+        return field(at(0x88), 24, 2);
+    }
     unsigned adc_source(unsigned group) const /* 0: ADC1/2, 1: ADC3/4/5; 0 none, 1 PLL, 2 SYSCLK */
     {
         return field(at(0x88), 28 + 2 * group, 2);

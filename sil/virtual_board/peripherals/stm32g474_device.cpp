@@ -44,8 +44,8 @@ Stm32g474Device::Stm32g474Device(Chip &chip, const Stm32g474Config &config)
       dac1_(chip, 1, rcc_), dac3_(chip, 3, rcc_), comparators_(chip, dac1_, dac3_),
       power_stage_(chip, config.power_stage, tim1_, pins_, opamps_, comparators_),
       adc12_(chip, "ADC12_COMMON"), adc345_(chip, "ADC345_COMMON"), adc12_line_(chip, 18),
-      lpuart_(chip, rcc_, dmamux_, config.host_baud), watchdog_(chip), syscfg_(make_syscfg(chip)),
-      dbgmcu_(make_dbgmcu(chip))
+      lpuart_(chip, rcc_, dmamux_, config.host_baud), fdcan_(chip, rcc_, config.can_bit_Hz),
+      watchdog_(chip), syscfg_(make_syscfg(chip)), dbgmcu_(make_dbgmcu(chip))
 {
     for (const TimerPlace &place : timer_places) {
         const unsigned bus = place.bus;
@@ -92,6 +92,8 @@ Stm32g474Device::Stm32g474Device(Chip &chip, const Stm32g474Config &config)
     };
     lpuart_.tx_routed = [this] { return pins_.routed({'A', 2}, 12); };
     lpuart_.rx_routed = [this] { return pins_.routed({'A', 3}, 12); };
+    fdcan_.tx_routed = [this] { return pins_.routed({'A', 15}, 11); };
+    fdcan_.rx_routed = [this] { return pins_.routed({'B', 3}, 11); };
     pwr_.on_change = [this] { rcc_.check(); };
     pwr_.on_supply = [this](bool low) {
         tim1_.system_break(low && bit(syscfg_->kept(CFGR2), PVDL));
@@ -158,6 +160,9 @@ void Stm32g474Device::map()
     add("COMP", 0x40010200, 0x100, comparators_, APB2ENR, 0);
     add("OPAMP", 0x40010300, 0x100, opamps_, APB2ENR, 0);
     add("LPUART1", 0x40008000, 0x400, lpuart_, APB1ENR2, 0);
+    add("FDCAN3", 0x40006c00, 0x400, fdcan_, APB1ENR1, 25);
+    mappings_.push_back({"message RAM of FDCAN3", 0x4000a400 + 2 * MessageRam::bytes_each,
+                         MessageRam::bytes_each, &fdcan_.memory()});
     add("IWDG", 0x40003000, 0x400, watchdog_);
     add("DBGMCU", 0xe0042000, 0x400, *dbgmcu_);
 }

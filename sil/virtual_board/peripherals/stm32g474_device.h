@@ -9,6 +9,7 @@
 #include "sil/virtual_board/peripherals/analog.h"
 #include "sil/virtual_board/peripherals/clock_tree.h"
 #include "sil/virtual_board/peripherals/dma.h"
+#include "sil/virtual_board/peripherals/fdcan.h"
 #include "sil/virtual_board/peripherals/flash.h"
 #include "sil/virtual_board/peripherals/gpio.h"
 #include "sil/virtual_board/peripherals/lpuart.h"
@@ -23,6 +24,7 @@ struct Stm32g474Config {
     PowerStageConfig power_stage;
     ClockConfig clock;
     double host_baud = 921600;
+    double can_bit_Hz = 500e3;
 };
 
 class Stm32g474Device : public Device
@@ -64,6 +66,10 @@ class Stm32g474Device : public Device
     {
         return lpuart_;
     }
+    Fdcan &can()
+    {
+        return fdcan_;
+    }
     Watchdog &watchdog()
     {
         return watchdog_;
@@ -101,6 +107,7 @@ class Stm32g474Device : public Device
     SharedLine adc12_line_;
     std::vector<std::unique_ptr<Adc>> adcs_;
     Lpuart lpuart_;
+    Fdcan fdcan_;
     Watchdog watchdog_;
     std::unique_ptr<RegisterBlock> syscfg_, dbgmcu_;
     std::vector<Mapping> mappings_;
