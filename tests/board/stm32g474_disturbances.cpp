@@ -184,6 +184,12 @@ const Case cases[] = {
     {"simulation-is-asked-for", simulation_is_asked_for},
     {"no-encoder", encoder_is_asked_for},
     {"settings-act", settings_act},
+    {"can-registers", can_registers},
+    {"can-flood", can_flood},
+    {"can-flood-of-a-million", can_flood_of_a_million, true},
+    {"can-bus-off", can_bus_off},
+    {"can-without-another-node", can_without_another_node},
+    {"can-overrun", can_overrun},
     {"encoder-of-4000-counts", encoder_counts, true},
 };
 
