@@ -34,18 +34,21 @@ FAMILIES = {
     "DMA": ["DMA1"],
     "DMAMUX": ["DMAMUX1"],
     "LPUART": ["LPUART1"],
+    "FDCAN": ["FDCAN3"],
 }
 # Registers whose name in the macros or structs is not the one of the description.
 REGISTERS = {
     "CCMR": "ccmr_output[0]",
     "CCR": {"DMAMUX": "ccr[0]"},
     "CR": {"DMA": "ch[0].cr"},
+    "RXF0S": "rxfs[0]",
 }
 DAC = {
     **{f"dhr{n}{k}": f"dhr{n}[{k - 1}]" for n in ("12r", "12l", "8r") for k in (1, 2)},
     **{f"dor{k}": f"dor[{k - 1}]" for k in (1, 2)},
 }
-MEMBERS = {"DAC3": DAC, "DAC4": DAC}
+FDCAN = {f"rxf{n}{k}": f"rxf{k}[{n}]" for n in (0, 1) for k in "sa"}
+MEMBERS = {"DAC3": DAC, "DAC4": DAC, "FDCAN3": FDCAN}
 # Where the description is wrong: RM0440 and the vendor's own header have PWR_CR5.R1MODE in bit 8.
 CORRECTIONS = {("PWR", "cr5", "r1mode"): (8, 1)}
 # In capture mode CCMR1 has other fields.
@@ -354,8 +357,15 @@ PLANTED = [
     ("registers.h", "kr, pr, rlr", "kr, rlr, pr"),
     ("registers.h", "#define PWR_SR2_VOSF BIT(10)", "#define PWR_SR2_VOSF (1u << 10)"),
     ("registers.h", "#define RCC_AHB2ENR_DAC3EN BIT(18)", ""),
+    ("registers.h", "0x40006c00u", "0x40006800u"),
+    ("registers.h", "NTSEG1(value) FIELD(value, 8, 8)", "NTSEG1(value) FIELD(value, 8, 7)"),
+    ("registers.h", "FDCAN_TXFQS_TFQF BIT(21)", "FDCAN_TXFQS_TFQF BIT(20)"),
+    ("registers.h", "txbc, txfqs", "txfqs, txbc"),
+    ("device.h", "FDCAN3_IT0_IRQn = 88", "FDCAN3_IT0_IRQn = 89"),
     ("registers.h", "0x50000600u", "0x50000700u"),
     (PIN_MAP, "PIN(B, 15, ALTERNATE, 4,", "PIN(B, 15, ALTERNATE, 6,"),
+    (PIN_MAP, "PIN(A, 15, ALTERNATE, 11,", "PIN(A, 15, ALTERNATE, 9,"),
+    (PIN_MAP, "PIN(B, 3, ALTERNATE, 11, UP, FDCAN3, RX)", ""),
     (PIN_MAP, "PIN(A, 7, ANALOG, 0, NONE, OPAMP2", "PIN(A, 6, ANALOG, 0, NONE, OPAMP2"),
     (PIN_MAP, "PIN(C, 5, ALTERNATE, 6, DOWN, TIM1, CH4N)", ""),
     (PIN_MAP, "#define AMPLIFIER_B_INPUT 0", "#define AMPLIFIER_B_INPUT 1"),

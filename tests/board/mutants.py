@@ -247,6 +247,46 @@ MUTANTS = [
         "bus-is-braked",
         "the brake is off below 1.25 of the supply",
     ),
+    Mutant(
+        "the CAN bus is clocked by the crystal",
+        "fdcan.c",
+        " | RCC_CCIPR_FDCANSEL(RCC_FDCAN_PCLK1)",
+        "",
+        "can-registers",
+        "kernel clock",
+    ),
+    Mutant(
+        "frames for others are received",
+        "fdcan.c",
+        "FDCAN_RXGFC_ANFS(FDCAN_REJECT)",
+        "FDCAN_RXGFC_ANFS(0)",
+        "can-registers",
+        "what no filter names, remote and extended frames are rejected",
+    ),
+    Mutant(
+        "frames wait for the background",
+        "fdcan.c",
+        "    FDCAN3->ile = FDCAN_ILE_EINT0;\n",
+        "",
+        "can-overrun",
+        "the chip itself loses none",
+    ),
+    Mutant(
+        "bus-off is for ever",
+        "fdcan.c",
+        "        FDCAN3->cccr = FDCAN_CCCR_INIT | FDCAN_CCCR_CCE;\n        FDCAN3->cccr = 0;\n",
+        "",
+        "can-bus-off",
+        "once in a second it tries to come back",
+    ),
+    Mutant(
+        "what was to be sent before bus-off is sent behind it",
+        "fdcan.c",
+        "        transmit.sent = transmit.written;\n        FDCAN3->cccr = FDCAN_CCCR_INIT | FDCAN_CCCR_CCE;\n",
+        "",
+        "can-bus-off",
+        "then it says that it is back, first",
+    ),
 ]
 
 

@@ -58,6 +58,9 @@ class PinMap:
             gates += [f"{gate}N" for gate in gates]
         needed = [("TIM1", gate) for gate in gates] + [("LPUART1", "TX"), ("LPUART1", "RX")]
         yield from (f"no pin for {' '.join(which)}" for which in needed if which not in self.at)
+        if self.defined.get("CAN_BIT_Hz", "0") != "0":
+            yield from (f"CAN_BIT_Hz: no pin for FDCAN3 {which}" for which in ("TX", "RX")
+                        if ("FDCAN3", which) not in self.at)
         outputs = {"BRIDGE_RESET": "RESET"} if self.integrated() else {}
         for name, signal in {
             **outputs,

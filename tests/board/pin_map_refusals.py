@@ -52,6 +52,7 @@ REFUSED = [
     (GATES, "#define MACHINE_INPUTS_PIN   8", "", "the machine needs"),
     (GATES, "ENCODER_TIMER", "3", "must be 4, 5 or 8"),
     (GATES, "BAUD", "300", "must be 9600...3000000"),
+    (GATES, "CAN_BIT_Hz", "800000", "CAN_BIT_Hz must be 125000"),
 ]
 
 # what becomes of the pin map's definition, and the motor it is then too small for

@@ -38,7 +38,8 @@ ADC = {n: 0x50000000 + at for n, at in enumerate((0x000, 0x100, 0x400, 0x500, 0x
 ADC12_CSR = 0x50000300
 DAC = {3: 0x50001000, 4: 0x50001400}
 TIMER = {1: 0x40012C00, 4: 0x40000800, 5: 0x40000C00, 8: 0x40013400}
-DMAMUX, LPUART = 0x40020800, 0x40008000
+DMAMUX, LPUART, FDCAN = 0x40020800, 0x40008000, 0x40006C00
+CAN_PRESCALER = 5
 MODES = {"INPUT": 0, "OUTPUT": 1, "ALTERNATE": 2, "ANALOG": 3}
 PULLS = {"NONE": 0, "UP": 1, "DOWN": 2}
 
@@ -201,6 +202,17 @@ def expected_rest(chosen):
         yield f"TIM{timer} counts an encoder", TIMER[timer] + 0x08, 0, 3, 3
         yield f"TIM{timer} runs", TIMER[timer], 0, 1, 1
     yield "LPUART1 BRR", LPUART + 0x0C, 0, 20, round(256 * CORE_HZ / chosen.number("BAUD"))
+    can = int(chosen.defined.get("CAN_BIT_Hz", "0"))
+    yield "FDCANEN", RCC + 0x58, 25, 1, int(can > 0)
+    if can:
+        quanta = round(CORE_HZ / CAN_PRESCALER / can)
+        behind = -(-quanta // 8)  # the sample point is as late as can be up to 87.5 %
+        yield "FDCANSEL: PCLK1", RCC + 0x88, 24, 2, 2
+        yield "NBRP", FDCAN + 0x1C, 16, 9, CAN_PRESCALER - 1
+        yield "NTSEG1", FDCAN + 0x1C, 8, 8, quanta - 1 - behind - 1
+        yield "NTSEG2", FDCAN + 0x1C, 0, 7, behind - 1
+        yield "NSJW", FDCAN + 0x1C, 25, 7, behind - 1
+        yield "CCCR: on the bus", FDCAN + 0x18, 0, 16, 0
     crystal = chosen.number("CRYSTAL_Hz")
     yield "PLLSRC", RCC + 0x0C, 0, 2, 3 if crystal else 2
     yield "PLLM", RCC + 0x0C, 4, 4, (crystal or 16000000) // 4000000 - 1
@@ -222,7 +234,7 @@ def changes(chosen):
     for name in (
         *("CRYSTAL_Hz", "DEAD_TIME_CYCLES", "AMPLIFIER_A_INPUT", "AMPLIFIER_B_INPUT"),
         *("AMPLIFIER_GAIN", "CURRENT_A_CHANNEL", "CURRENT_B_CHANNEL", "BUS_CHANNEL"),
-        *("LEGS_A_CONVERTER", "LEG_A_PLUS_CHANNEL", "LEG_B_MINUS_CHANNEL", "BAUD"),
+        *("LEGS_A_CONVERTER", "LEG_A_PLUS_CHANNEL", "LEG_B_MINUS_CHANNEL", "BAUD", "CAN_BIT_Hz"),
         *("TEMPERATURE_CHANNEL", "OVERCURRENT_mA", "CHANNEL_A_PLUS", "CHANNEL_B_MINUS"),
         *("LOW_GATES_ACTIVE_LOW", "BRAKE_PIN"),
     ):

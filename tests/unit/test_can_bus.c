@@ -217,7 +217,7 @@ static void test_a_line_that_closes_what_it_has_not_opened_leaves_the_bus_alone(
     bus.sent_count = 0;
     TEST_ASSERT_EQUAL_STRING("\r", link_bench_say("C", 20));
     TEST_ASSERT_EQUAL_size_t(0, bus.sent_count);
-    TEST_ASSERT_TRUE(bench_link.on_bus);
+    TEST_ASSERT_TRUE(bench_link.open && bench_link.on_bus);
 }
 
 /* Of `L`, too, which only listens. */
