@@ -197,15 +197,12 @@ static void stop(struct application *application, enum machine_stop stop)
 }
 
 /* By its sign. A torque goes where it pushes, whatever a rotor at rest seems to do. */
-static double way_of_motion(struct application *application)
+static num_t way_of_motion(const struct drive *drive)
 {
-    const struct drive *drive = &application->drive;
-    struct drive_signals now;
+    const num_t torque = drive->torque.current;
 
-    drive_signals_read(drive, &now);
-    return interrupt_view_torque(drive) && drive->torque.current != NUM(0.0)
-               ? num_to_double(drive->torque.current)
-               : now.omega_ref_rad_s;
+    return interrupt_view_torque(drive) && torque != NUM(0.0) ? torque
+                                                              : interrupt_view_speed(drive);
 }
 
 static void obey_inputs(struct application *application)
@@ -217,9 +214,9 @@ static void obey_inputs(struct application *application)
 
     if (state == DRIVE_OPERATION_ENABLED && moves(application) &&
         application->chosen.inputs_used != 0) {
-        const double way = way_of_motion(application);
+        const num_t way = way_of_motion(&application->drive);
 
-        found = stop_of(application, way > 0.0, way < 0.0);
+        found = stop_of(application, way > NUM(0.0), way < NUM(0.0));
     } else if (!enabled && !io->engages && state != DRIVE_SWITCH_ON_DISABLED &&
                state != DRIVE_FAULT) {
         command(application, DRIVE_COMMAND_DISABLE);

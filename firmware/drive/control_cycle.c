@@ -55,17 +55,6 @@ static void present(struct prediction *next, const struct drive *drive,
     next->reference = &drive->reference.now;
 }
 
-/* To where the answer begins to act. */
-IN_PLACE void look_ahead(struct prediction *next, const struct drive *drive,
-                         const struct estimate *estimate, struct passage passage)
-{
-    if (has_zero_delay(&drive->params.path)) {
-        present(next, drive, estimate, passage);
-    } else {
-        predict(next, drive, estimate, passage);
-    }
-}
-
 IN_PLACE struct position_law_input law_input(const struct prediction *next, bool feed_forward)
 {
     const struct reference_sample *reference = next->reference;
@@ -97,78 +86,45 @@ IN_PLACE void hold_rotor(struct current_demand *demand, struct drive *drive,
     demand->frame = (struct frame){drive->hold.frame, drive->hold.frame, drive->hold.speed};
 }
 
-IN_PLACE void move_rotor(struct current_demand *demand, struct drive *drive,
-                         const struct prediction *next, bool feed_forward)
+IN_PLACE num_t current_of_law(struct drive *drive, const struct prediction *next, bool feed_forward)
 {
     const struct drive_params *params = &drive->params;
     const struct position_law_input input = law_input(next, feed_forward);
 
+    return position_law_current(params->position_law, &drive->law, &params->law, &input);
+}
+
+IN_PLACE void move_rotor(struct current_demand *demand, struct drive *drive,
+                         const struct prediction *next, bool torque, bool feed_forward)
+{
+    const struct drive_params *params = &drive->params;
+
     demand->current.d = standstill_hold_motion_current(&drive->hold, &params->hold);
     demand->current.q =
-        position_law_current(params->position_law, &drive->law, &params->law, &input);
+        RARE(torque) ? torque_mode_lead(drive) : current_of_law(drive, next, feed_forward);
     demand->frame.begin = next->frame;
     demand->frame.middle = sincos_add(next->frame, next->half_turn);
     demand->frame.speed = next->rotor.speed;
 }
 
-/* Current control. */
-IN_PLACE struct phases drive_current(struct drive *drive, const struct prediction *next,
-                                     const struct current_demand *demand)
-{
-    drive->current_reference = demand->current;
-    drive->current = park(next->current, demand->frame.begin);
-    drive->voltage_command = current_control_step(
-        &drive->current_control, &drive->params.current_control, demand->current, drive->current,
-        (struct rotation){demand->frame.speed, next->rotor.speed},
-        modulator_voltage_limit(&drive->modulator, &drive->params.modulator));
-    return inverse_park(drive->voltage_command, demand->frame.middle);
-}
-
-/* Hold or current law, then current control. */
+/* Hold, torque mode or current law, then current control. */
 IN_PLACE struct phases regulate_current(struct drive *drive, const struct prediction *next,
-                                        bool held, bool feed_forward)
+                                        bool held, bool torque, bool feed_forward)
 {
     struct current_demand demand;
 
     if (RARE(held)) {
         hold_rotor(&demand, drive, next);
     } else {
-        move_rotor(&demand, drive, next, feed_forward);
+        move_rotor(&demand, drive, next, torque, feed_forward);
     }
-    return drive_current(drive, next, &demand);
-}
-
-/* The current of the torque that is commanded, within those that keep the speed. */
-static num_t torque_current(const struct drive *drive, const struct rotor *rotor)
-{
-    const struct standstill_hold_params *hold = &drive->params.hold;
-    const num_t speed = drive->torque.speed;
-
-    return num_clamp(
-        drive->torque.current,
-        standstill_hold_torque_current(hold, rotor->speed + speed, rotor->load_torque),
-        standstill_hold_torque_current(hold, rotor->speed - speed, rotor->load_torque));
-}
-
-/* In torque mode no law answers, and the reference follows the rotor. Apart: rare, and so that what
-   the laws answer to stays in registers. */
-__attribute__((noinline)) static struct phases regulate_torque(struct drive *drive,
-                                                               struct passage passage)
-{
-    struct prediction next;
-    struct current_demand demand;
-
-    look_ahead(&next, drive, &drive->estimator.estimate, passage);
-    next.rotor.load_torque += drive->detent.torque;
-    demand.current.d = standstill_hold_motion_current(&drive->hold, &drive->params.hold);
-    demand.current.q = torque_current(drive, &next.rotor);
-    demand.frame.begin = next.frame;
-    demand.frame.middle = sincos_add(next.frame, next.half_turn);
-    demand.frame.speed = next.rotor.speed;
-    reference_place_in_motion(
-        &drive->reference, next.rotor.position, next.rotor.speed,
-        (int32_t)angle_from_turns(half_period_turns(&drive->params.model, next.rotor.speed)));
-    return drive_current(drive, &next, &demand);
+    drive->current_reference = demand.current;
+    drive->current = park(next->current, demand.frame.begin);
+    drive->voltage_command = current_control_step(
+        &drive->current_control, &drive->params.current_control, demand.current, drive->current,
+        (struct rotation){demand.frame.speed, next->rotor.speed},
+        modulator_voltage_limit(&drive->modulator, &drive->params.modulator));
+    return inverse_park(drive->voltage_command, demand.frame.middle);
 }
 
 /* Whether torque is commanded; it ends with a stop of the reference, or as that begins anew. */
@@ -465,11 +421,16 @@ static void control_with_all(struct drive *drive, const struct estimate *estimat
 {
     const struct drive_params *params = &drive->params;
     const bool held = drive->hold.active;
+    const bool torque = torque_leads(drive);
     struct dq integral = {NUM(0.0), NUM(0.0)}; /* before this period; for pulses alone */
     struct prediction next;
     struct phases voltage;
 
-    look_ahead(&next, drive, estimate, passage);
+    if (has_zero_delay(&params->path)) {
+        present(&next, drive, estimate, passage);
+    } else {
+        predict(&next, drive, estimate, passage);
+    }
     expect_current(drive, estimate, &next);
     if (ESTIMATORS_READ_ENCODER && params->path.detent_learning && !drive->supervision.aligns) {
         compensate_detent(drive, estimate, &next);
@@ -477,13 +438,9 @@ static void control_with_all(struct drive *drive, const struct estimate *estimat
     if (RARE(params->path.standstill_pulses)) {
         integral = drive->current_control.integral;
     }
-    if (torque_leads(drive)) {
-        voltage = regulate_torque(drive, passage);
-    } else if (!held && position_law_gives_voltage(params->position_law)) {
-        voltage = regulate_voltage(drive, estimate, &next);
-    } else {
-        voltage = regulate_current(drive, &next, held, params->path.feed_forward);
-    }
+    voltage = !held && !torque && position_law_gives_voltage(params->position_law)
+                  ? regulate_voltage(drive, estimate, &next)
+                  : regulate_current(drive, &next, held, torque, params->path.feed_forward);
     if (RARE(params->path.standstill_pulses)) {
         if (held) {
             voltage = standstill_angle_step(drive, estimate, integral, voltage);
@@ -540,7 +497,7 @@ IN_PLACE void control_current(struct drive *drive, const struct hal_samples *sam
     }
     predict(&next, drive, estimate, passage);
 
-    const struct phases voltage = regulate_current(drive, &next, held, true);
+    const struct phases voltage = regulate_current(drive, &next, held, false, true);
 
     modulate(drive, actuation_compensate(&drive->actuation, voltage), outputs);
     enter_or_leave_hold(drive, held);

@@ -65,6 +65,12 @@ static inline bool interrupt_view_moves(const struct drive *drive)
     return INTERRUPT_VIEW(enum reference_phase, drive->reference.phase) != REFERENCE_REST;
 }
 
+/* Speed of the reference. */
+static inline num_t interrupt_view_speed(const struct drive *drive)
+{
+    return INTERRUPT_VIEW(num_t, drive->reference.now.speed);
+}
+
 /* Whether a torque is commanded, and no position. */
 static inline bool interrupt_view_torque(const struct drive *drive)
 {

@@ -16,7 +16,6 @@
 #define INTERVAL_MAX      65536.0
 #define AMPLITUDE_MIN_rad 1e-6
 #define SPEED_MIN_rad_s   1e-9
-#define SPEED_SHARE_MIN   1e-3 /* of the limit: a torque moves it at least so fast */
 #define FREQUENCY_MIN_Hz  1e-3
 #define CYCLES_MAX        1e9
 
@@ -201,43 +200,36 @@ static bool request_sine(const struct drive *drive, const struct drive_command *
     return true;
 }
 
-/* How it stops: as quickly as the quick stop of a fieldbus. */
-static struct motion_limits stopping_limits(const struct units *units, double speed,
-                                            double acceleration)
-{
-    const double share = 0.5;
-    const double jerk_s = 5e-3;
-
-    return (struct motion_limits){.speed = speed / units->speed,
-                                  .acceleration = share * acceleration / units->acceleration,
-                                  .jerk = share * acceleration / jerk_s / units->jerk};
-}
-
+/* It stops as a fieldbus's quick stop: with half of the acceleration. */
 bool planner_request_torque(struct drive *drive, const struct drive_command *command,
                             struct torque_mode *asked, char error[DRIVE_ERROR_TEXT])
 {
     const struct drive_settings *settings = &drive->settings;
+    const double current_A = command->torque_Nm / settings->motor.torque_constant_Nm_A;
+    const double rounded_A = 1e-3 * settings->motor.rated_current_A; /* by who states thousandths */
+    const double most_A = settings->current_limit_A + rounded_A; /* the interrupt cuts the rest */
     const struct units units = units_of(drive);
-    const struct speed_limit limit = speed_limit(drive, &units);
-    const double most_Nm = settings->current_limit_A * settings->motor.torque_constant_Nm_A;
-    const double speed = command->speed_rad_s != 0.0 ? command->speed_rad_s : limit.rad_s;
+    struct motion_request stop;
+    struct drive_command velocity = {.speed_rad_s = command->speed_rad_s};
 
     if (settings->feedback != DRIVE_FEEDBACK_ENCODER) {
-        return design_refuse(error,
-                             "torque refused: without an encoder the rotor is lost where the "
-                             "load turns it slowly");
+        return design_refuse(error, "torque refused: without an encoder a slow rotor is lost");
     }
+    if (velocity.speed_rad_s == 0.0) {
+        velocity.speed_rad_s = speed_limit(drive, &units).rad_s;
+    }
+    velocity.acceleration_rad_s2 = 0.5 * acceleration_limit(drive, &units);
+    velocity.jerk_rad_s3 = 200.0 * velocity.acceleration_rad_s2;
     if (!planned_end_require_no_stop(drive, error) ||
-        !design_require_within(error, "torque", command->torque_Nm, -most_Nm, most_Nm, "N m",
+        !design_require_within(error, "torque's current", current_A, -most_A, most_A, "A",
                                "current_limit_A") ||
-        !design_require_within(error, "speed", speed, SPEED_SHARE_MIN * limit.rad_s, limit.rad_s,
-                               "rad/s", limit.reason)) {
+        !request_velocity(drive, &velocity, &stop, error)) {
         return false;
     }
-    drive->planner.limits = stopping_limits(&units, limit.rad_s, acceleration_limit(drive, &units));
-    asked->current = num_from_double(command->torque_Nm / drive->base.torque_Nm);
-    asked->speed = num_from_double(speed / drive->base.speed_rad_s);
-    return true;
+    drive->planner.limits = stop.limits;
+    asked->current = num_from_double(current_A / drive->base.current_A);
+    asked->speed = num_from_double(velocity.speed_rad_s / drive->base.speed_rad_s);
+    return asked->speed > NUM(0.0) || design_refuse(error, "speed: must be above 0");
 }
 
 bool planner_request(struct drive *drive, const struct drive_command *command,

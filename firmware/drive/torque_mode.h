@@ -2,7 +2,8 @@
  * Torque mode, of a drive with an encoder: the torque is commanded, and the load makes the position
  * of it.
  *
- *   Km i_q = T, but at most  T_L - k_w (w - w_max)  and at least  T_L - k_w (w + w_max)
+ *   Km i_q = T, but with w > 0 at most   T_L - k_w (w - w_max)
+ *                    with w < 0 at least  T_L - k_w (w + w_max)
  *
  * by the current control that the current laws share, whatever the law is. The bounds are those of
  * a control of the speed at its limits, with the gain of the hold (control/standstill_hold.h): a
@@ -30,6 +31,9 @@ struct drive;
  */
 __attribute__((noinline)) void torque_mode_take(struct drive *drive,
                                                 const struct torque_mode *asked);
+
+/* Interrupt: the q current of a period; the reference follows the rotor. Apart: rare. */
+__attribute__((noinline)) num_t torque_mode_lead(struct drive *drive);
 
 /* Background: the position is controlled from the next period on, at the rotor's speed. */
 void torque_mode_end(struct drive *drive);

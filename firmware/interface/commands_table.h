@@ -71,6 +71,6 @@
     COMMAND(13, SET_POSITION, "set-position", WITH(position_rad), 0, READY_OR_DISABLED, IN_TURN,   \
             "the axis is at this position from now on, nothing moves; not in motion")              \
     COMMAND(14, TORQUE, "torque", WITH(torque_Nm), WITH(speed_rad_s), IN_OPERATION, IN_TURN,       \
-            "with an encoder: a torque for ever, up to a speed, from whatever motion")
+            "with an encoder: a torque, up to a speed, from whatever motion")
 
 #endif

@@ -37,13 +37,13 @@ struct application;
 
 /* What the motion of a mode goes by: axis_motion.c. */
 struct axis_motion {
-    double target_rad;     /* of the last set-point */
-    float speed_rad_s;     /* as commanded last, of profile velocity */
-    float reference_rad_s; /* a millisecond ago */
-    float jerk;            /* of what is in motion */
-    float torque_Nm;       /* as commanded last, and up to which speed */
-    float most_rad_s;
-    float way; /* by its sign to the limit at which a torque has ended */
+    double target_rad;      /* of the last set-point */
+    float speed_rad_s;      /* as commanded last, of profile velocity */
+    float reference_rad_s;  /* a millisecond ago */
+    float jerk;             /* of what is in motion */
+    float way;              /* by its sign to the limit at which a torque has ended */
+    uint32_t max_speed_rpm; /* of the torque commanded last */
+    int16_t target;         /* that, in thousandths */
     uint16_t in_window_ms, off_ms;
     uint8_t steady_ms; /* for so long the reference's speed has been constant */
     bool waits;        /* a set-point has not begun */
@@ -93,6 +93,9 @@ const struct drive_signals *cia402_signals(struct application *application);
 
 /* A position unit of the factor group in rad of the motor, without a sign. */
 double cia402_unit_rad(const struct link_objects *objects);
+
+/* 6072h and 6074h: the largest torque and the demand, in thousandths of the rated one. */
+int32_t cia402_thousandths(struct application *application, uint16_t index);
 
 /* Bits of 607eh: what is counted against the motor's own direction. */
 enum { CIA402_POSITION_TURNED = 0x80, CIA402_VELOCITY_TURNED = 0x40 };

@@ -79,6 +79,11 @@ static double rated_share(struct application *application, uint16_t index)
     }
 }
 
+int32_t cia402_thousandths(struct application *application, uint16_t index)
+{
+    return rounded(rated_share(application, index));
+}
+
 /* In units; of those that are measured in them. */
 static double quantity(struct application *application, uint16_t index)
 {

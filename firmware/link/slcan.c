@@ -89,7 +89,7 @@ enum slcan_meaning slcan_read(const char *line, size_t length, struct can_frame 
     if (length == 0u || length > SLCAN_LINE_BYTES) {
         return SLCAN_UNKNOWN;
     }
-    if (line[0] == 't' && (length == 1u || digit_of(line[1]) >= 0)) { /* else a word, as torque */
+    if (line[0] == 't' && (length == 1u || line[1] != 'o')) { /* else it is `torque` */
         return read_frame(&line[1], length - 1u, frame);
     }
     if (length == 1u) {

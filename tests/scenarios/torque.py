@@ -100,7 +100,7 @@ def refused(folder):
     text = text.replace("encoder_zero_known = true\n", "").replace("encoder_counts_per_turn = 16384\n", "")
     typed = text + '\n[[event]]\ntime_s = 0.05\ntype = "torque 0.1"\n'
     (folder / "typed.toml").write_text(
-        typed + '\n[[event]]\ntime_s = 0.1\nexpect = "error: torque refused: without an encoder the rotor is lost"\n')
+        typed + '\n[[event]]\ntime_s = 0.1\nexpect = "error: torque refused: without an encoder a slow rotor is lost"\n')
     done = run("run", "typed.toml", cwd=folder)
     CHECKS.that(done.returncode == 0, f"sensorless: the console says why\n{done.stdout}{done.stderr}")
     (folder / "posted.toml").write_text(text + '\n[[event]]\ntime_s = 0.05\ncommand = "torque"\ntorque_Nm = 0.1\nspeed_rad_s = 50.0\n')

@@ -215,7 +215,7 @@ class Axis:
         if not abs(thousandths) < 2**15:
             raise Refused(f"torque_Nm: expected a number in ±{32.767 * rated_Nm:.6g} N m, got {torque_Nm:g}")
         if self.objects.read(0x6502) & TORQUE_CARRIED == 0:
-            raise Refused("torque: without an encoder the rotor is lost where the load turns it slowly; "
+            raise Refused("torque: without an encoder a slow rotor is lost; "
                           "the drive has the mode with feedback = encoder")
         if speed_rad_s is not None:
             rpm = round(speed_rad_s * 30 / math.pi) if math.isfinite(speed_rad_s) else 0
