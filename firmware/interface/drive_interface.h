@@ -147,11 +147,15 @@ enum drive_parameter { DRIVE_PARAMETERS_TABLE(DRIVE_PARAMETER_PLACE) DRIVE_PARAM
  * act in the period they are addressed to if they are posted that much earlier, else that much
  * after their posting. Sine and set-points begin at rest and wait for it, as moves do. Velocity and
  * retarget preempt at once whatever is in motion when the commands before them have begun,
- * with continuous position, speed and acceleration; so does a stop of these four, with the limits
- * they were given (the sine with its own largest acceleration and jerk), DRIVE_LEAD_s after its
- * period. Until the reference rests behind a sine, set-points, velocity or a stop, moves are
- * refused, because where they would start is not known; a retarget ends where it is asked to, and
- * moves may follow.
+ * with continuous position, speed and acceleration; so does a stop of these four and of a torque,
+ * with the limits they were given (the sine with its own largest acceleration and jerk),
+ * DRIVE_LEAD_s after its period. Until the reference rests behind a sine, set-points, velocity or a
+ * stop, moves are refused, because where they would start is not known; a retarget ends where it is
+ * asked to, and moves may follow.
+ *
+ * Torque, of a drive with an encoder alone, acts in its period from whatever motion, and ends what
+ * was planned; from then on the reference follows the rotor, until a stop, a velocity or a
+ * retarget.
  *
  * A set-point is reached two intervals, DRIVE_LEAD_s and a period after its posting. The stream
  * ends when the last position comes three times; if it runs dry before, the reference comes to rest

@@ -29,8 +29,8 @@ static bool stays_at_limit(struct application *application, float torque)
     const float speed = (float)cia402_signals(application)->omega_est_rad_s;
     const float way = torque != 0.0f ? torque : speed;
 
-    if (interrupt_view_torque(&application->drive) && speed * way >= 0.0f &&
-        axis_motion_nears_limit(application, speed, way)) {
+    if (interrupt_view_torque(&application->drive) &&
+        axis_motion_nears_limit(application, speed * way > 0.0f ? speed : 0.0f, way)) {
         axis_motion_brake(application, true);
         motion->at_limit = true;
         motion->way = way;

@@ -71,8 +71,8 @@ static void test_every_rate_and_filter_is_accepted(void)
 static void test_what_the_console_understands_is_no_slcan(void)
 {
     static const char *const lines[] = {
-        "",  "state",          "set node_id 3", "move 1.5", "S",   "OO",  "store",
-        "X", "T123456782AABB", "r1232",         "move",     "set", "sine"};
+        "",  "state",          "set node_id 3", "move 1.5", "S",   "OO",   "store",
+        "X", "T123456782AABB", "r1232",         "move",     "set", "sine", "torque 0.1"};
     struct can_frame frame;
 
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
