@@ -182,7 +182,7 @@ enum hal_can_state {
     HAL_CAN_PASSIVE =
         1u << 0,           /* an error counter has reached 128, and not both are below 96 again */
     HAL_CAN_OFF = 1u << 1, /* bus-off: nothing goes or comes until 128 times 11 recessive bits */
-    HAL_CAN_LOST = 1u << 2 /* frames have come for which there was no room; said once */
+    HAL_CAN_LOST = 1u << 2 /* frames have come and were lost for want of space; said once */
 };
 
 /* Identifiers that a board is asked to receive. */

@@ -1,5 +1,7 @@
 #include "hal/stm32g474/fdcan.h"
 
+#include <string.h>
+
 #include "hal/cortex_m/interrupts.h"
 #include "hal/cortex_m/port.h"
 #include "hal/stm32g474/handlers.h"

@@ -6,10 +6,14 @@
 #ifndef STEADYSTEP_STM32G474_FDCAN_H
 #define STEADYSTEP_STM32G474_FDCAN_H
 
-#include "firmware/link/link.h"
+#include "hal/hal.h"
 #include "hal/stm32g474/board.h"
 
-enum { CARRIES_CAN = LINK_CARRIED && CAN_BIT_Hz > 0 };
+#ifdef STEADYSTEP_WITHOUT_LINK
+enum { CARRIES_CAN = 0 };
+#else
+enum { CARRIES_CAN = CAN_BIT_Hz > 0 };
+#endif
 
 /* On the bus; its pins are connected. */
 void fdcan_configure(void);

@@ -37,7 +37,7 @@ MODULES = {
                               "firmware/link/", *DESIGN, "hal/hal.h"],
     "firmware/link/objects_table.h": [],
     "firmware/link/": ["firmware/link/", "firmware/application/", "firmware/interface/",
-                       "firmware/drive/", *DESIGN],
+                       "firmware/drive/", *DESIGN, "hal/hal.h"],
     "hal/hal.h": [],
     "hal/sil/": ["hal/sil/", "hal/hal.h"],
     "hal/sil/firmware_image.": ["hal/hal.h", "hal/sil/firmware_image.h", "firmware/drive/",
@@ -62,7 +62,7 @@ MODULES = {
                       "sil/board/typed_line.h", "board.h's", "sil/virtual_board/virtual_board.h", "sil/virtual_board/board_facts.h"],
     "sil/scenario/main.cpp": ["sil/scenario/", "sil/serve/", "firmware/interface/"],
     "sil/serve/": ["sil/serve/", "sil/scenario/", "sil/board/drive_board.h", "board.h's",
-                   "sil/virtual_board/virtual_board.h"],
+                   "sil/virtual_board/virtual_board.h", "firmware/link/slcan.h"],
 }
 EXPOSED_BY = "sil/board/board.h"
 

@@ -272,7 +272,7 @@ static void test_what_the_console_has_enabled_outlives_the_line_and_the_bus(void
     bench_periods(5000);
     TEST_ASSERT_FALSE(is_off());
     bus.state = 0;
-    come(0x000, "8201", 20); /* reset communication: a master takes over what it finds */
+    come(0x000, "8201", 20); /* reset communication: a master has what it finds */
     TEST_ASSERT_EQUAL_HEX8(CIA402_SWITCHED_ON, bench_link.axis.state);
     TEST_ASSERT_FALSE(is_off());
 }
