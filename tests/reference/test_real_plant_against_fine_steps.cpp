@@ -134,24 +134,39 @@ struct Reference {
         double slides; /* sign of the speed against which friction acts */
     };
 
-    /* m and f of both phases, and the detent torque, at the angle of y. */
+    /* m and f of both phases, the sine of twice the electrical angle, and the detent torque, at the
+       angle of y. */
     struct Rotor {
-        double magnet[2], slope[2], detent_Nm;
+        double magnet[2], slope[2], sin_twice, detent_Nm;
     };
 
-    Rotor rotor(const double *y) const
+    /* Many a step asks twice for one angle, and a rotor that sticks has but one. */
+    mutable double last_theta_rad = NAN;
+    mutable Rotor last_rotor = {};
+
+    const Rotor &rotor(const double *y) const
+    {
+        if (y[3] != last_theta_rad) {
+            last_theta_rad = y[3];
+            last_rotor = rotor_at(config.motor.rotor_teeth * y[3]);
+        }
+        return last_rotor;
+    }
+
+    Rotor rotor_at(double angle) const
     {
         const plant::ImperfectionConfig &with = config.imperfections;
-        const double angle = config.motor.rotor_teeth * y[3];
         const double h = with.flux_harmonic_3;
         const double c1 = std::cos(angle), s1 = std::sin(angle);
         const double c3 = std::cos(3.0 * angle), s3 = std::sin(3.0 * angle);
+        const double s2 = std::sin(2.0 * angle);
         const double holding_Nm =
             std::sqrt(2.0) * config.motor.torque_constant_Nm_A * with.rated_current_A;
         return {{c1 + h / 3.0 * c3, s1 - h / 3.0 * s3},
                 {-s1 - h * s3, c1 - h * c3},
+                s2,
                 -holding_Nm * (with.detent_4 * std::sin(4.0 * angle) +
-                               with.detent_2 * std::sin(2.0 * angle) + with.detent_1 * s1)};
+                               with.detent_2 * s2 + with.detent_1 * s1)};
     }
 
     double current(int phase, const double *y, const Rotor &at) const
@@ -183,8 +198,7 @@ struct Reference {
         for (int p = 0; p < 2; p++) {
             torque_Nm += Kx * at.slope[p] * (y[p] / L0[p] - mean_A * at.magnet[p]);
         }
-        const double twice = std::sin(2.0 * config.motor.rotor_teeth * y[3]);
-        return torque_Nm + 0.5 * (magnet_A[0] - magnet_A[1]) * Kx * twice *
+        return torque_Nm + 0.5 * (magnet_A[0] - magnet_A[1]) * Kx * at.sin_twice *
                                (1.0 + 2.0 / 3.0 * config.imperfections.flux_harmonic_3);
     }
 
@@ -209,7 +223,9 @@ struct Reference {
     void close(int phase)
     {
         const Rotor here = rotor(x);
-        for (int n = 0; n < 20; n++) {
+        double before = NAN;
+        for (int n = 0; n < 20 && x[phase] != before; n++) {
+            before = x[phase];
             x[phase] -=
                 current(phase, x, here) / (1.0 / L0[phase] + 3.0 * beta * x[phase] * x[phase]);
         }
