@@ -5,17 +5,15 @@ import os.path
 
 from elftools.elf.elffile import ELFFile
 
+from .dwarf import dwarf_of
+
 DW_OP_ADDR = 0x03
 
 
 def _units(path):
-    with open(path, "rb") as file:
-        elf = ELFFile(file)
-        if not elf.has_dwarf_info():
-            raise ValueError(f"{path}: no debug information; build with -g")
-        dwarf = elf.get_dwarf_info()
-        for unit in dwarf.iter_CUs():
-            yield dwarf, unit
+    dwarf = dwarf_of(path)
+    for unit in dwarf.iter_CUs():
+        yield dwarf, unit
 
 
 class SourceLines:

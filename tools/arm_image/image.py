@@ -3,6 +3,7 @@
 import bisect
 import re
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from capstone import CS_ARCH_ARM, CS_MODE_MCLASS, CS_MODE_THUMB, Cs
 from elftools.elf.elffile import ELFFile
@@ -26,12 +27,12 @@ class Instruction:
     def next(self):
         return self.address + self.size
 
-    @property
+    @cached_property
     def base(self):
         """Mnemonic without data types."""
         return self.mnemonic.split(".")[0]
 
-    @property
+    @cached_property
     def register_list(self):
         """Registers between braces, expanded."""
         match = re.search(r"\{(.*)\}", self.operands)

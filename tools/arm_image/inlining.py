@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from elftools.dwarf.descriptions import describe_form_class
 from elftools.dwarf.ranges import BaseAddressEntry
-from elftools.elf.elffile import ELFFile
+
+from .dwarf import dwarf_of
 
 CODE = ("DW_TAG_subprogram", "DW_TAG_inlined_subroutine")
 
@@ -24,14 +25,10 @@ class Inlining:
         self._files = {}
         self._named = {}
         spans = []  # (start, end, depth, Frame)
-        with open(path, "rb") as file:
-            elf = ELFFile(file)
-            if not elf.has_dwarf_info():
-                raise ValueError(f"{path}: no debug information; build with -g")
-            self._dwarf = elf.get_dwarf_info()
-            self._range_lists = self._dwarf.range_lists()
-            for unit in self._dwarf.iter_CUs():
-                self._collect(unit, unit.get_top_DIE(), 0, spans)
+        self._dwarf = dwarf_of(path)
+        self._range_lists = self._dwarf.range_lists()
+        for unit in self._dwarf.iter_CUs():
+            self._collect(unit, unit.get_top_DIE(), 0, spans)
         self._starts, self._chains = _flatten(spans)
 
     def frames(self, address):

@@ -3,7 +3,7 @@
 import re
 from dataclasses import dataclass
 
-from elftools.elf.elffile import ELFFile
+from .dwarf import dwarf_of
 
 DW_OP_ADDR = 0x03
 DW_ATE_BOOLEAN, DW_ATE_FLOAT, DW_ATE_SIGNED, DW_ATE_SIGNED_CHAR = 0x02, 0x04, 0x05, 0x06
@@ -24,13 +24,9 @@ class Variables:
     def __init__(self, path):
         self._path = path
         self._found = {}
-        with open(path, "rb") as file:
-            self._elf = ELFFile(file)
-            if not self._elf.has_dwarf_info():
-                raise ValueError(f"{path}: no debug information; build with -g")
-            for unit in self._elf.get_dwarf_info().iter_CUs():
-                for die in unit.get_top_DIE().iter_children():
-                    self._consider(die)
+        for unit in dwarf_of(path).iter_CUs():
+            for die in unit.get_top_DIE().iter_children():
+                self._consider(die)
 
     def _consider(self, die):
         if die.tag != "DW_TAG_variable" or "DW_AT_location" not in die.attributes:
