@@ -4,6 +4,7 @@ function(add_image_run program)
   list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/)
   add_executable(${program} ${ARGN})
   target_link_libraries(${program} PRIVATE virtual_board sil_board drive_interface)
+  target_compile_options(${program} PRIVATE -O0) # compiles quickly; the image runs in virtual_board
 endfunction()
 
 add_image_run(stm32g474_disturbances
