@@ -202,12 +202,15 @@ def _stack_growth(image, instruction, node):
 def deepest_stack(nodes, start):
     """Bytes of stack from a function down, and the chain of names that needs them."""
 
+    found = {}
+
     def depth(address, chain):
         if address in chain:
             raise ValueError(f"recursion through {nodes[address].name}")
-        below = max(
-            (depth(call, chain + (address,)) for call in nodes[address].calls), default=(0, ())
-        )
-        return nodes[address].stack_B + below[0], (nodes[address].name,) + below[1]
+        if address not in found:
+            node, chain = nodes[address], chain + (address,)
+            below_B, names = max((depth(call, chain) for call in node.calls), default=(0, ()))
+            found[address] = node.stack_B + below_B, (node.name,) + names
+        return found[address]
 
     return depth(start, ())

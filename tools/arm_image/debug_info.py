@@ -8,6 +8,13 @@ from elftools.elf.elffile import ELFFile
 from .dwarf import dwarf_of
 
 DW_OP_ADDR = 0x03
+TYPES = (
+    "DW_TAG_structure_type",
+    "DW_TAG_union_type",
+    "DW_TAG_enumeration_type",
+    "DW_TAG_array_type",
+    "DW_TAG_subroutine_type",
+)
 
 
 def _units(path):
@@ -51,13 +58,22 @@ class SourceLines:
         return self._places[k] if k >= 0 else "?"
 
 
+def _variables(die):
+    """Those of a unit and of its functions. Most of a unit are members of types, which are not parsed."""
+    for child in die.iter_children():
+        if child.tag == "DW_TAG_variable":
+            yield child
+        elif child.tag not in TYPES:
+            yield from _variables(child)
+
+
 def members(path, wanted):
     """Addresses of the wanted members, [(struct, member)], of every object of such a type."""
     structs = {struct for struct, _ in wanted}
     found = []
     for _, unit in _units(path):
-        for die in unit.iter_DIEs():
-            if die.tag != "DW_TAG_variable" or "DW_AT_location" not in die.attributes:
+        for die in _variables(unit.get_top_DIE()):
+            if "DW_AT_location" not in die.attributes:
                 continue
             location = die.attributes["DW_AT_location"].value
             if not isinstance(location, list) or location[:1] != [DW_OP_ADDR]:
