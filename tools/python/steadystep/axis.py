@@ -1,7 +1,7 @@
 """The axis of a drive: signals, states of CiA 402, motion, faults."""
 import math
 import time
-from typing import Callable
+from typing import Callable, NoReturn
 
 from canopen.profiles.p402 import State402
 
@@ -80,7 +80,8 @@ class Axis:
         codes = [int(self.objects.read(0x1003, n + 1)) & 0xFFFF for n in range(count)]
         return [self.known.faults[code] for code in codes if code in self.known.faults]
 
-    def _raise_fault(self) -> None:
+    def raise_fault(self) -> NoReturn:
+        """The fault that it is in, with cause and remedy."""
         fault = self.fault
         if fault:
             raise DriveFault(fault.name, fault.code, fault.cause, fault.remedy)
@@ -96,7 +97,7 @@ class Axis:
         begin = time.monotonic()
         while (state := self.state) != "OPERATION ENABLED":
             if state == "FAULT":
-                self._raise_fault()
+                self.raise_fault()
             word = {"SWITCH ON DISABLED": SHUTDOWN, "READY TO SWITCH ON": SWITCH_ON,
                     "SWITCHED ON": ENABLE_OPERATION, "QUICK STOP ACTIVE": ENABLE_OPERATION}.get(state, 0)
             self._control(word)
@@ -137,7 +138,7 @@ class Axis:
     def _in_mode(self, mode: int) -> None:
         """From another mode: the drive comes to rest first."""
         if self.state == "FAULT":
-            self._raise_fault()
+            self.raise_fault()
         if self.state == "SWITCHED ON":
             self.enable()  # the rotor is held already
         if self.state != "OPERATION ENABLED":
@@ -185,7 +186,7 @@ class Axis:
         begin = time.monotonic()
         while not (status := self.status) & REACHED or state_of(status) != "OPERATION ENABLED":
             if state_of(status) == "FAULT":
-                self._raise_fault()
+                self.raise_fault()
             if state_of(status) != "OPERATION ENABLED":
                 raise Refused(f"the target is not reached: the drive is {state_of(status).lower()}")
             passed_s = time.monotonic() - begin

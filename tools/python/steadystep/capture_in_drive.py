@@ -1,14 +1,15 @@
 """What the drive records by itself: signals in each control period, or in every n-th, around a trigger, into
 the memory that it has left; uploaded in blocks when it is done. firmware/link/README.md, "Capture"."""
+import contextlib
 import dataclasses
 import struct
 import time
-from typing import Sequence
+from typing import Callable, Sequence
 
 from .capture import Capture
 from .dictionary import Signal, dictionary
 from .errors import Refused, TimedOut
-from .objects import Objects
+from .objects import NoAnswer, Objects
 from .settings import Progress
 
 CONTROL, SIGNALS, VALUES = 0x2400, 0x2401, 0x2402
@@ -16,6 +17,7 @@ ARM, DIVIDER, TRIGGER, LEVEL, EDGE, BEFORE, SAMPLES = 1, 2, 3, 4, 5, 6, 7
 OFF, ON, DONE = 0, 1, 4
 MOST_SIGNALS, VALUE_BYTES = 8, 8
 LOOK_S, LATE_S = 0.05, 5.0
+TRIES = 2
 
 
 @dataclasses.dataclass(frozen=True)
@@ -39,15 +41,19 @@ def is_there(objects: Objects) -> bool:
 
 
 def record_in_drive(objects: Objects, signals: Sequence[Signal], duration_s: float, rate_Hz: float,
-                    period_s: float, progress: Progress, trigger: Trigger | None = None) -> Capture:
-    """At rate_Hz, rounded to a whole part of the control rate; the time counts from the trigger. Raises TooMuch."""
+                    period_s: float, progress: Progress, trigger: Trigger | None = None,
+                    armed: Callable[[], object] | None = None) -> Capture:
+    """At rate_Hz, rounded to a whole part of the control rate; the time counts from the trigger. `armed` is called
+    when the drive waits for it. Raises TooMuch."""
     divider = min(max(1, round(1 / (rate_Hz * period_s))), 0xFFFF)
     samples = max(1, round(duration_s / (divider * period_s)))
     before = min(round(trigger.before_s / (divider * period_s)), samples - 1) if trigger else 0
     _arm(objects, signals, divider, samples, before, trigger)
     try:
+        if armed:
+            armed()
         _wait(objects, duration_s, trigger, progress)
-        rows = _upload(objects, len(signals), progress)
+        rows = _uploaded(objects, len(signals), progress)
     finally:
         if not objects.bus.lost:
             objects.write(CONTROL, OFF, ARM)
@@ -95,6 +101,14 @@ def _wait(objects: Objects, duration_s: float, trigger: Trigger | None, progress
             raise TimedOut("the drive has not come to the end of the capture")
         progress("waiting for the trigger" if trigger else "capturing", min(passed_s / duration_s, 0.99))
         time.sleep(LOOK_S)
+
+
+def _uploaded(objects: Objects, width: int, progress: Progress) -> list[tuple[float, ...]]:
+    """Once more, if a byte was lost on the way."""
+    for _ in range(TRIES):
+        with contextlib.suppress(NoAnswer):
+            return _upload(objects, width, progress)
+    return _upload(objects, width, progress)
 
 
 def _upload(objects: Objects, width: int, progress: Progress) -> list[tuple[float, ...]]:

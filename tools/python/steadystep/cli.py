@@ -1,5 +1,6 @@
 """The command `steadystep`."""
 import argparse
+import math
 import os
 import pathlib
 import subprocess
@@ -11,7 +12,8 @@ from .capture_in_drive import Trigger
 from .cli_words import PORT, parser
 from .dictionary import Value, dictionary
 from .drive import Drive
-from .errors import DriveFault, LostLink, SteadystepError, TimedOut, WrongPort, WrongVersion
+from .errors import DriveFault, LostLink, Refused, SteadystepError, TimedOut, WrongPort, WrongVersion
+from .resonance_curve import NOT_SURE
 from .settings_text import line_of
 
 HELD, NOT_DONE, BAD_INPUT = 0, 1, 2
@@ -172,6 +174,37 @@ def capture(drive: Drive, arguments: Arguments) -> None:
     print(f"{arguments.out}: {len(made)} samples, {made.rate_Hz:.4g} Hz")
 
 
+def find_resonance(drive: Drive, arguments: Arguments) -> None:
+    from . import resonance
+
+    plan = resonance.plan(drive, arguments.lowest, arguments.highest, arguments.torque)
+    print(f"the axis swings by ±{math.degrees(plan.most_amplitude_rad):.2g}° at {plan.lowest_Hz:g} Hz, by less above; before and "
+          "behind that the bridge opens, and a hanging load falls")
+    if not arguments.yes and not agreed():
+        raise Refused("resonance: nothing has moved; --yes, or y, says that the axis may")
+    found = plan.run(Bar())
+    print(found)
+    if arguments.out:
+        found.save(arguments.out)
+    proposal = resonance.propose(drive, found, arguments.rotor_inertia)
+    print(f"proposed: {proposal}")
+    if not (arguments.apply or arguments.store) or not proposal.settings:
+        return
+    if found.verdict == NOT_SURE:
+        raise Refused("resonance: what is not sure is not applied; `settings set` sets it")
+    proposal.apply(drive)
+    if arguments.store:
+        drive.store()
+    print("stored" if arguments.store else "applied")
+
+
+def agreed() -> bool:
+    try:
+        return input("go on? [y/N] ").strip().lower() in ("y", "yes")
+    except EOFError:
+        return False
+
+
 def show_signals(arguments: Arguments) -> None:
     del arguments
     for signal in dictionary().signals.values():
@@ -232,7 +265,7 @@ def page(arguments: Arguments) -> int:
 
 DRIVE_COMMANDS: dict[str, Callable[[Drive, Arguments], object]] = {
     "state": show_state, "faults": show_faults, "enable": enable, "move": move, "velocity": velocity, "torque": torque,
-    "command": give_command, "capture": capture, "disable": lambda drive, _: drive.disable(),
+    "command": give_command, "capture": capture, "resonance": find_resonance, "disable": lambda drive, _: drive.disable(),
     "stop": lambda drive, _: drive.stop(), "reset": lambda drive, _: drive.reset(),
     "store": lambda drive, _: drive.store(),
     "set-position": lambda drive, arguments: drive.set_position(arguments.position_rad),

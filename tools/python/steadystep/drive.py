@@ -1,6 +1,6 @@
 """A drive that one operates: its connection, its settings, captures; what the axis does is in axis.py."""
 from types import TracebackType
-from typing import Sequence
+from typing import TYPE_CHECKING, Sequence
 
 from . import capture_in_drive
 from .axis import Axis
@@ -11,6 +11,9 @@ from .dictionary import dictionary
 from .errors import Refused, WrongVersion
 from .objects import Objects
 from .settings import Progress, Settings, unseen
+
+if TYPE_CHECKING:
+    from .resonance_curve import Resonance
 
 CONTROL_PERIOD_S = 1e-4  # of the boards and of the simulated one
 SAVE, LOAD = 0x65766173, 0x64616F6C
@@ -80,6 +83,16 @@ class Drive(Axis):
         if trigger:
             raise Refused("capture: this drive records nothing by itself, and knows no trigger")
         return (recorder or record)(self.objects, rows, duration_s, rate_Hz, CONTROL_PERIOD_S, progress)
+
+    # ---- the machine behind the rotor ----
+
+    def find_resonance(self, lowest_Hz: float = 30.0, highest_Hz: float | None = None, torque_share: float = 0.2, *,
+                       progress: Progress = unseen) -> "Resonance":
+        """Of a belt or a coupling, by small sines of an axis at rest, which is switched off before and behind them: a hanging
+        load falls. To what the drive's sines go, if highest_Hz is not given."""
+        from . import resonance
+
+        return resonance.plan(self, lowest_Hz, highest_Hz, torque_share).run(progress)
 
 
 def check_version(objects: Objects, version: str, place: str) -> None:

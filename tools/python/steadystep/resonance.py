@@ -1,0 +1,337 @@
+"""The resonance of what hangs on the rotor, a belt or a coupling: found by small sines, and the settings that it asks for.
+
+At each frequency the reference swings, and the drive records current and speed from the beginning of the motion on. A
+sensorless drive loses a rotor that a heavy load behind a stiff belt swings; the sweep is made with so little of the law's
+bandwidth that the rotor stays, each sine ends by itself, and between two of them the hold finds the rotor again."""
+import cmath
+import contextlib
+import dataclasses
+import math
+import time
+from typing import TYPE_CHECKING, Iterator, Sequence
+
+from . import capture_in_drive
+from .capture_in_drive import Trigger
+from .dictionary import Value
+from .errors import DriveFault, LostLink, Refused, TimedOut
+from .resonance_curve import NONE, Point, Resonance, find_minimum, is_passed, judge
+from .settings import Progress, unseen
+
+if TYPE_CHECKING:
+    from .drive import Drive
+
+CURRENT, SPEED = "i_q_A", "omega_est_rad_s"
+LAWS = ("state-feedback", "feedback-linearisation")
+LOWEST_Hz, PERIODS_A_CYCLE = 20.0, 20   # of a sine of the drive
+STEP, FINE_STEP, FINE = 1.1, 1.03, 3    # from frequency to frequency; about what was found
+RAMP_S, SETTLING_S, LOOK_S, REST_S = 0.05, 0.05, 0.12, 0.1
+FEWEST_CYCLES, SAMPLES_A_CYCLE = 8, 10
+SWEEP_PERCENT = 15                      # rotor_inertia_percent of the sweep
+MOST_SHARE, LIMIT_SHARE = 0.5, 0.8      # of the rated torque; of current_limit_A
+DETENT_ZERO = 3.8317 / 4                # N amplitude at which the detent torque, 4 N to a turn, averages out: zero of J1
+DETENT_SHARE, DETENT_LOWER = 0.05, 0.3  # of the holding torque; of the stiffness
+TRIES = 3                               # with half the torque each, where a rotor loses step
+LOST = ("stalled", "lost")
+ENABLED = ("OPERATION ENABLED", "SWITCHED ON")
+UNKNOWN_SHARE, LEAST_PERCENT = 0.3, 5   # of the inertia, before a stiff belt
+
+
+@dataclasses.dataclass(frozen=True)
+class Plan:
+    """A sweep of a drive: what it may do is checked, and nothing has moved yet."""
+
+    drive: "Drive"
+    lowest_Hz: float
+    highest_Hz: float
+    torque_share: float
+    inertia_kgm2: float
+    rated_torque_Nm: float
+    rotor_teeth: int
+
+    def share(self, frequency_Hz: float) -> float:
+        """Of the rated torque, for the inertia alone. More where that takes a light rotor across its detent torque, which
+        would pass for a spring."""
+        crossing_rad = DETENT_ZERO / self.rotor_teeth
+        torque_share = self.inertia_kgm2 * (2 * math.pi * frequency_Hz) ** 2 * crossing_rad / self.rated_torque_Nm
+        if torque_share > MOST_SHARE:  # above the frequency of MOST_SHARE it falls with one over the frequency
+            torque_share = MOST_SHARE * math.sqrt(MOST_SHARE / torque_share)
+        return max(torque_share, self.torque_share)
+
+    def amplitude_rad(self, frequency_Hz: float) -> float:
+        torque_Nm = self.share(frequency_Hz) * self.rated_torque_Nm
+        return torque_Nm / (self.inertia_kgm2 * (2 * math.pi * frequency_Hz) ** 2)
+
+    @property
+    def most_amplitude_rad(self) -> float:
+        return self.amplitude_rad(self.lowest_Hz)
+
+    @property
+    def frequencies_Hz(self) -> list[float]:
+        count = math.floor(math.log(self.highest_Hz / self.lowest_Hz) / math.log(STEP))
+        return [self.lowest_Hz * STEP**n for n in range(count + 1)]
+
+    def detent_per_s2(self, frequency_Hz: float) -> float:
+        """Stiffness over inertia of a detent torque of 5 % of the holding torque, of the 2 to 7 % that data sheets state, averaged
+        over the swing, 2 J1(x)/x of a series, but for its lower harmonics."""
+        x = 4 * self.rotor_teeth * self.amplitude_rad(frequency_Hz)
+        averaged = 1 - x**2 / 8 + x**4 / 192 - x**6 / 9216 if x < 4 * DETENT_ZERO else 0.0
+        stiffness = 4 * self.rotor_teeth * DETENT_SHARE * math.sqrt(2) * self.rated_torque_Nm
+        return max(averaged, DETENT_LOWER) * stiffness / self.inertia_kgm2
+
+    def run(self, progress: Progress = unseen) -> Resonance:
+        """Raises DriveFault, LostLink, TimedOut; the settings are what they were, and the drive is enabled if it was."""
+        with _settings_of_the_sweep(self.drive, progress):
+            return _Sweep(self, progress).run()
+
+
+def plan(drive: "Drive", lowest_Hz: float = 30.0, highest_Hz: float | None = None, torque_share: float = 0.2) -> Plan:
+    """Of a drive at rest, enabled or not. Raises Refused where no sweep is possible."""
+    from .drive import CONTROL_PERIOD_S
+
+    most_Hz = 1 / (PERIODS_A_CYCLE * CONTROL_PERIOD_S)
+    highest_Hz = 0.9 * most_Hz if highest_Hz is None else highest_Hz
+    if not LOWEST_Hz <= lowest_Hz < highest_Hz <= most_Hz or not 0.05 <= torque_share <= MOST_SHARE:
+        raise Refused(f"resonance: expected frequencies of {LOWEST_Hz:g}…{most_Hz:g} Hz, the lower one first, and a share "
+                      f"of 0.05…{MOST_SHARE:g} of the rated torque")
+    if drive.state == "FAULT":
+        drive.raise_fault()
+    if drive.read("reference_moving"):
+        raise Refused("resonance: the axis moves; stop it first")
+    settings = drive.settings
+    if settings["law"] not in LAWS:
+        raise Refused(f"resonance: the law is {settings['law']}; a sweep needs {' or '.join(LAWS)}")
+    if not capture_in_drive.is_there(drive.objects):
+        raise Refused("resonance: this drive records nothing by itself, and a link is too slow for it")
+    rated_A, limit_A = _number(settings["rated_current_A"]), _number(settings["current_limit_A"])
+    if MOST_SHARE * rated_A > LIMIT_SHARE * limit_A:
+        raise Refused(f"resonance: current_limit_A leaves no torque to swing with; it takes {MOST_SHARE / LIMIT_SHARE:g} of "
+                      "rated_current_A")
+    return Plan(drive, lowest_Hz, highest_Hz, torque_share, _number(settings["inertia_kgm2"]),
+                _number(settings["torque_constant_Nm_A"]) * rated_A, int(_number(settings["rotor_teeth"])))
+
+
+def _number(value: Value) -> float:
+    assert isinstance(value, (int, float))
+    return float(value)
+
+
+# ---- what it asks for ----
+
+
+@dataclasses.dataclass(frozen=True)
+class Proposal:
+    settings: dict[str, Value]  # nothing: they stay as they are
+    reason: str
+
+    def __str__(self) -> str:
+        return "\n".join([*(f"{name} = {value:g}" for name, value in self.settings.items()), f"  {self.reason}"])
+
+    def apply(self, drive: "Drive") -> None:
+        """Enabled, it is switched off for it."""
+        enabled = drive.state in ENABLED
+        if enabled:
+            _switch_off(drive)
+        _put_back(drive, self.settings, enabled)
+
+
+def propose(drive: "Drive", found: Resonance, rotor_inertia_kgm2: float | None = None) -> Proposal:
+    """`rotor_inertia_kgm2`: of the data sheet."""
+    settings = drive.settings
+    if found.resonance_Hz is None:
+        if found.verdict != NONE:
+            return Proposal({}, "nothing: the sweep has not come to its end")
+        return _of_a_rigid_machine(drive)
+    inertia_kgm2, percent = _number(settings["inertia_kgm2"]), _number(settings["rotor_inertia_percent"])
+    if rotor_inertia_kgm2 is not None:
+        share, reason = rotor_inertia_kgm2 / inertia_kgm2, f"rotor inertia over inertia_kgm2, {inertia_kgm2:g} kg m2"
+    elif found.rotor_share is not None:
+        share, reason = found.rotor_share, "antiresonance over resonance, squared"
+    else:
+        share, reason = min(UNKNOWN_SHARE, percent / 100), "the rotor's share is not known, and rather too little holds; " \
+            "--rotor-inertia of the data sheet says more"
+    asked = {"rotor_inertia_percent": float(min(max(round(100 * share), LEAST_PERCENT), 100))}
+    in_force_rad_s, default_rad_s = _number(settings["law_bandwidth_rad_s"]), _default_bandwidth_rad_s(drive)
+    with_it_rad_s = 0.01 * asked["rotor_inertia_percent"] * default_rad_s
+    given = abs(in_force_rad_s / (0.01 * percent * default_rad_s) - 1) > 0.01
+    if given and in_force_rad_s > 1.01 * with_it_rad_s:
+        asked["law_bandwidth_rad_s"] = with_it_rad_s  # it does not heed the percentage
+    return Proposal(dict(asked), reason)
+
+
+def _default_bandwidth_rad_s(drive: "Drive") -> float:
+    """Of a rigid machine: default_settings.c."""
+    fast = (drive.settings["law"], drive.settings["feedback"]) == ("feedback-linearisation", "encoder")
+    return 900.0 if fast else 300.0
+
+
+def _of_a_rigid_machine(drive: "Drive") -> Proposal:
+    return Proposal({}, "nothing: the default suits a rigid machine")
+
+
+# ---- the settings of the sweep ----
+
+
+def _switch_off(drive: "Drive") -> None:
+    drive.disable()
+    end = time.monotonic() + 5.0
+    while drive.state not in ("SWITCH ON DISABLED", "READY TO SWITCH ON", "FAULT"):
+        if time.monotonic() > end:
+            raise TimedOut("the drive has not switched off within 5 s")
+        time.sleep(0.01)
+
+
+@contextlib.contextmanager
+def _settings_of_the_sweep(drive: "Drive", progress: Progress) -> Iterator[None]:
+    settings, enabled = drive.settings, drive.state in ENABLED
+    before = {name: settings[name] for name in ("synchronism_policy", "rotor_inertia_percent")}
+    try:
+        _switch_off(drive)
+        settings["synchronism_policy"] = "warn"
+        percent = _number(before["rotor_inertia_percent"])
+        settings["rotor_inertia_percent"] = min(percent, SWEEP_PERCENT)
+        drive.enable(progress=progress)
+        default_rad_s = 0.01 * min(percent, SWEEP_PERCENT) * _default_bandwidth_rad_s(drive)
+        given_rad_s = _number(settings["law_bandwidth_rad_s"])
+        if given_rad_s > 1.01 * default_rad_s:  # it does not heed the percentage
+            before["law_bandwidth_rad_s"] = given_rad_s
+            _switch_off(drive)
+            settings["law_bandwidth_rad_s"] = default_rad_s
+            drive.enable(progress=progress)
+        yield
+    finally:
+        _restore(drive, before, enabled)
+
+
+def _restore(drive: "Drive", before: dict[str, Value], enabled: bool) -> None:
+    """Whatever has happened; an interrupt that comes meanwhile waits for it."""
+    interrupted = False
+    for last in (False, True):
+        try:
+            _put_back(drive, before, enabled)
+            break
+        except KeyboardInterrupt:
+            if last:
+                raise
+            interrupted = True
+        except LostLink as lost:
+            values = ", ".join(f"{name} = {value}" for name, value in before.items())
+            raise LostLink(f"{lost}; the settings of the sweep may be in force, before it they were: {values}") from None
+    if interrupted:
+        raise KeyboardInterrupt
+
+
+def _put_back(drive: "Drive", before: dict[str, Value], enabled: bool) -> None:
+    in_fault = drive.state == "FAULT"
+    if not in_fault:
+        _switch_off(drive)
+    for name, value in before.items():
+        drive.settings[name] = value
+    if enabled and not in_fault:
+        drive.enable()
+
+
+# ---- the sweep ----
+
+
+class _Sweep:
+    """Of an enabled drive with the settings of the sweep."""
+
+    def __init__(self, plan: Plan, progress: Progress) -> None:
+        self._plan, self._drive, self._progress = plan, plan.drive, progress
+        self._found: dict[float, complex] = {}
+        self._torque = 1.0  # of the plan's
+        self._torque_at: dict[float, float] = {}
+        self._constant = plan.rated_torque_Nm / _number(plan.drive.settings["rated_current_A"])
+
+    @property
+    def points(self) -> list[Point]:
+        return [Point(frequency_Hz, self._found[frequency_Hz]) for frequency_Hz in sorted(self._found)]
+
+    def run(self) -> Resonance:
+        coarse, lost_Hz = self._plan.frequencies_Hz, None
+        total = len(coarse) + 2 * FINE + 1
+        for frequency_Hz in coarse:
+            if not self._measure(frequency_Hz, total):
+                lost_Hz = frequency_Hz
+                break
+            if is_passed(self.points):
+                break
+        about = find_minimum(self.points)
+        if about and about.verdict != NONE:
+            for n in range(-FINE, FINE + 1):
+                frequency_Hz = about.frequency_Hz * FINE_STEP**n
+                if coarse[0] <= frequency_Hz <= self._plan.highest_Hz:
+                    self._torque = self._torque_at[min(self._torque_at, key=lambda one: abs(one - about.frequency_Hz))]
+                    self._measure(frequency_Hz, total)
+        self._progress("sweeping", 1.0)
+        found = find_minimum(self.points)
+        return judge(self.points, lost_Hz, self._plan.detent_per_s2(found.frequency_Hz) if found else 0.0)
+
+    def _measure(self, frequency_Hz: float, total: int) -> bool:
+        """False: the rotor loses step there."""
+        self._progress(f"{frequency_Hz:.0f} Hz", min(len(self._found) / total, 0.99))
+        for _ in range(TRIES):
+            inertia = self._inertia_at(frequency_Hz)
+            if inertia is not None:
+                self._found[frequency_Hz], self._torque_at[frequency_Hz] = inertia, self._torque
+                return True
+            self._torque /= 2
+            _switch_off(self._drive)
+            self._drive.enable()
+        return False
+
+    def _inertia_at(self, frequency_Hz: float) -> complex | None:
+        """As a share of that of the settings; None: the rotor has lost step."""
+        from .drive import CONTROL_PERIOD_S
+
+        begin_s, look_s = RAMP_S + SETTLING_S, max(LOOK_S, FEWEST_CYCLES / frequency_Hz)
+        divider = max(1, int(1 / (CONTROL_PERIOD_S * SAMPLES_A_CYCLE * frequency_Hz)))
+        made = capture_in_drive.record_in_drive(
+            self._drive.objects, [self._drive.known.signal(name) for name in (CURRENT, SPEED)], begin_s + look_s,
+            1 / (CONTROL_PERIOD_S * divider), CONTROL_PERIOD_S, unseen, Trigger("reference_moving", timeout_s=5.0),
+            lambda: self._begin(frequency_Hz, begin_s + look_s + RAMP_S))
+        _rest(self._drive)
+        if self._drive.read("synchronism") in LOST:
+            return None
+        omega = 2 * math.pi * frequency_Hz
+        first = next(n for n, at in enumerate(made.time_s) if at >= begin_s)
+        half = (first + len(made)) // 2
+        current, speed = (_phasor(made.time_s[first:], made[name][first:], omega) for name in (CURRENT, SPEED))
+        late = _phasor(made.time_s[half:], made[SPEED][half:], omega)
+        if not speed or abs(late) < 0.3 * abs(speed):
+            raise TimedOut(f"the sine of {frequency_Hz:.0f} Hz has ended before its time: what has stopped it?")
+        return self._constant * current / (1j * omega * speed) / self._plan.inertia_kgm2
+
+    def _begin(self, frequency_Hz: float, lasts_s: float) -> None:
+        self._drive.command("sine", amplitude_rad=self._torque * self._plan.amplitude_rad(frequency_Hz),
+                            frequency_Hz=frequency_Hz, cycles=math.ceil(lasts_s * frequency_Hz), ramp_s=RAMP_S)
+
+
+def _rest(drive: "Drive") -> None:
+    """Until the reference rests, and so much longer that the hold has the rotor; by the drive's clock: a simulated one may
+    be slow."""
+    from .drive import CONTROL_PERIOD_S
+
+    end, since = time.monotonic() + 20, None
+    while True:
+        if drive.fault:
+            drive.raise_fault()
+        period = int(drive.read("period"))
+        if drive.read("reference_moving"):
+            since = None
+        elif since is None:
+            since = period
+        elif (period - since) % 2**32 * CONTROL_PERIOD_S >= REST_S:
+            return
+        if time.monotonic() > end:
+            raise TimedOut("the axis has not come to rest within 20 s")
+        time.sleep(0.002)
+
+
+def _phasor(time_s: Sequence[float], values: Sequence[float], omega: float) -> complex:
+    """Under a window that fades in and out, so that no whole cycles are needed."""
+    count = len(values)
+    window = [math.sin(math.pi * (n + 0.5) / count) ** 2 for n in range(count)]
+    mean = sum(w * value for w, value in zip(window, values)) / sum(window)
+    return sum(w * (value - mean) * cmath.exp(-1j * omega * at)
+               for w, value, at in zip(window, values, time_s)) / sum(window)
