@@ -93,9 +93,15 @@ def at_an_edge_nothing_is_certain():
     CHECKS.that(find_antiresonance(curve(rigid), 400.0) is None, "nor is there an antiresonance")
 
 
+def a_swing_on_the_detent_torque_is_not_certain():
+    """A light rotor at rest swings on it, rigid as it may be."""
+    found = judge(curve(with_detent(rigid, 80.0)), detent_per_s2=(2 * math.pi * 80) ** 2)
+    CHECKS.that(found.verdict == NOT_SURE, str(found))
+
+
 def the_detent_torque_makes_it_a_range():
     found = judge(curve(belt(0.5, 120.0)), detent_per_s2=(2 * math.pi * 33) ** 2)
-    CHECKS.that(found.without_detent_Hz < 0.94 * found.resonance_Hz and " to 1" in str(found), str(found))
+    CHECKS.that(found.without_detent_Hz < 0.97 * found.resonance_Hz and " to 1" in str(found), str(found))
 
 
 # ---- a served drive ----
@@ -191,11 +197,12 @@ a_resonance_is_placed()
 what_is_no_resonance_is_none()
 friction_and_detent_torque_below_do_not_hide_one()
 at_an_edge_nothing_is_certain()
+a_swing_on_the_detent_torque_is_not_certain()
 the_detent_torque_makes_it_a_range()
 if sys.argv[2:] == ["full"]:
-    for SHARE, BELT_Hz in ((0.5, 120), (0.7, 300), (0.7, 350), (0.5, 250)):
+    for SHARE, BELT_Hz in ((0.5, 120), (0.7, 350), (0.5, 250)):
         it_is_found(SHARE, BELT_Hz)
-    it_is_found(0.5, 200, "drive.feedback=encoder", "plant.encoder_counts_per_turn=4000")
+    it_is_found(0.5, 120, "drive.feedback=encoder", "plant.encoder_counts_per_turn=4000")
     a_rigid_machine_has_none()
 else:
     it_is_found(0.7, 300)

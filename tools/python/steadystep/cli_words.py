@@ -70,7 +70,7 @@ def _add_signals(commands: "Commands") -> None:
     resonance.add_argument("--rotor-inertia", type=float, metavar="KGM2", help="the rotor's own, of its data sheet")
     resonance.add_argument("--lowest", type=float, default=30.0, metavar="HZ")
     resonance.add_argument("--highest", type=float, metavar="HZ", help="0.9 of what the drive's sines go to")
-    resonance.add_argument("--torque", type=float, default=0.2, metavar="SHARE", help="of the rated torque (0.2)")
+    resonance.add_argument("--torque", type=float, metavar="SHARE", help="of the rated torque: 0.2, with an encoder 0.5")
     resonance.add_argument("--out", metavar="FILE", help="the apparent inertia, to .csv, .png or .svg")
     resonance.add_argument("--yes", action="store_true", help="the axis may move")
     resonance.add_argument("--apply", action="store_true", help="sets what is proposed")

@@ -86,8 +86,8 @@ class Drive(Axis):
 
     # ---- the machine behind the rotor ----
 
-    def find_resonance(self, lowest_Hz: float = 30.0, highest_Hz: float | None = None, torque_share: float = 0.2, *,
-                       progress: Progress = unseen) -> "Resonance":
+    def find_resonance(self, lowest_Hz: float = 30.0, highest_Hz: float | None = None,
+                       torque_share: float | None = None, *, progress: Progress = unseen) -> "Resonance":
         """Of a belt or a coupling, by small sines of an axis at rest, which is switched off before and behind them: a hanging
         load falls. To what the drive's sines go, if highest_Hz is not given."""
         from . import resonance

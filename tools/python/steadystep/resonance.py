@@ -27,13 +27,16 @@ STEP, FINE_STEP, FINE = 1.1, 1.03, 3    # from frequency to frequency; about wha
 RAMP_S, SETTLING_S, LOOK_S, REST_S = 0.05, 0.05, 0.12, 0.1
 FEWEST_CYCLES, SAMPLES_A_CYCLE = 8, 10
 SWEEP_PERCENT = 15                      # rotor_inertia_percent of the sweep
-MOST_SHARE, LIMIT_SHARE = 0.5, 0.8      # of the rated torque; of current_limit_A
+SENSORLESS_SHARE, MOST_SHARE = 0.2, 0.5  # of the rated torque
+LIMIT_SHARE = 0.8                       # of current_limit_A
 DETENT_ZERO = 3.8317 / 4                # N amplitude at which the detent torque, 4 N to a turn, averages out: zero of J1
 DETENT_SHARE, DETENT_LOWER = 0.05, 0.3  # of the holding torque; of the stiffness
 TRIES = 3                               # with half the torque each, where a rotor loses step
 LOST = ("stalled", "lost")
 ENABLED = ("OPERATION ENABLED", "SWITCHED ON")
 UNKNOWN_SHARE, LEAST_PERCENT = 0.3, 5   # of the inertia, before a stiff belt
+CURRENT_OVER_LAW = 4.0                  # bandwidths: loop_bandwidth.h
+MOST_BANDWIDTH_rad_s = 750.0
 
 
 @dataclasses.dataclass(frozen=True)
@@ -84,12 +87,16 @@ class Plan:
             return _Sweep(self, progress).run()
 
 
-def plan(drive: "Drive", lowest_Hz: float = 30.0, highest_Hz: float | None = None, torque_share: float = 0.2) -> Plan:
-    """Of a drive at rest, enabled or not. Raises Refused where no sweep is possible."""
+def plan(drive: "Drive", lowest_Hz: float = 30.0, highest_Hz: float | None = None,
+         torque_share: float | None = None) -> Plan:
+    """Of a drive at rest, enabled or not; torque_share: 0.2, and 0.5 with an encoder, which loses no rotor. Raises Refused where
+    no sweep is possible."""
     from .drive import CONTROL_PERIOD_S
 
     most_Hz = 1 / (PERIODS_A_CYCLE * CONTROL_PERIOD_S)
     highest_Hz = 0.9 * most_Hz if highest_Hz is None else highest_Hz
+    if torque_share is None:
+        torque_share = MOST_SHARE if drive.settings["feedback"] == "encoder" else SENSORLESS_SHARE
     if not LOWEST_Hz <= lowest_Hz < highest_Hz <= most_Hz or not 0.05 <= torque_share <= MOST_SHARE:
         raise Refused(f"resonance: expected frequencies of {LOWEST_Hz:g}…{most_Hz:g} Hz, the lower one first, and a share "
                       f"of 0.05…{MOST_SHARE:g} of the rated torque")
@@ -145,7 +152,7 @@ def propose(drive: "Drive", found: Resonance, rotor_inertia_kgm2: float | None =
     if rotor_inertia_kgm2 is not None:
         share, reason = rotor_inertia_kgm2 / inertia_kgm2, f"rotor inertia over inertia_kgm2, {inertia_kgm2:g} kg m2"
     elif found.rotor_share is not None:
-        share, reason = found.rotor_share, "antiresonance over resonance, squared"
+        share, reason = found.rotor_share, "antiresonance over resonance, squared, less what detent torque adds"
     else:
         share, reason = min(UNKNOWN_SHARE, percent / 100), "the rotor's share is not known, and rather too little holds; " \
             "--rotor-inertia of the data sheet says more"
@@ -165,7 +172,13 @@ def _default_bandwidth_rad_s(drive: "Drive") -> float:
 
 
 def _of_a_rigid_machine(drive: "Drive") -> Proposal:
-    return Proposal({}, "nothing: the default suits a rigid machine")
+    settings = drive.settings
+    most_rad_s = min(_number(settings["current_bandwidth_rad_s"]) / CURRENT_OVER_LAW, MOST_BANDWIDTH_rad_s)
+    in_force_rad_s = 0.01 * _number(settings["rotor_inertia_percent"]) * _default_bandwidth_rad_s(drive)
+    if settings["law"] != "state-feedback" or most_rad_s <= max(in_force_rad_s, _number(settings["law_bandwidth_rad_s"])):
+        return Proposal({}, "nothing: the law has the bandwidth of a rigid machine")
+    return Proposal({"law_bandwidth_rad_s": most_rad_s}, "may be tried: a rigid machine bears a quarter of "
+                    "current_bandwidth_rad_s, and there is no more without more of that")
 
 
 # ---- the settings of the sweep ----

@@ -16,11 +16,13 @@ REACH = 2.5                       # ratio of frequencies within which what is be
 BESIDE = 1.2                      # ratio of frequencies across which the angle turns
 SURE, SURE_ABOVE, POSSIBLE, RISES = 2.0, 1.8, 1.5, 1.2  # what is shown beside the minimum over what is shown at it
 SURE_deg, POSSIBLE_deg, TURNED_deg = 45.0, 25.0, 60.0  # 180 where nothing damps; friction and detent torque: up to 25
-DEEP = 4.0                        # below so far above it a minimum that turns the angle may hardly rise again
+DEEP = 4.0                        # what is shown below over what is shown at it: it need not turn, or not rise
+WIDE = 0.5                        # of the frequency
 ABOUT = 1.08                      # ratio of frequencies about a minimum whose points place it
 ANTIRESONANCE, FLANK = 1.3, 1.15  # of the inertia; over what is shown on either side
 CLEAR = 0.97                      # of the frequency: what is left of it without detent torque
-LOAD_OVER_ROTOR = 7 / 3           # by which the stiffness counts: of seven tenths behind the belt
+HALF = 0.5                        # of the frequency: what must be left of it without detent torque
+LEAST_SHARE = 0.3                 # of the inertia before the spring, where it is not seen
 WIDTH = 1.5                       # over what is shown at the minimum, where its width is taken
 
 
@@ -46,10 +48,12 @@ class Minimum:
 
     @property
     def verdict(self) -> str:
-        turned = self.turn_deg >= TURNED_deg
-        if self.below >= SURE and self.above >= SURE_ABOVE and self.turn_deg >= SURE_deg:
+        turned, rises = self.turn_deg >= TURNED_deg, self.above >= POSSIBLE
+        if self.below >= SURE and self.above >= SURE_ABOVE and self.turn_deg >= SURE_deg and self.width < WIDE:
             return FOUND
-        rises = self.above >= POSSIBLE or (turned and (self.above >= RISES or self.below >= DEEP))
+        if self.below >= DEEP and (rises or turned):
+            return NOT_SURE
+        rises = rises or (turned and self.above >= RISES)
         return NOT_SURE if self.below >= POSSIBLE and rises and self.turn_deg >= POSSIBLE_deg else NONE
 
 
@@ -126,14 +130,13 @@ def is_passed(points: Sequence[Point]) -> bool:
 
 
 def find_antiresonance(points: Sequence[Point], below_Hz: float) -> float | None:
-    """Where below the resonance the most is shown, more than all the inertia, with less on either side; the estimate shows it
+    """Where below the resonance the most is shown, more than all the inertia, and less on either side; the estimate shows it
     up to some 100 Hz."""
-    inner = [n for n in range(1, len(points) - 1) if points[n].frequency_Hz < below_Hz]
-    most = max(inner, key=lambda n: abs(points[n].inertia), default=None)
-    if most is None or abs(points[most].inertia) < ANTIRESONANCE:
+    below = [one for one in points if one.frequency_Hz < below_Hz]
+    most = max(below, key=lambda one: abs(one.inertia), default=None)
+    if most is None or abs(most.inertia) < max(ANTIRESONANCE, FLANK * abs(below[0].inertia), FLANK * abs(below[-1].inertia)):
         return None
-    flanks = [max(abs(one.inertia) for one in (points[0], points[most - 1]))] + [abs(points[inner[-1]].inertia)]
-    return points[most].frequency_Hz if abs(points[most].inertia) > FLANK * max(flanks) else None
+    return most.frequency_Hz
 
 
 @dataclasses.dataclass(frozen=True)
@@ -152,22 +155,28 @@ class Resonance:
         return self.minimum.frequency_Hz if self.minimum and self.verdict != NONE else None
 
     @property
-    def without_detent_Hz(self) -> float | None:
-        """What it may be without the stiffness of the detent torque, which a rotor that turns does not feel."""
-        if self.resonance_Hz is None:
-            return None
-        return _without_detent_Hz(self.resonance_Hz, self.detent_per_s2)
-
-    @property
     def antiresonance_Hz(self) -> float | None:
         return find_antiresonance(self.points, self.resonance_Hz) if self.resonance_Hz is not None else None
 
     @property
     def rotor_share(self) -> float | None:
-        """Of the inertia what is before the spring; None: the antiresonance is not seen."""
-        if self.antiresonance_Hz is None or not self.resonance_Hz or not self.without_detent_Hz:
+        """Of the inertia what is before the spring; None: the antiresonance is not seen. It is antiresonance^2 / resonance^2, once
+        load / rotor of the detent torque's stiffness is taken from the latter."""
+        if self.antiresonance_Hz is None or self.resonance_Hz is None:
             return None
-        return min(1.0, self.antiresonance_Hz**2 / (self.resonance_Hz * self.without_detent_Hz))
+        return (self.antiresonance_Hz**2 + self._detent_Hz2) / (self.resonance_Hz**2 + self._detent_Hz2)
+
+    @property
+    def without_detent_Hz(self) -> float | None:
+        """What it may be without the stiffness of the detent torque, which a rotor that turns does not feel."""
+        if self.resonance_Hz is None:
+            return None
+        rotor = self.rotor_share or LEAST_SHARE
+        return math.sqrt(max(0.0, self.resonance_Hz**2 - (1 - rotor) / rotor * self._detent_Hz2))
+
+    @property
+    def _detent_Hz2(self) -> float:
+        return self.detent_per_s2 / (2 * math.pi) ** 2
 
     def __str__(self) -> str:
         last = f"{self.points[-1].frequency_Hz:.0f} Hz" if self.points else "0 Hz"
@@ -218,14 +227,13 @@ class Resonance:
         figure.savefig(place, dpi=120)
 
 
-def _without_detent_Hz(resonance_Hz: float, detent_per_s2: float) -> float:
-    return math.sqrt(max(0.0, resonance_Hz**2 - LOAD_OVER_ROTOR * detent_per_s2 / (2 * math.pi) ** 2))
-
-
 def judge(points: Sequence[Point], lost_Hz: float | None = None, detent_per_s2: float = 0.0) -> Resonance:
     """`points` with rising frequency."""
     minimum = find_minimum(points)
-    verdict = minimum.verdict if minimum else NONE
-    if verdict == NONE and lost_Hz is not None:
-        verdict, minimum = NOT_SURE, None
-    return Resonance(list(points), minimum, verdict, lost_Hz, detent_per_s2)
+    found = Resonance(list(points), minimum, minimum.verdict if minimum else NONE, lost_Hz, detent_per_s2)
+    at_Hz, least_Hz = found.resonance_Hz, found.without_detent_Hz
+    if at_Hz is not None and least_Hz is not None and least_Hz < HALF * at_Hz:
+        return dataclasses.replace(found, verdict=NOT_SURE)  # detent torque alone may do it
+    if found.verdict == NONE and lost_Hz is not None:
+        return dataclasses.replace(found, verdict=NOT_SURE, minimum=None)
+    return found
