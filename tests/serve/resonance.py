@@ -88,8 +88,11 @@ def at_an_edge_nothing_is_certain():
     CHECKS.that(found.verdict != FOUND, f"at the lowest: {found}")
     found = judge(curve(rigid, highest_Hz=200.0), lost_Hz=220.0)
     CHECKS.that(found.verdict == NOT_SURE and "lost step at 220 Hz" in str(found), f"lost on the way: {found}")
+    found = judge(curve(lambda f: (f / 100) ** -1.5))
+    CHECKS.that(found.verdict == NOT_SURE and "varies" in str(found), f"no minimum, and not rigid: {found}")
     shallow = judge(curve(lambda f: 1 - 0.4 * math.exp(-(math.log(f / 150) / 0.1) ** 2) * cmath.exp(-0.9j * math.log(f / 150) / 0.1)))
     CHECKS.that(shallow.verdict != FOUND, f"little less is not certain: {shallow}")
+    CHECKS.that(judge(curve(belt(0.5, 120.0)), torque=0.25).verdict == NOT_SURE, "with next to no torque")
     CHECKS.that(find_antiresonance(curve(rigid), 400.0) is None, "nor is there an antiresonance")
 
 

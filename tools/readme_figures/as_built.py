@@ -46,6 +46,28 @@ def stiff_belts(sources):
     return {"table": table(["of 24 runs held: default, with the percentage", *(f"{belt} Hz" for belt in belts)], rows)}
 
 
+@entry("belts-held", "steadystep-sil campaign as-built --seeds 1-8 --set motor=MOTOR [--set plant.belt_frequency_Hz=HZ "
+       "--set plant.belt_inertia_share=SHARE] [--set drive.rotor_inertia_percent=30 | --set drive.law_bandwidth_rad_s=375]",
+       Cost.DEAR, probe=("campaign as-built --seeds 1-2 --json --set plant.belt_frequency_Hz=200 "
+                         "--set plant.belt_inertia_share=0.7 --set drive.rotor_inertia_percent=30",))
+def belts_held(sources):
+    """What tools/steadystep resonance proposes where the rotor's share is not known, and without a resonance."""
+    def held(motor, *given):
+        run = campaign(sources, "as-built", "1-8", "--set", f"motor={motor}", *given)
+        return run["verdicts"].get("held", 0)
+
+    def behind(motor, share, *given):
+        return sum(held(motor, "--set", f"plant.belt_inertia_share={share}", "--set", f"plant.belt_frequency_Hz={belt}", *given)
+                   for belt in ("60", "120", "200", "350"))
+
+    percent, quicker = ("--set", "drive.rotor_inertia_percent=30"), ("--set", "drive.law_bandwidth_rad_s=375")
+    shares = ("0.3", "0.5", "0.7")
+    rows = [[motor, f"{held(motor)}, {held(motor, *quicker)}"]
+            + [f"{behind(motor, share)}, {behind(motor, share, *percent)}" for share in shares]
+            for motor in ("bendjedia-2012", "23he22-2804s", "17hs4417", "sh2861-5141")]
+    return {"table": table(["held: default, as proposed", "rigid, of 8", *(f"{share} behind, of 32" for share in shares)], rows)}
+
+
 @entry("as-built-long", "steadystep-sil campaign long-run --seeds 1-100 --set plant=as-built",
        Cost.CAMPAIGN, probe=("campaign long-run --seeds 1-4 --duration 10 --json --set plant=as-built",))
 def long_run(sources):

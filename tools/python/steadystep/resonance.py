@@ -14,7 +14,7 @@ from . import capture_in_drive
 from .capture_in_drive import Trigger
 from .dictionary import Value
 from .errors import DriveFault, LostLink, Refused, TimedOut
-from .resonance_curve import NONE, Point, Resonance, find_minimum, is_passed, judge
+from .resonance_curve import BESIDE, NONE, Point, Resonance, find_minimum, is_passed, judge
 from .settings import Progress, unseen
 
 if TYPE_CHECKING:
@@ -274,11 +274,17 @@ class _Sweep:
             for n in range(-FINE, FINE + 1):
                 frequency_Hz = about.frequency_Hz * FINE_STEP**n
                 if coarse[0] <= frequency_Hz <= self._plan.highest_Hz:
-                    self._torque = self._torque_at[min(self._torque_at, key=lambda one: abs(one - about.frequency_Hz))]
+                    self._torque = self._torque_about(about.frequency_Hz)
                     self._measure(frequency_Hz, total)
         self._progress("sweeping", 1.0)
         found = find_minimum(self.points)
-        return judge(self.points, lost_Hz, self._plan.detent_per_s2(found.frequency_Hz) if found else 0.0)
+        if not found:
+            return judge(self.points, lost_Hz)
+        beside = [torque for at_Hz, torque in self._torque_at.items() if 1 / BESIDE < at_Hz / found.frequency_Hz < BESIDE]
+        return judge(self.points, lost_Hz, self._plan.detent_per_s2(found.frequency_Hz), min(beside))
+
+    def _torque_about(self, frequency_Hz: float) -> float:
+        return self._torque_at[min(self._torque_at, key=lambda one: abs(one - frequency_Hz))]
 
     def _measure(self, frequency_Hz: float, total: int) -> bool:
         """False: the rotor loses step there."""

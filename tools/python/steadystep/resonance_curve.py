@@ -17,11 +17,14 @@ BESIDE = 1.2                      # ratio of frequencies across which the angle 
 SURE, SURE_ABOVE, POSSIBLE, RISES = 2.0, 1.8, 1.5, 1.2  # what is shown beside the minimum over what is shown at it
 SURE_deg, POSSIBLE_deg, TURNED_deg = 45.0, 25.0, 60.0  # 180 where nothing damps; friction and detent torque: up to 25
 DEEP = 4.0                        # what is shown below over what is shown at it: it need not turn, or not rise
+RIGID = 5.0                       # the most over the least that a rigid machine shows
 WIDE = 0.5                        # of the frequency
 ABOUT = 1.08                      # ratio of frequencies about a minimum whose points place it
 ANTIRESONANCE, FLANK = 1.3, 1.15  # of the inertia; over what is shown on either side
+LEAST_RATIO = 0.35                # of antiresonance and resonance: seven eighths behind the spring
 CLEAR = 0.97                      # of the frequency: what is left of it without detent torque
 HALF = 0.5                        # of the frequency: what must be left of it without detent torque
+LEAST_TORQUE = 0.5                # of what was meant
 LEAST_SHARE = 0.3                 # of the inertia before the spring, where it is not seen
 WIDTH = 1.5                       # over what is shown at the minimum, where its width is taken
 
@@ -129,14 +132,15 @@ def is_passed(points: Sequence[Point]) -> bool:
         and points[-1].frequency_Hz > BESIDE**2 * found.frequency_Hz
 
 
-def find_antiresonance(points: Sequence[Point], below_Hz: float) -> float | None:
-    """Where below the resonance the most is shown, more than all the inertia, and less on either side; the estimate shows it
-    up to some 100 Hz."""
-    below = [one for one in points if one.frequency_Hz < below_Hz]
-    most = max(below, key=lambda one: abs(one.inertia), default=None)
-    if most is None or abs(most.inertia) < max(ANTIRESONANCE, FLANK * abs(below[0].inertia), FLANK * abs(below[-1].inertia)):
+def find_antiresonance(points: Sequence[Point], resonance_Hz: float) -> float | None:
+    """Where below the resonance the most is shown, more than all the inertia, less on either side, and the angle falls; the
+    estimate shows it up to some 100 Hz."""
+    below = [one for one in points if one.frequency_Hz < resonance_Hz]
+    most = max(range(len(below)), key=lambda n: abs(below[n].inertia), default=0)
+    if not below or below[most].frequency_Hz < LEAST_RATIO * resonance_Hz or -_turn_deg(points, most) < SURE_deg:
         return None
-    return most.frequency_Hz
+    flanks = max(abs(below[0].inertia), abs(below[-1].inertia))
+    return below[most].frequency_Hz if abs(below[most].inertia) >= max(ANTIRESONANCE, FLANK * flanks) else None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -179,11 +183,11 @@ class Resonance:
         return self.detent_per_s2 / (2 * math.pi) ** 2
 
     def __str__(self) -> str:
-        last = f"{self.points[-1].frequency_Hz:.0f} Hz" if self.points else "0 Hz"
-        lost = f"; the rotor has lost step at {self.lost_Hz:.0f} Hz, where the sweep has ended" if self.lost_Hz else ""
+        end = "rigid" if self.verdict == NONE else "but the inertia that is shown varies"
+        lost = f"the rotor has lost step at {self.lost_Hz:.0f} Hz, where the sweep has ended" if self.lost_Hz else end
         if self.resonance_Hz is None or self.minimum is None:
-            sure = "none up to" if self.verdict == NONE else "not sure: none up to"
-            return f"resonance: {sure} {last}" + (lost or ": rigid")
+            none = f"none up to {self.points[-1].frequency_Hz:.0f} Hz; " if self.points else ""
+            return f"resonance: {'' if self.verdict == NONE else 'not sure: '}{none}{lost}"
         least_Hz = self.without_detent_Hz or self.resonance_Hz
         said = f"{least_Hz:.0f} to {self.resonance_Hz:.0f} Hz" if least_Hz < CLEAR * self.resonance_Hz else \
             f"{self.resonance_Hz:.0f} Hz"
@@ -194,7 +198,7 @@ class Resonance:
             said += f"; antiresonance: {self.antiresonance_Hz:.0f} Hz"
         if least_Hz < CLEAR * self.resonance_Hz:
             said += "; the lower one without what detent torque may add at rest"
-        return f"resonance: {'not sure: ' if self.verdict == NOT_SURE else ''}{said}{lost}"
+        return f"resonance: {'not sure: ' if self.verdict == NOT_SURE else ''}{said}{'; ' + lost if self.lost_Hz else ''}"
 
     def save(self, path: str | pathlib.Path) -> None:
         """To .csv, or as a picture to .png or .svg."""
@@ -227,13 +231,20 @@ class Resonance:
         figure.savefig(place, dpi=120)
 
 
-def judge(points: Sequence[Point], lost_Hz: float | None = None, detent_per_s2: float = 0.0) -> Resonance:
-    """`points` with rising frequency."""
+def _varies(points: Sequence[Point]) -> bool:
+    shown = [abs(one.inertia) for one in points]
+    return max(shown, default=0.0) > RIGID * min(shown, default=0.0)
+
+
+def judge(points: Sequence[Point], lost_Hz: float | None = None, detent_per_s2: float = 0.0, torque: float = 1.0) -> Resonance:
+    """`points` with rising frequency; `torque`: about the minimum, of what was meant: less where the rotor has lost step."""
     minimum = find_minimum(points)
     found = Resonance(list(points), minimum, minimum.verdict if minimum else NONE, lost_Hz, detent_per_s2)
     at_Hz, least_Hz = found.resonance_Hz, found.without_detent_Hz
     if at_Hz is not None and least_Hz is not None and least_Hz < HALF * at_Hz:
         return dataclasses.replace(found, verdict=NOT_SURE)  # detent torque alone may do it
-    if found.verdict == NONE and lost_Hz is not None:
+    if found.verdict == FOUND and torque < LEAST_TORQUE:
+        return dataclasses.replace(found, verdict=NOT_SURE)  # friction and detent torque may be all that is seen
+    if found.verdict == NONE and (lost_Hz is not None or _varies(points)):
         return dataclasses.replace(found, verdict=NOT_SURE, minimum=None)
     return found
