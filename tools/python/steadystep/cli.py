@@ -179,7 +179,7 @@ def find_resonance(drive: Drive, arguments: Arguments) -> None:
 
     plan = resonance.plan(drive, arguments.lowest, arguments.highest, arguments.torque)
     print(f"the axis swings by ±{math.degrees(plan.most_amplitude_rad):.2g}° at {plan.lowest_Hz:g} Hz, by less above; before and "
-          "behind that the bridge opens, and a hanging load falls")
+          "behind that the bridge opens, and a hanging load falls", flush=True)
     if not arguments.yes and not agreed():
         raise Refused("resonance: nothing has moved; --yes, or y, says that the axis may")
     found = plan.run(Bar())

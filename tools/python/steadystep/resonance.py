@@ -322,8 +322,13 @@ class _Sweep:
         return self._constant * current / (1j * omega * speed) / self._plan.inertia_kgm2
 
     def _begin(self, frequency_Hz: float, lasts_s: float) -> None:
-        self._drive.command("sine", amplitude_rad=self._torque * self._plan.amplitude_rad(frequency_Hz),
-                            frequency_Hz=frequency_Hz, cycles=math.ceil(lasts_s * frequency_Hz), ramp_s=RAMP_S)
+        try:
+            self._drive.command("sine", amplitude_rad=self._torque * self._plan.amplitude_rad(frequency_Hz),
+                                frequency_Hz=frequency_Hz, cycles=math.ceil(lasts_s * frequency_Hz), ramp_s=RAMP_S)
+        except Refused:
+            if self._drive.fault:
+                self._drive.raise_fault()
+            raise
 
 
 def _rest(drive: "Drive") -> None:
