@@ -17,6 +17,7 @@ from operated import Simulated, environment, refusal, steadystep
 from served import Checks
 from steadystep import resonance
 from steadystep.resonance_curve import FOUND, NONE, NOT_SURE, Point, find_antiresonance, judge
+from steadystep.resonance_proposal import propose
 
 CHECKS = Checks()
 SIL = sys.argv[1]
@@ -88,6 +89,7 @@ def at_an_edge_nothing_is_certain():
     CHECKS.that(found.verdict != FOUND, f"at the lowest: {found}")
     found = judge(curve(rigid, highest_Hz=200.0), lost_Hz=220.0)
     CHECKS.that(found.verdict == NOT_SURE and "lost step at 220 Hz" in str(found), f"lost on the way: {found}")
+    CHECKS.that("rigid" not in str(found) and "varies" not in str(found), f"and nothing else is said of it: {found}")
     found = judge(curve(lambda f: (f / 100) ** -1.5))
     CHECKS.that(found.verdict == NOT_SURE and "varies" in str(found), f"no minimum, and not rigid: {found}")
     shallow = judge(curve(lambda f: 1 - 0.4 * math.exp(-(math.log(f / 150) / 0.1) ** 2) * cmath.exp(-0.9j * math.log(f / 150) / 0.1)))
@@ -137,9 +139,9 @@ def it_is_found(share, belt_Hz, *more):
         CHECKS.that(drive.state == "SWITCH ON DISABLED", f"switched off, as it was: {drive.state}")
         drive.enable()
         CHECKS.that(in_force(drive) == before, f"put back: {in_force(drive)}")
-        proposal = resonance.propose(drive, found)
+        proposal = propose(drive, found)
         CHECKS.that(proposal.settings.keys() == {"rotor_inertia_percent"}, f"{proposal}")
-        CHECKS.that(resonance.propose(drive, found, 0.42 * drive.settings["inertia_kgm2"]).settings
+        CHECKS.that(propose(drive, found, 0.42 * drive.settings["inertia_kgm2"]).settings
                     == {"rotor_inertia_percent": 42}, "of the data sheet")
 
 
@@ -197,6 +199,9 @@ def what_is_cut_short_is_put_back():
                 CHECKS.that(said in found, f"{name}: {found}")
                 drive.settings[name] = kept
             CHECKS.that("expected frequencies" in refusal(lambda: drive.find_resonance(highest_Hz=900.0)), "too high")
+            drive.enable()
+            drive.stop()
+            CHECKS.that("enable or disable it first" in refusal(drive.find_resonance), "stopped")
             drive.enable()
             drive.move(100.0, wait=False, speed_rad_s=5)
             time.sleep(0.1)

@@ -176,6 +176,7 @@ def capture(drive: Drive, arguments: Arguments) -> None:
 
 def find_resonance(drive: Drive, arguments: Arguments) -> None:
     from . import resonance
+    from .resonance_proposal import propose
 
     plan = resonance.plan(drive, arguments.lowest, arguments.highest, arguments.torque)
     print(f"the axis swings by ±{math.degrees(plan.most_amplitude_rad):.2g}° at {plan.lowest_Hz:g} Hz, by less above; before and "
@@ -186,7 +187,7 @@ def find_resonance(drive: Drive, arguments: Arguments) -> None:
     print(found)
     if arguments.out:
         found.save(arguments.out)
-    proposal = resonance.propose(drive, found, arguments.rotor_inertia)
+    proposal = propose(drive, found, arguments.rotor_inertia)
     print(f"proposed: {proposal}")
     if not (arguments.apply or arguments.store) or not proposal.settings:
         return

@@ -33,10 +33,7 @@ DETENT_ZERO = 3.8317 / 4                # N amplitude at which the detent torque
 DETENT_SHARE, DETENT_LOWER = 0.05, 0.3  # of the holding torque; of the stiffness
 TRIES = 3                               # with half the torque each, where a rotor loses step
 LOST = ("stalled", "lost")
-ENABLED = ("OPERATION ENABLED", "SWITCHED ON")
-UNKNOWN_SHARE, LEAST_PERCENT = 0.3, 5   # of the inertia, before a stiff belt
-CURRENT_OVER_LAW = 4.0                  # bandwidths: loop_bandwidth.h
-MOST_BANDWIDTH_rad_s = 750.0
+ENABLED, OFF = ("OPERATION ENABLED", "SWITCHED ON"), ("SWITCH ON DISABLED", "READY TO SWITCH ON")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -100,8 +97,11 @@ def plan(drive: "Drive", lowest_Hz: float = 30.0, highest_Hz: float | None = Non
     if not LOWEST_Hz <= lowest_Hz < highest_Hz <= most_Hz or not 0.05 <= torque_share <= MOST_SHARE:
         raise Refused(f"resonance: expected frequencies of {LOWEST_Hz:g}…{most_Hz:g} Hz, the lower one first, and a share "
                       f"of 0.05…{MOST_SHARE:g} of the rated torque")
-    if drive.state == "FAULT":
+    state = drive.state
+    if state == "FAULT":
         drive.raise_fault()
+    if state not in (*ENABLED, *OFF):
+        raise Refused(f"resonance: the drive is {state.lower()}: enable or disable it first")
     if drive.read("reference_moving"):
         raise Refused("resonance: the axis moves; stop it first")
     settings = drive.settings
@@ -109,85 +109,32 @@ def plan(drive: "Drive", lowest_Hz: float = 30.0, highest_Hz: float | None = Non
         raise Refused(f"resonance: the law is {settings['law']}; a sweep needs {' or '.join(LAWS)}")
     if not capture_in_drive.is_there(drive.objects):
         raise Refused("resonance: this drive records nothing by itself, and a link is too slow for it")
-    rated_A, limit_A = _number(settings["rated_current_A"]), _number(settings["current_limit_A"])
+    rated_A, limit_A = number(settings["rated_current_A"]), number(settings["current_limit_A"])
     if MOST_SHARE * rated_A > LIMIT_SHARE * limit_A:
         raise Refused(f"resonance: current_limit_A leaves no torque to swing with; it takes {MOST_SHARE / LIMIT_SHARE:g} of "
                       "rated_current_A")
-    return Plan(drive, lowest_Hz, highest_Hz, torque_share, _number(settings["inertia_kgm2"]),
-                _number(settings["torque_constant_Nm_A"]) * rated_A, int(_number(settings["rotor_teeth"])))
+    return Plan(drive, lowest_Hz, highest_Hz, torque_share, number(settings["inertia_kgm2"]),
+                number(settings["torque_constant_Nm_A"]) * rated_A, int(number(settings["rotor_teeth"])))
 
 
-def _number(value: Value) -> float:
+def number(value: Value) -> float:
     assert isinstance(value, (int, float))
     return float(value)
-
-
-# ---- what it asks for ----
-
-
-@dataclasses.dataclass(frozen=True)
-class Proposal:
-    settings: dict[str, Value]  # nothing: they stay as they are
-    reason: str
-
-    def __str__(self) -> str:
-        return "\n".join([*(f"{name} = {value:g}" for name, value in self.settings.items()), f"  {self.reason}"])
-
-    def apply(self, drive: "Drive") -> None:
-        """Enabled, it is switched off for it."""
-        enabled = drive.state in ENABLED
-        if enabled:
-            _switch_off(drive)
-        _put_back(drive, self.settings, enabled)
-
-
-def propose(drive: "Drive", found: Resonance, rotor_inertia_kgm2: float | None = None) -> Proposal:
-    """`rotor_inertia_kgm2`: of the data sheet."""
-    settings = drive.settings
-    if found.resonance_Hz is None:
-        if found.verdict != NONE:
-            return Proposal({}, "nothing: the sweep has not come to its end")
-        return _of_a_rigid_machine(drive)
-    inertia_kgm2, percent = _number(settings["inertia_kgm2"]), _number(settings["rotor_inertia_percent"])
-    if rotor_inertia_kgm2 is not None:
-        share, reason = rotor_inertia_kgm2 / inertia_kgm2, f"rotor inertia over inertia_kgm2, {inertia_kgm2:g} kg m2"
-    elif found.rotor_share is not None:
-        share, reason = found.rotor_share, "antiresonance over resonance, squared, less what detent torque adds"
-    else:
-        share, reason = min(UNKNOWN_SHARE, percent / 100), "the rotor's share is not known, and rather too little holds; " \
-            "--rotor-inertia of the data sheet says more"
-    asked = {"rotor_inertia_percent": float(min(max(round(100 * share), LEAST_PERCENT), 100))}
-    in_force_rad_s, default_rad_s = _number(settings["law_bandwidth_rad_s"]), _default_bandwidth_rad_s(drive)
-    with_it_rad_s = 0.01 * asked["rotor_inertia_percent"] * default_rad_s
-    given = abs(in_force_rad_s / (0.01 * percent * default_rad_s) - 1) > 0.01
-    if given and in_force_rad_s > 1.01 * with_it_rad_s:
-        asked["law_bandwidth_rad_s"] = with_it_rad_s  # it does not heed the percentage
-    return Proposal(dict(asked), reason)
-
-
-def _default_bandwidth_rad_s(drive: "Drive") -> float:
-    """Of a rigid machine: default_settings.c."""
-    fast = (drive.settings["law"], drive.settings["feedback"]) == ("feedback-linearisation", "encoder")
-    return 900.0 if fast else 300.0
-
-
-def _of_a_rigid_machine(drive: "Drive") -> Proposal:
-    settings = drive.settings
-    most_rad_s = min(_number(settings["current_bandwidth_rad_s"]) / CURRENT_OVER_LAW, MOST_BANDWIDTH_rad_s)
-    in_force_rad_s = 0.01 * _number(settings["rotor_inertia_percent"]) * _default_bandwidth_rad_s(drive)
-    if settings["law"] != "state-feedback" or most_rad_s <= max(in_force_rad_s, _number(settings["law_bandwidth_rad_s"])):
-        return Proposal({}, "nothing: the law has the bandwidth of a rigid machine")
-    return Proposal({"law_bandwidth_rad_s": most_rad_s}, "may be tried: a rigid machine bears a quarter of "
-                    "current_bandwidth_rad_s, and there is no more without more of that")
 
 
 # ---- the settings of the sweep ----
 
 
-def _switch_off(drive: "Drive") -> None:
+def default_bandwidth_rad_s(drive: "Drive") -> float:
+    """Of a rigid machine: default_settings.c."""
+    fast = (drive.settings["law"], drive.settings["feedback"]) == ("feedback-linearisation", "encoder")
+    return 900.0 if fast else 300.0
+
+
+def switch_off(drive: "Drive") -> None:
     drive.disable()
     end = time.monotonic() + 5.0
-    while drive.state not in ("SWITCH ON DISABLED", "READY TO SWITCH ON", "FAULT"):
+    while drive.state not in (*OFF, "FAULT"):
         if time.monotonic() > end:
             raise TimedOut("the drive has not switched off within 5 s")
         time.sleep(0.01)
@@ -198,16 +145,16 @@ def _settings_of_the_sweep(drive: "Drive", progress: Progress) -> Iterator[None]
     settings, enabled = drive.settings, drive.state in ENABLED
     before = {name: settings[name] for name in ("synchronism_policy", "rotor_inertia_percent")}
     try:
-        _switch_off(drive)
+        switch_off(drive)
         settings["synchronism_policy"] = "warn"
-        percent = _number(before["rotor_inertia_percent"])
+        percent = number(before["rotor_inertia_percent"])
         settings["rotor_inertia_percent"] = min(percent, SWEEP_PERCENT)
         drive.enable(progress=progress)
-        default_rad_s = 0.01 * min(percent, SWEEP_PERCENT) * _default_bandwidth_rad_s(drive)
-        given_rad_s = _number(settings["law_bandwidth_rad_s"])
+        default_rad_s = 0.01 * min(percent, SWEEP_PERCENT) * default_bandwidth_rad_s(drive)
+        given_rad_s = number(settings["law_bandwidth_rad_s"])
         if given_rad_s > 1.01 * default_rad_s:  # it does not heed the percentage
             before["law_bandwidth_rad_s"] = given_rad_s
-            _switch_off(drive)
+            switch_off(drive)
             settings["law_bandwidth_rad_s"] = default_rad_s
             drive.enable(progress=progress)
         yield
@@ -220,7 +167,7 @@ def _restore(drive: "Drive", before: dict[str, Value], enabled: bool) -> None:
     interrupted = False
     for last in (False, True):
         try:
-            _put_back(drive, before, enabled)
+            put_back(drive, before, enabled)
             break
         except KeyboardInterrupt:
             if last:
@@ -233,10 +180,10 @@ def _restore(drive: "Drive", before: dict[str, Value], enabled: bool) -> None:
         raise KeyboardInterrupt
 
 
-def _put_back(drive: "Drive", before: dict[str, Value], enabled: bool) -> None:
+def put_back(drive: "Drive", before: dict[str, Value], enabled: bool) -> None:
     in_fault = drive.state == "FAULT"
     if not in_fault:
-        _switch_off(drive)
+        switch_off(drive)
     for name, value in before.items():
         drive.settings[name] = value
     if enabled and not in_fault:
@@ -254,7 +201,8 @@ class _Sweep:
         self._found: dict[float, complex] = {}
         self._torque = 1.0  # of the plan's
         self._torque_at: dict[float, float] = {}
-        self._constant = plan.rated_torque_Nm / _number(plan.drive.settings["rated_current_A"])
+        self._lost_step = False
+        self._constant = plan.rated_torque_Nm / number(plan.drive.settings["rated_current_A"])
 
     @property
     def points(self) -> list[Point]:
@@ -277,6 +225,9 @@ class _Sweep:
                     self._torque = self._torque_about(about.frequency_Hz)
                     self._measure(frequency_Hz, total)
         self._progress("sweeping", 1.0)
+        return dataclasses.replace(self._judged(lost_Hz), lost_step=self._lost_step)
+
+    def _judged(self, lost_Hz: float | None) -> Resonance:
         found = find_minimum(self.points)
         if not found:
             return judge(self.points, lost_Hz)
@@ -294,8 +245,8 @@ class _Sweep:
             if inertia is not None:
                 self._found[frequency_Hz], self._torque_at[frequency_Hz] = inertia, self._torque
                 return True
-            self._torque /= 2
-            _switch_off(self._drive)
+            self._torque, self._lost_step = self._torque / 2, True
+            switch_off(self._drive)
             self._drive.enable()
         return False
 

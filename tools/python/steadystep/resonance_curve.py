@@ -153,6 +153,7 @@ class Resonance:
     verdict: str               # FOUND, NOT_SURE or NONE
     lost_Hz: float | None      # where the rotor has lost step, and the sweep has ended
     detent_per_s2: float = 0.0
+    lost_step: bool = False    # on the way: the position may be off
 
     @property
     def resonance_Hz(self) -> float | None:
@@ -183,22 +184,28 @@ class Resonance:
         return self.detent_per_s2 / (2 * math.pi) ** 2
 
     def __str__(self) -> str:
-        end = "rigid" if self.verdict == NONE else "but the inertia that is shown varies"
-        lost = f"the rotor has lost step at {self.lost_Hz:.0f} Hz, where the sweep has ended" if self.lost_Hz else end
-        if self.resonance_Hz is None or self.minimum is None:
-            none = f"none up to {self.points[-1].frequency_Hz:.0f} Hz; " if self.points else ""
-            return f"resonance: {'' if self.verdict == NONE else 'not sure: '}{none}{lost}"
-        least_Hz = self.without_detent_Hz or self.resonance_Hz
-        said = f"{least_Hz:.0f} to {self.resonance_Hz:.0f} Hz" if least_Hz < CLEAR * self.resonance_Hz else \
-            f"{self.resonance_Hz:.0f} Hz"
-        said += f", {min(self.minimum.below, self.minimum.above):.1f} times less inertia than beside it"
-        if self.minimum.width:
-            said += f", {100 * self.minimum.width:.0f} % wide"
+        said = ["not sure"] if self.verdict == NOT_SURE else []
+        if self.resonance_Hz is not None and self.minimum is not None:
+            said += self._as_found(self.resonance_Hz, self.minimum)
+        else:
+            said += [f"none up to {one.frequency_Hz:.0f} Hz" for one in self.points[-1:]]
+            said += ["rigid"] if self.verdict == NONE else []
+            said += ["but the inertia that is shown varies"] if self.verdict != NONE and self.lost_Hz is None else []
+        if self.lost_Hz is not None:
+            said += [f"the rotor has lost step at {self.lost_Hz:.0f} Hz, where the sweep has ended: home the axis"]
+        elif self.lost_step:
+            said += ["the rotor has lost step on the way: home the axis"]
+        return "resonance: " + "; ".join(said)
+
+    def _as_found(self, resonance_Hz: float, minimum: Minimum) -> list[str]:
+        least_Hz = self.without_detent_Hz or resonance_Hz
+        is_range = least_Hz < CLEAR * resonance_Hz
+        said = [(f"{least_Hz:.0f} to " if is_range else "") + f"{resonance_Hz:.0f} Hz"
+                + f", {min(minimum.below, minimum.above):.1f} times less inertia than beside it"
+                + (f", {100 * minimum.width:.0f} % wide" if minimum.width else "")]
         if self.antiresonance_Hz:
-            said += f"; antiresonance: {self.antiresonance_Hz:.0f} Hz"
-        if least_Hz < CLEAR * self.resonance_Hz:
-            said += "; the lower one without what detent torque may add at rest"
-        return f"resonance: {'not sure: ' if self.verdict == NOT_SURE else ''}{said}{'; ' + lost if self.lost_Hz else ''}"
+            said += [f"antiresonance: {self.antiresonance_Hz:.0f} Hz"]
+        return said + ["the lower one without what detent torque may add at rest"] * is_range
 
     def save(self, path: str | pathlib.Path) -> None:
         """To .csv, or as a picture to .png or .svg."""
