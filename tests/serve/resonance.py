@@ -92,7 +92,7 @@ def at_an_edge_nothing_is_certain():
     CHECKS.that("rigid" not in str(found) and "varies" not in str(found), f"and nothing else is said of it: {found}")
     found = judge(curve(lambda f: (f / 100) ** -1.5))
     CHECKS.that(found.verdict == NOT_SURE and "varies" in str(found), f"no minimum, and not rigid: {found}")
-    shallow = judge(curve(lambda f: 1 - 0.4 * math.exp(-(math.log(f / 150) / 0.1) ** 2) * cmath.exp(-0.9j * math.log(f / 150) / 0.1)))
+    shallow = judge(curve(lambda f: 1 - 0.4 * cmath.exp(-(math.log(f / 150) / 0.1) ** 2 - 9j * math.log(f / 150))))
     CHECKS.that(shallow.verdict != FOUND, f"little less is not certain: {shallow}")
     still = judge(curve(lambda f: 1 - 0.7 * math.exp(-(math.log(f / 110) / 0.15) ** 2)))
     CHECKS.that(still.verdict != FOUND, f"nor what does not turn the angle: {still}")

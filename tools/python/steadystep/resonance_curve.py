@@ -26,6 +26,7 @@ CLEAR = 0.97                      # of the frequency: what is left of it without
 HALF = 0.5                        # of the frequency: what must be left of it without detent torque
 LEAST_TORQUE = 0.5                # of what was meant
 LEAST_SHARE = 0.3                 # of the inertia before the spring, where it is not seen
+TICKS_Hz, TICKS = (20, 30, 50, 70, 100, 150, 200, 300, 400), (0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)
 WIDTH = 1.5                       # over what is shown at the minimum, where its width is taken
 
 
@@ -234,7 +235,12 @@ class Resonance:
                 axes.annotate(f" {what}: {found:.0f} Hz", (found, max(shown)), rotation=90, va="top", ha="right")
         axes.set_xlabel("frequency, Hz")
         axes.set_ylabel("apparent inertia, of that in the settings")
-        axes.grid(True, which="both", alpha=0.3)
+        for axis, ticks in ((axes.xaxis, TICKS_Hz), (axes.yaxis, TICKS)):
+            low, high = axis.get_view_interval()
+            seen = [tick for tick in ticks if low <= tick <= high]
+            axis.set_ticks(seen, labels=[f"{tick:g}" for tick in seen])
+        axes.minorticks_off()
+        axes.grid(True, alpha=0.3)
         figure.savefig(place, dpi=120)
 
 
