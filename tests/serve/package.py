@@ -111,6 +111,10 @@ def it_moves(drive, knobs):
         found = refusal(lambda parameters=parameters: drive.command("sine", **parameters))
         CHECKS.that(said in found, f"sine {parameters}: {found}")
     drive.enable()
+    drive.objects.send_controlword(steadystep.axis.QUICK_STOP)  # of a stop what comes first
+    time.sleep(0.3)
+    CHECKS.that(drive.state == "QUICK STOP ACTIVE", f"a rotor at rest is held on: {drive.state}")
+    drive.enable()
 
 
 def it_captures(drive, folder):

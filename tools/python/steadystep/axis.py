@@ -14,6 +14,7 @@ LOOK_S = 0.01
 
 PROFILE_POSITION, PROFILE_VELOCITY, HOMING, CYCLIC_TORQUE = 1, 3, 6, 10
 TORQUE_CARRIED = 0x0200  # of 6502h
+QUICK_STOP_OPTION, STAYS = 0x605A, 6  # in QUICK STOP ACTIVE, and holds
 SHUTDOWN, SWITCH_ON, ENABLE_OPERATION, QUICK_STOP, RESET = 0x06, 0x07, 0x0F, 0x02, 0x80
 NEW_SET_POINT, AT_ONCE, RELATIVE = 0x10, 0x20, 0x40
 REFUSED, REACHED, ACKNOWLEDGED = 0x0080, 0x0400, 0x1000
@@ -110,6 +111,7 @@ class Axis:
             if passed_s > timeout_s:
                 raise TimedOut(f"enabling has not ended within {timeout_s:g} s; the drive is {state.lower()}")
             time.sleep(LOOK_S)
+        self.objects.write(QUICK_STOP_OPTION, STAYS)  # ahead of a stop, whose process data does not wait for it
         progress("enabling", 1.0)
 
     def disable(self) -> None:
@@ -237,12 +239,12 @@ class Axis:
             time.sleep(LOOK_S)
 
     def quick_stop(self) -> None:
-        """The same without waiting, not even for an SDO transfer that is under way: by process data first. If none
-        of those comes to its end in time, the drive ends switched off."""
+        """The same without waiting, not even for an SDO transfer that is under way: by process data first. If another
+        client has enabled the drive and no transfer comes to its end in time, it ends switched off."""
         if self._seen_state == "OPERATION ENABLED":
             self.objects.send_controlword(QUICK_STOP)
         if self.state in ("OPERATION ENABLED", "QUICK STOP ACTIVE"):
-            self.objects.write(0x605A, 6)  # stays, and holds
+            self.objects.write(QUICK_STOP_OPTION, STAYS)
             self._control(QUICK_STOP)
             self.objects.write(0x60FF, 0)  # what would go on when enabled
             if 0x6071 in self.objects.entries:  # not of every version
