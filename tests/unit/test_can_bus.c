@@ -112,8 +112,8 @@ static void put(unsigned index, unsigned bytes, uint32_t value)
 {
     char request[20];
 
-    snprintf(request, sizeof request, "%02X%02X%02X%02X%02X%02X%02X%02X", 0x23u | (4u - bytes) << 2,
-             index & 255u, index >> 8, index == 0x1016u ? 1u : 0u, (unsigned)(value & 255u),
+    snprintf(request, sizeof request, "%02X%02X%02X%02X%02X%02X%02X%02X", (0x23u | (4u - bytes) << 2) & 255u,
+             index & 255u, index >> 8 & 255u, index == 0x1016u ? 1u : 0u, (unsigned)(value & 255u),
              (unsigned)(value >> 8 & 255u), (unsigned)(value >> 16 & 255u),
              (unsigned)(value >> 24));
     bus.sent_count = 0;
