@@ -15,7 +15,7 @@ namespace
 constexpr std::uint32_t FDCAN_NBTP = 0x1c, FDCAN_RXGFC = 0x80;
 constexpr std::uint16_t boot_up = 0x701, emergency = 0x081, request = 0x601, response = 0x581;
 constexpr double kernel_Hz = 170e6;
-constexpr std::size_t most_at_once = 50'000; /* of a run: its translated code takes 3 KB a frame */
+constexpr std::size_t most_at_once = 50'000; /* of a run: its translated code takes 9 KB a frame */
 constexpr std::size_t in_reserve = 200; /* frames that wait for the bus, so that it is never idle */
 
 std::string text(const can_frame &frame)
