@@ -134,7 +134,7 @@ IN_PLACE bool torque_leads(struct drive *drive)
         return false;
     }
     if (!reference_follows(&drive->reference)) {
-        drive->torque.speed = NUM(0.0);
+        torque_mode_leave(&drive->torque);
         return false;
     }
     return true;

@@ -226,7 +226,7 @@ bool planner_request_torque(struct drive *drive, const struct drive_command *com
         !request_velocity(drive, &velocity, &stop, error)) {
         return false;
     }
-    drive->planner.limits = stop.limits;
+    planner_stop_within(&drive->planner, &stop.limits);
     asked->current = num_from_double(current_A / drive->base.current_A);
     asked->speed = num_from_double(velocity.speed_rad_s / drive->base.speed_rad_s);
     return asked->speed > NUM(0.0) || design_refuse(error, "speed: must be above 0");

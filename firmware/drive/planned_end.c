@@ -67,8 +67,8 @@ bool planned_end_require_known(struct drive *drive, char error[DRIVE_ERROR_TEXT]
 {
     return planned_end_require_no_stop(drive, error) &&
            (drive->planned_end.known == PLANNED_END_KNOWN ||
-            design_refuse(error, "move refused: the reference follows a sine, set-points, a "
-                                 "speed or a torque: stop it, or retarget")) &&
+            design_refuse(error, "move refused: the reference follows a sine, set-points or a "
+                                 "speed: stop it, or retarget")) &&
            planned_end_require_in_range(drive, drive->planned_end.position, error);
 }
 

@@ -62,6 +62,12 @@ static inline void planner_address_set_point(struct planner *planner, uint32_t a
     }
 }
 
+/* What goes on is not planned, but its stop will be, within these limits. */
+static inline void planner_stop_within(struct planner *planner, const struct motion_limits *limits)
+{
+    planner->limits = *limits;
+}
+
 struct drive;
 
 /*

@@ -1,5 +1,7 @@
 #include "firmware/drive/torque_mode.h"
 
+#include <stdatomic.h>
+
 #include "firmware/drive/block_reset.h"
 #include "firmware/drive/drive.h"
 
@@ -42,5 +44,6 @@ num_t torque_mode_lead(struct drive *drive)
 
 void torque_mode_end(struct drive *drive)
 {
-    *(volatile num_t *)&drive->torque.speed = NUM(0.0);
+    torque_mode_leave(&drive->torque);
+    atomic_signal_fence(memory_order_seq_cst); /* before the reference is looked at */
 }

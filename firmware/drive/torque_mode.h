@@ -7,7 +7,7 @@
  *
  * by the current control that the current laws share, whatever the law is. The bounds are those of
  * a control of the speed at its limits, with the gain of the hold (control/standstill_hold.h): a
- * rotor that comes near a limit is taken over bit by bit and stays there, whatever its load is.
+ * rotor that comes near a limit is held by them bit by bit and stays there, whatever its load is.
  *
  * The reference follows the rotor, as in a plan at constant speed that begins anew in each period:
  * nothing is off its reference, and a stop, a speed or a target begins from the rotor's own motion.
@@ -34,6 +34,12 @@ __attribute__((noinline)) void torque_mode_take(struct drive *drive,
 
 /* Interrupt: the q current of a period; the reference follows the rotor. Apart: rare. */
 __attribute__((noinline)) num_t torque_mode_lead(struct drive *drive);
+
+/* Interrupt and background: the position is controlled. */
+static inline void torque_mode_leave(struct torque_mode *torque)
+{
+    torque->speed = NUM(0.0);
+}
 
 /* Background: the position is controlled from the next period on, at the rotor's speed. */
 void torque_mode_end(struct drive *drive);

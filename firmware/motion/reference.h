@@ -148,7 +148,7 @@ static inline void reference_place_in_motion(struct reference *reference, struct
     reference->periods_left = UINT32_MAX;
 }
 
-/* It goes on so, and has neither been stopped nor taken over. */
+/* It goes on so, and has neither been stopped nor preempted. */
 static inline bool reference_follows(const struct reference *reference)
 {
     return reference->course == REFERENCE_STEADY;

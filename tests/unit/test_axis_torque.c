@@ -171,7 +171,7 @@ static void test_a_halt_holds_and_lets_it_go_on(void)
     TEST_ASSERT_EQUAL(LITTLE, demand());
 }
 
-static void test_a_quick_stop_takes_over_the_position(void)
+static void test_a_quick_stop_controls_the_position(void)
 {
     put(0x6071, 0, 2, LITTLE);
     enable();
@@ -266,7 +266,7 @@ int main(void)
     RUN_TEST(test_a_target_beyond_the_largest_torque_is_cut_and_said);
     RUN_TEST(test_the_speed_is_held_below_6080h);
     RUN_TEST(test_a_halt_holds_and_lets_it_go_on);
-    RUN_TEST(test_a_quick_stop_takes_over_the_position);
+    RUN_TEST(test_a_quick_stop_controls_the_position);
     RUN_TEST(test_another_mode_begins_at_rest);
     RUN_TEST(test_a_torque_ends_where_it_pushes_beyond_a_software_limit);
     RUN_TEST(test_a_torque_ends_before_a_software_limit_by_its_way_to_stop);

@@ -668,7 +668,8 @@ static void test_every_command_says_what_it_takes(void)
         {"help store", "store: keeps settings and what was learned;"},
         {"help", "help, state, cycles, signals, move, enable, disable, hold, move-trapezoid, "
                  "move-smooth, step, stop, sine, set-point, velocity, retarget, store, "
-                 "set-position, get, set, defaults, capture; help <command> explains one\n"},
+                 "set-position, torque, get, set, defaults, capture; help <command> explains "
+                 "one\n"},
     };
     char expected[300];
 

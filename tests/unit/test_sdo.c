@@ -242,7 +242,8 @@ static void test_commands_are_given_by_their_number(void)
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x2200, 0, 1, 13)); /* set-position */
     bench_periods(10);
     TEST_ASSERT_INT_WITHIN(1, 65536.0 * 2.0 / TWO_PI, (int32_t)link_bench_get(0x6062, 0));
-    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x2200, 0, 1, DRIVE_COMMANDS));
+    TEST_ASSERT_EQUAL_HEX32(OBJECT_WRONG_STATE, /* torque: there is no encoder */
+                            link_bench_put(0x2200, 0, 1, DRIVE_COMMANDS));
 }
 
 static void test_signals_have_the_type_of_what_they_show(void)

@@ -146,7 +146,7 @@ static void test_a_stop_begins_at_the_rotor_s_speed_and_ends_at_rest(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, signals().theta_ref_rad, motor.angle_rad);
 }
 
-static void test_a_speed_and_a_target_take_over_from_the_rotor_s_motion(void)
+static void test_a_speed_and_a_target_begin_with_the_rotor_s_motion(void)
 {
     post(torque(0.2, 40.0));
     run(300);
@@ -231,7 +231,7 @@ static void test_a_current_limit_that_falls_cuts_the_torque(void)
     TEST_ASSERT_TRUE(drive.settings.current_limit_A < 2.0);
 }
 
-static void test_a_torque_that_takes_over_a_load_begins_with_its_current(void)
+static void test_a_torque_under_a_load_begins_with_its_current(void)
 {
     const int periods = 40;
     double sum = 0.0;
@@ -265,7 +265,7 @@ static void test_what_the_drive_cannot_is_refused(void)
     refuses(torque(0.1, -10.0), "speed");
     post(torque(0.1, 0.0));
     run(50);
-    refuses((struct drive_command){.kind = DRIVE_COMMAND_STEP, .position_rad = 1.0}, "torque");
+    refuses((struct drive_command){.kind = DRIVE_COMMAND_STEP, .position_rad = 1.0}, "move");
     post((struct drive_command){.kind = DRIVE_COMMAND_STOP});
     refuses(torque(0.1, 0.0), "stop");
 }
@@ -286,12 +286,12 @@ int main(void)
     RUN_TEST(test_a_rotor_that_is_held_is_no_fault);
     RUN_TEST(test_a_count_that_stands_still_of_a_rotor_that_turns_is_a_fault);
     RUN_TEST(test_a_stop_begins_at_the_rotor_s_speed_and_ends_at_rest);
-    RUN_TEST(test_a_speed_and_a_target_take_over_from_the_rotor_s_motion);
+    RUN_TEST(test_a_speed_and_a_target_begin_with_the_rotor_s_motion);
     RUN_TEST(test_a_torque_acts_in_its_period_in_the_middle_of_a_move);
     RUN_TEST(test_what_goes_on_when_a_torque_comes_is_void);
     RUN_TEST(test_a_drive_that_is_enabled_anew_controls_the_position);
     RUN_TEST(test_a_current_limit_that_falls_cuts_the_torque);
-    RUN_TEST(test_a_torque_that_takes_over_a_load_begins_with_its_current);
+    RUN_TEST(test_a_torque_under_a_load_begins_with_its_current);
     RUN_TEST(test_what_the_drive_cannot_is_refused);
     RUN_TEST(test_without_an_encoder_it_is_refused);
     return UNITY_END();
