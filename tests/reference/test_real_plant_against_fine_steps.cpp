@@ -165,8 +165,8 @@ struct Reference {
         return {{c1 + h / 3.0 * c3, s1 - h / 3.0 * s3},
                 {-s1 - h * s3, c1 - h * c3},
                 s2,
-                -holding_Nm * (with.detent_4 * std::sin(4.0 * angle) +
-                               with.detent_2 * s2 + with.detent_1 * s1)};
+                -holding_Nm * (with.detent_4 * std::sin(4.0 * angle) + with.detent_2 * s2 +
+                               with.detent_1 * s1)};
     }
 
     double current(int phase, const double *y, const Rotor &at) const
