@@ -427,7 +427,9 @@ void link_beside_console(struct application *application)
 {
     struct link *link = application->link;
 
-    link->now_us = (uint32_t)application->board.time_us(application->board.context);
+    if (link->can != NULL) {
+        link->now_us = (uint32_t)application->board.time_us(application->board.context);
+    }
     if (link->on_bus) {
         can_bus_background(application);
     } else if (link->axis.lost) {

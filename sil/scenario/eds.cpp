@@ -129,7 +129,7 @@ struct Row {
 /* What objects that code answers for begin with, if that is fixed, stands in their rows. */
 std::string preset_of(const Row &row)
 {
-    const bool follows = (row.index >= 0x6081 && row.index <= 0x6085) ||
+    const bool follows = (row.index >= 0x6080 && row.index <= 0x6085) ||
                          (row.index >= 0x6072 && row.index <= 0x6076);
     const bool shows = row.index >= 0x6000 && row.index != 0x6061 && row.access.word == RO_T.word &&
                        row.access.mapped;

@@ -58,8 +58,8 @@ static double gain_behind_a_swing(enum drive_state state, bool watches)
     drive_bench_reset();
     power_up();
     drive.supervision.state = state;
-    drive.belt_watch = (struct belt_watch){
-        .swing = NUM(0.02), .soonest = 14, .latest = 40, .watches = watches};
+    drive.belt_watch =
+        (struct belt_watch){.swing = NUM(0.02), .soonest = 14, .latest = 40, .watches = watches};
     for (uint32_t k = 0; k < 400u; k++) {
         drive.supervision.period = k;
         drive.estimator.estimate.rotor.speed = num_from_double(0.05 * sin(0.157 * k));

@@ -110,9 +110,10 @@ static void expect_sent(size_t at, uint16_t id, const char *digits)
 
 static void put(unsigned index, unsigned bytes, uint32_t value)
 {
+    const unsigned specifier = 0x23u | (4u - bytes) << 2;
     char request[20];
 
-    snprintf(request, sizeof request, "%02X%02X%02X%02X%02X%02X%02X%02X", (0x23u | (4u - bytes) << 2) & 255u,
+    snprintf(request, sizeof request, "%02X%02X%02X%02X%02X%02X%02X%02X", specifier & 255u,
              index & 255u, index >> 8 & 255u, index == 0x1016u ? 1u : 0u, (unsigned)(value & 255u),
              (unsigned)(value >> 8 & 255u), (unsigned)(value >> 16 & 255u),
              (unsigned)(value >> 24));
