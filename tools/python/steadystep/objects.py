@@ -18,6 +18,7 @@ logging.getLogger("canopen").addHandler(logging.NullHandler())  # what it says i
 
 OUT_OF_RANGE, WRONG_STATE, STORE_FAILED = 0x06090030, 0x08000022, 0x06060000
 RESPONSE_S, TRIES = 0.5, 1
+LATE_S = 0.1  # of a response behind an abort
 PATIENCE_S, SILENCE_S = 10.0, 0.4  # with a server that serves another program; of a line that is dead
 
 Number = bool | int | float | str
@@ -94,6 +95,15 @@ class Objects:
                 raise self._refusal(error) from None
             except (SdoCommunicationError, SdoError) as error:
                 raise self._loss(str(error)) from None
+            except KeyboardInterrupt:
+                self._give_up()
+                raise
+
+    def _give_up(self) -> None:
+        """What was asked is answered yet, perhaps: before the next request, whose response it would pass for."""
+        if not self.bus.lost:
+            self.node.sdo.abort()
+            time.sleep(LATE_S)
 
     def _refusal(self, error: SdoAbortedError) -> Refused:
         if error.code == OUT_OF_RANGE:
