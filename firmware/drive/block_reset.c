@@ -8,6 +8,7 @@ void drive_reset_control(struct drive *drive)
     position_law_reset(&drive->law);
     detent_compensation_reset(&drive->detent);
     current_control_reset(&drive->current_control);
+    torque_mode_leave(&drive->torque);
     synchronism_reset(drive);
     expectation_reset(&drive->expectation);
 }

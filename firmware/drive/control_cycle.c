@@ -127,17 +127,10 @@ IN_PLACE struct phases regulate_current(struct drive *drive, const struct predic
     return inverse_park(drive->voltage_command, demand.frame.middle);
 }
 
-/* Whether torque is commanded; it ends with a stop of the reference, or as that begins anew. */
-IN_PLACE bool torque_leads(struct drive *drive)
+/* Whether torque is commanded. */
+IN_PLACE bool torque_leads(const struct drive *drive)
 {
-    if (!ESTIMATORS_READ_ENCODER || !RARE(num_bits(drive->torque.speed) != 0u)) {
-        return false;
-    }
-    if (!reference_follows(&drive->reference)) {
-        torque_mode_leave(&drive->torque);
-        return false;
-    }
-    return true;
+    return ESTIMATORS_READ_ENCODER && RARE(num_bits(drive->torque.speed) != 0u);
 }
 
 /* A voltage law. */

@@ -35,11 +35,16 @@ num_t torque_mode_lead(struct drive *drive)
     const struct estimate *estimate = &drive->estimator.estimate;
     const struct outlook *rotor = &estimate->next;
     const num_t half_turns = half_period_turns(&drive->params.model, rotor->speed);
+    const num_t current = current_within_speed(drive, rotor->speed,
+                                               estimate->rotor.load_torque + drive->detent.torque);
 
-    reference_place_in_motion(&drive->reference, rotor->position, rotor->speed,
-                              (int32_t)angle_from_turns(half_turns));
-    return current_within_speed(drive, rotor->speed,
-                                estimate->rotor.load_torque + drive->detent.torque);
+    if (reference_follows(&drive->reference)) {
+        reference_place_in_motion(&drive->reference, rotor->position, rotor->speed,
+                                  (int32_t)angle_from_turns(half_turns));
+    } else {
+        torque_mode_leave(&drive->torque);
+    }
+    return current;
 }
 
 void torque_mode_end(struct drive *drive)

@@ -32,10 +32,11 @@ struct drive;
 __attribute__((noinline)) void torque_mode_take(struct drive *drive,
                                                 const struct torque_mode *asked);
 
-/* Interrupt: the q current of a period; the reference follows the rotor. Apart: rare. */
+/* Interrupt: the q current of a period; the reference follows the rotor. The period in which it has
+   been stopped is the last. Apart: rare. */
 __attribute__((noinline)) num_t torque_mode_lead(struct drive *drive);
 
-/* Interrupt and background: the position is controlled. */
+/* Interrupt, as enabling begins, too, and background: the position is controlled. */
 static inline void torque_mode_leave(struct torque_mode *torque)
 {
     torque->speed = NUM(0.0);

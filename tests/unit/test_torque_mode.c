@@ -200,8 +200,9 @@ static void test_a_drive_that_is_enabled_anew_controls_the_position(void)
     run(2);
     motor.speed_rad_s = 0.0;
     post((struct drive_command){.kind = DRIVE_COMMAND_ENABLE});
+    run(2);
+    TEST_ASSERT_TRUE(drive.torque.speed == NUM(0.0)); /* not when control begins */
     run(OFFSET_PERIODS + 1000);
-    TEST_ASSERT_TRUE(drive.torque.speed == NUM(0.0));
     TEST_ASSERT_FALSE(signals().reference_moving);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, signals().theta_ref_rad, motor.angle_rad);
 }
