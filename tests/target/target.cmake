@@ -38,12 +38,12 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
     list(FILTER unit_tests EXCLUDE REGEX "test_encoder_alignment\\.c$")
   endif()
   # An application, its test's board and the stack of the design take more than 16 KB.
-  set(large_tests application axis axis_motion axis_stream can_bus canopen cia402 console machine_io modbus node pdo resets sdo
+  set(large_tests application axis axis_motion axis_stream axis_torque can_bus canopen cia402 console machine_io modbus node pdo resets sdo
     setting_lines settings_in_motion settings_record torque_constant)
   # In fixed point each test runs on one core: the M4F has the long ones, the M0+ all others.
   # Arithmetic, which knows the core, runs on both. The replays run the code of some of the long ones:
   # those are left to tools/test --full.
-  set(long_tests "application|axis|axis_motion|axis_stream|can_bus|canopen|cia402|console|machine_io|modbus|node|pdo|resets|sdo|setting_lines|settings_in_motion|settings_record|torque_constant|initial_position|invariant_ekf|motion|sliding_mode")
+  set(long_tests "application|axis|axis_motion|axis_stream|axis_torque|can_bus|canopen|cia402|console|machine_io|modbus|node|pdo|resets|sdo|setting_lines|settings_in_motion|settings_record|torque_constant|initial_position|invariant_ekf|motion|sliding_mode")
   if(STEADYSTEP_CORE STREQUAL m0plus)
     list(FILTER unit_tests EXCLUDE REGEX "test_(${long_tests})\\.c$")
   elseif(numeric STREQUAL fixed)

@@ -138,7 +138,7 @@ static void test_a_target_beyond_the_largest_torque_is_cut_and_said(void)
 
 static void test_the_speed_is_held_below_6080h(void)
 {
-    const double limit = axis_motion_speed_limit(&bench.application) / AXIS_RAD_S_PER_RPM;
+    const double limit = (double)(axis_motion_speed_limit(&bench.application) / AXIS_RAD_S_PER_RPM);
 
     TEST_ASSERT_DOUBLE_WITHIN(1.0, limit, link_bench_get(0x6080, 0));
     TEST_ASSERT_EQUAL_HEX32(OBJECT_OUT_OF_RANGE, link_bench_put(0x6080, 0, 4, 0));
