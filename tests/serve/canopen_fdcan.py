@@ -9,27 +9,10 @@ import sys
 
 IMAGE = pathlib.Path(sys.argv.pop()).resolve()
 from canopen_bus import Bus, wait_for  # noqa: E402
+from image_node import SPEED, operate  # noqa: E402
 from served import Checks, Line, Served  # noqa: E402
 
 CHECKS = Checks()
-SPEED = 0.1  # what a busy machine still executes of the image
-
-
-def operate(node):
-    for name in ("TIMEOUT_SWITCH_STATE_FINAL", "TIMEOUT_SWITCH_STATE_SINGLE", "TIMEOUT_CHECK_TPDO",
-                 "TIMEOUT_SWITCH_OP_MODE"):
-        setattr(node, name, getattr(node, name) / SPEED)
-    CHECKS.that("stm32g474" in node.sdo[0x100A].raw, "it is the image")
-    node.setup_402_state_machine()
-    node.nmt.state = "OPERATIONAL"
-    wait_for(lambda: node.state == "SWITCH ON DISABLED")
-    node.state = "OPERATION ENABLED"
-    node.op_mode = "PROFILED POSITION"
-    node.sdo[0x607A].raw = 16384
-    node.controlword = 0x1F
-    CHECKS.that(wait_for(lambda: node.sdo[0x6041].raw & 0x1000, 20), "a set-point is acknowledged")
-    CHECKS.that(wait_for(lambda: node.sdo[0x6041].raw & 0x400, 30), "and reached")
-    CHECKS.that(abs(node.sdo[0x6064].raw - 16384) < 100, f"it is there: {node.sdo[0x6064].raw}")
 
 
 def the_line_takes_the_channel(network, console):
@@ -53,7 +36,7 @@ with Served("--image", IMAGE, "--speed", SPEED, "--can-link", "can") as served:
     console = Console(str(served.link))
     with Bus(place, lives=True) as bus:
         CHECKS.that(console.ask("state").startswith("steadystep"), "the console is there, too")
-        operate(bus.node)
+        operate(bus.node, CHECKS)
         CHECKS.that(console.until("ready:", 60), "it announces what happens on the bus")
         CHECKS.that(console.ask("state").startswith("ok operation-enabled"), "and answers")
         bus.node.state = "SWITCH ON DISABLED"
