@@ -39,6 +39,27 @@ class Bus:
         self.network.disconnect()
 
 
+def slow(node, speed):
+    """What python-canopen waits for is the drive's, whose seconds last longer."""
+    for name in ("TIMEOUT_SWITCH_STATE_FINAL", "TIMEOUT_SWITCH_STATE_SINGLE", "TIMEOUT_CHECK_TPDO",
+                 "TIMEOUT_SWITCH_OP_MODE"):
+        setattr(node, name, getattr(node, name) / speed)
+
+
+def map_one_each_way(node, received, sent):
+    """Objects of RPDO1 and TPDO1, which is sent every 4 to 8 ms."""
+    node.tpdo.read()
+    node.rpdo.read()
+    for pdo, objects in ((node.rpdo[1], received), (node.tpdo[1], sent)):
+        pdo.clear()
+        for number in objects:
+            pdo.add_variable(number)
+    node.tpdo[1].event_timer = 8
+    node.tpdo[1].inhibit_time = 40
+    node.rpdo.save()
+    node.tpdo.save()
+
+
 def wait_for(condition, timeout_s=5.0):
     """Whether it has come true in that time."""
     end = time.monotonic() + timeout_s

@@ -8,7 +8,7 @@ import struct
 import sys
 
 IMAGE = ["--image", pathlib.Path(sys.argv.pop()).resolve(), "--speed", 0.1] if len(sys.argv) > 2 else []
-from canopen_bus import Bus, wait_for  # noqa: E402
+from canopen_bus import Bus, slow, wait_for  # noqa: E402
 from served import Checks, Line, Served  # noqa: E402
 
 CHECKS = Checks()
@@ -20,9 +20,7 @@ ARM, DONE = 1, 4
 
 
 def enable(node):
-    for name in ("TIMEOUT_SWITCH_STATE_FINAL", "TIMEOUT_SWITCH_STATE_SINGLE", "TIMEOUT_CHECK_TPDO",
-                 "TIMEOUT_SWITCH_OP_MODE"):
-        setattr(node, name, getattr(node, name) * SLOWED)
+    slow(node, 1 / SLOWED)
     node.setup_402_state_machine()
     node.nmt.state = "OPERATIONAL"
     wait_for(lambda: node.state == "SWITCH ON DISABLED")

@@ -6,7 +6,7 @@ usage: canopen_cyclic.py SIL
 import math
 import time
 
-from canopen_bus import Bus, wait_for
+from canopen_bus import Bus, map_one_each_way, slow, wait_for
 from served import Checks, Served
 
 CHECKS = Checks()
@@ -14,19 +14,6 @@ SPEED = 0.1  # simulated seconds in a second
 INTERVAL_S = 0.004 / SPEED
 TURN = 65536
 CYCLES = 150
-
-
-def map_one_each_way(node):
-    node.tpdo.read()
-    node.rpdo.read()
-    for pdo, objects in ((node.rpdo[1], (0x6040, 0x607A)), (node.tpdo[1], (0x6041, 0x6064))):
-        pdo.clear()
-        for number in objects:
-            pdo.add_variable(number)
-    node.tpdo[1].event_timer = 8
-    node.tpdo[1].inhibit_time = 40
-    node.rpdo.save()
-    node.tpdo.save()
 
 
 def target(n):
@@ -60,10 +47,8 @@ def home(node):
 
 with Served("--speed", SPEED) as served, Bus(served.link) as bus:
     NODE = bus.node
-    for name in ("TIMEOUT_SWITCH_STATE_FINAL", "TIMEOUT_SWITCH_STATE_SINGLE", "TIMEOUT_CHECK_TPDO",
-                 "TIMEOUT_SWITCH_OP_MODE"):
-        setattr(NODE, name, getattr(NODE, name) / SPEED)
-    map_one_each_way(NODE)
+    slow(NODE, SPEED)
+    map_one_each_way(NODE, (0x6040, 0x607A), (0x6041, 0x6064))
     NODE.setup_402_state_machine()
     NODE.nmt.state = "OPERATIONAL"
     wait_for(lambda: NODE.state == "SWITCH ON DISABLED")

@@ -7,7 +7,7 @@ import math
 import statistics
 import time
 
-from canopen_bus import Bus, canopen, wait_for
+from canopen_bus import Bus, canopen, map_one_each_way, slow, wait_for
 from served import Checks, Served
 
 CHECKS = Checks()
@@ -17,25 +17,6 @@ TURN = 65536
 CYCLES, A_CYCLE = 125, 20  # intervals, in all and of a sine
 TORQUE = 200  # thousandths of the rated one
 KM, INERTIA, RATED_A = 0.157, 15.62e-5, 3.0
-
-
-def slow(node):
-    for name in ("TIMEOUT_SWITCH_STATE_FINAL", "TIMEOUT_SWITCH_STATE_SINGLE", "TIMEOUT_CHECK_TPDO",
-                 "TIMEOUT_SWITCH_OP_MODE"):
-        setattr(node, name, getattr(node, name) / SPEED)
-
-
-def map_one_each_way(node):
-    node.tpdo.read()
-    node.rpdo.read()
-    for pdo, objects in ((node.rpdo[1], (0x6040, 0x6071)), (node.tpdo[1], (0x6041, 0x6077, 0x606C))):
-        pdo.clear()
-        for number in objects:
-            pdo.add_variable(number)
-    node.tpdo[1].event_timer = 8
-    node.tpdo[1].inhibit_time = 40
-    node.rpdo.save()
-    node.tpdo.save()
 
 
 def follow(node):
@@ -103,8 +84,8 @@ def stops_quickly(node):
 
 with Served("--speed", SPEED, "torque") as served, Bus(served.link) as bus:  # the scenario's drive
     NODE, network = bus.node, bus.network
-    slow(NODE)
-    map_one_each_way(NODE)
+    slow(NODE, SPEED)
+    map_one_each_way(NODE, (0x6040, 0x6071), (0x6041, 0x6077, 0x606C))
     CHECKS.that(NODE.sdo[0x6502].raw == 0x2A5, f"6502h: {NODE.sdo[0x6502].raw:#x}")
     NODE.setup_402_state_machine(read_pdos=False)
     NODE.nmt.state = "OPERATIONAL"

@@ -1,13 +1,11 @@
 """What python-canopen does with the image of the board, whatever carries its frames."""
-from canopen_bus import wait_for
+from canopen_bus import slow, wait_for
 
 SPEED = 0.1  # what a busy machine still executes of the image
 
 
 def operate(node, checks):
-    for name in ("TIMEOUT_SWITCH_STATE_FINAL", "TIMEOUT_SWITCH_STATE_SINGLE", "TIMEOUT_CHECK_TPDO",
-                 "TIMEOUT_SWITCH_OP_MODE"):
-        setattr(node, name, getattr(node, name) / SPEED)
+    slow(node, SPEED)
     checks.that("stm32g474" in node.sdo[0x100A].raw, "it is the image")
     node.setup_402_state_machine()
     node.nmt.state = "OPERATIONAL"

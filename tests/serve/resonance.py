@@ -133,6 +133,7 @@ def it_is_found(share, belt_Hz, *more):
     with belted(share, belt_Hz, *more) as simulated, steadystep.Drive(simulated.place) as drive:
         drive.enable()
         before = in_force(drive)
+        CHECKS.that(before[2] == resonance.default_bandwidth_rad_s(drive), f"the default bandwidth is the drive's: {before}")
         drive.disable()
         found = drive.find_resonance(lowest_Hz=40.0)
         CHECKS.that(found.verdict == FOUND and abs(found.resonance_Hz / belt_Hz - 1) < 0.06, f"{share}, {belt_Hz} Hz: {found}")
