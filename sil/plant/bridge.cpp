@@ -41,6 +41,13 @@ Bridge::PhaseVoltage Bridge::between(const LegVoltage &first, const LegVoltage &
     return {first.leaves - second.enters, first.enters - second.leaves, first.diode + second.diode};
 }
 
+BridgeOutput Bridge::across(const PhaseVoltage &a, const PhaseVoltage &b, bool dead_time)
+{
+    const bool draws = dead_time || a.if_positive_V != 0.0 || b.if_positive_V != 0.0;
+    return {Phases{a.if_positive_V, b.if_positive_V}, Phases{a.if_negative_V, b.if_negative_V},
+            Phases{a.diode_V, b.diode_V}, dead_time, draws};
+}
+
 /* In dead time the lower diode carries a current that leaves the leg, the upper one that enters
    it. */
 void Bridge::tabulate()
@@ -49,8 +56,13 @@ void Bridge::tabulate()
     const LegVoltage on_low = {0.0, 0.0, 0.0}, on_high = {bus_V, bus_V, 0.0};
     const LegVoltage in_dead_time = {-drop_V, bus_V + drop_V, drop_V};
     const LegVoltage of_leg[leg_states] = {on_low, on_high, in_dead_time, in_dead_time};
+    PhaseVoltage of_phase[phase_states];
     for (unsigned state = 0; state < phase_states; state++) {
-        table_[state] = between(of_leg[state % leg_states], of_leg[state / leg_states]);
+        of_phase[state] = between(of_leg[state % leg_states], of_leg[state / leg_states]);
+    }
+    for (unsigned state = 0; state < states; state++) {
+        table_[state] = across(of_phase[state % phase_states], of_phase[state / phase_states],
+                               (state & all_dead) != 0);
     }
 }
 
@@ -79,7 +91,7 @@ const Timetable &Bridge::period(const Duties &duties)
  */
 void Bridge::off()
 {
-    append(2.0 * config_.half_period_counts, all_dead);
+    append(2.0 * config_.half_period_counts, table_[all_dead]);
     state_ = all_low;
     pending_count_ = 0;
 }
@@ -92,8 +104,8 @@ void Bridge::averaged(const Duties &duties)
         const double mean_V = V_per_count * duties.high_counts[leg];
         mean[leg] = {mean_V, mean_V, 0.0};
     }
-    append(2.0 * config_.half_period_counts, between(mean[0], mean[1]), between(mean[2], mean[3]),
-           false);
+    mean_ = across(between(mean[0], mean[1]), between(mean[2], mean[3]), false);
+    append(2.0 * config_.half_period_counts, mean_);
 }
 
 void Bridge::switched(const Duties &duties)
@@ -118,7 +130,7 @@ void Bridge::switched(const Duties &duties)
             break;
         }
         if (next > now) {
-            append(next - now, state);
+            append(next - now, table_[state]);
             now = next;
         }
         if (ends) {
@@ -135,7 +147,7 @@ void Bridge::switched(const Duties &duties)
             issued++;
         }
     }
-    append(end - now, state);
+    append(end - now, table_[state]);
     state_ = state;
     keep_pending(edges, ended, issued);
 }
@@ -192,21 +204,9 @@ int Bridge::list_edges(const Duties &duties, Edge *edges) const
     return count;
 }
 
-void Bridge::append(double duration_counts, const PhaseVoltage &a, const PhaseVoltage &b,
-                    bool dead_time)
+void Bridge::append(double duration_counts, const BridgeOutput &output)
 {
-    Segment &segment = timetable_.segments[timetable_.count++];
-    segment.duration_s = duration_counts * count_s_;
-    segment.if_positive_V = Phases{a.if_positive_V, b.if_positive_V};
-    segment.if_negative_V = Phases{a.if_negative_V, b.if_negative_V};
-    segment.diode_V = Phases{a.diode_V, b.diode_V};
-    segment.dead_time = dead_time;
-}
-
-void Bridge::append(double duration_counts, unsigned state)
-{
-    append(duration_counts, table_[state % phase_states], table_[state / phase_states],
-           (state & all_dead) != 0);
+    timetable_.segments[timetable_.count++] = {duration_counts * count_s_, &output};
 }
 
 } // namespace plant

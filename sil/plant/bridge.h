@@ -15,13 +15,29 @@
 namespace plant
 {
 
-/* A stretch of time in which no switch changes. */
-struct Segment {
-    double duration_s;
+/* What acts on the phases while no switch changes. */
+struct BridgeOutput {
     Phases if_positive_V; /* phase voltage while the current is positive, */
     Phases if_negative_V; /* and while negative; above if_positive_V when a leg is in dead time */
     Phases diode_V;       /* sum of the forward drops in the path of the current */
     bool dead_time;       /* some leg is in dead time: the two voltages differ somewhere */
+    bool draws;           /* the bus may carry current */
+
+    /* The voltages without the drops. */
+    Phases bus_if_positive_V() const
+    {
+        return if_positive_V + diode_V;
+    }
+    Phases bus_if_negative_V() const
+    {
+        return if_negative_V - diode_V;
+    }
+};
+
+/* A stretch of time in which no switch changes. */
+struct Segment {
+    double duration_s;
+    const BridgeOutput *output;
 };
 
 struct Timetable {
@@ -60,6 +76,7 @@ class Bridge
        whether it is in dead time. A phase's current leaves its first leg and enters its second. */
     static constexpr unsigned high = 1, dead = 2, leg_bits = 2, leg_states = 4;
     static constexpr unsigned phase_bits = 2 * leg_bits, phase_states = leg_states * leg_states;
+    static constexpr unsigned states = phase_states * phase_states;
     static constexpr unsigned all_low = 0x00, all_dead = 0xaa;
 
     struct Edge {
@@ -77,20 +94,20 @@ class Bridge
     };
 
     static PhaseVoltage between(const LegVoltage &first, const LegVoltage &second);
+    static BridgeOutput across(const PhaseVoltage &a, const PhaseVoltage &b, bool dead_time);
     void tabulate();
     void off();
     void averaged(const Duties &duties);
     void switched(const Duties &duties);
     int list_edges(const Duties &duties, Edge *edges) const;
     void keep_pending(const Edge *edges, int first, int last);
-    void append(double duration_counts, const PhaseVoltage &a, const PhaseVoltage &b,
-                bool dead_time);
-    void append(double duration_counts, unsigned state);
+    void append(double duration_counts, const BridgeOutput &output);
 
     BridgeConfig config_;
     double count_s_;
     double dead_counts_;
-    PhaseVoltage table_[phase_states];
+    BridgeOutput table_[states]; /* of each state of all legs */
+    BridgeOutput mean_ = {};     /* of a period, averaged */
     unsigned state_ = all_low;
     int latest_edge_[legs] = {0, 0, 0, 0}; /* its index in the period's list */
     Edge pending_[legs]; /* edges of the last period whose dead time reaches into this one */

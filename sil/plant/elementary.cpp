@@ -42,40 +42,42 @@ double nearest_whole(double x)
 
 double falling_exponential(double x)
 {
-    /* x = n ln 2 + r, |r| < 0.35; ln 2 in two parts, the first with 33 bits. */
-    constexpr double ln_2_high = 6.93147180369123816490e-01;
-    constexpr double ln_2_low = 1.90821492927058770002e-10;
+    /* 2^(n/32), 0 <= n < 32 */
+    static constexpr double power_of_two[32] = {
+        0x1.0000000000000p+0, 0x1.059b0d3158574p+0, 0x1.0b5586cf9890fp+0, 0x1.11301d0125b51p+0,
+        0x1.172b83c7d517bp+0, 0x1.1d4873168b9aap+0, 0x1.2387a6e756238p+0, 0x1.29e9df51fdee1p+0,
+        0x1.306fe0a31b715p+0, 0x1.371a7373aa9cbp+0, 0x1.3dea64c123422p+0, 0x1.44e086061892dp+0,
+        0x1.4bfdad5362a27p+0, 0x1.5342b569d4f82p+0, 0x1.5ab07dd485429p+0, 0x1.6247eb03a5585p+0,
+        0x1.6a09e667f3bcdp+0, 0x1.71f75e8ec5f74p+0, 0x1.7a11473eb0187p+0, 0x1.82589994cce13p+0,
+        0x1.8ace5422aa0dbp+0, 0x1.93737b0cdc5e5p+0, 0x1.9c49182a3f090p+0, 0x1.a5503b23e255dp+0,
+        0x1.ae89f995ad3adp+0, 0x1.b7f76f2fb5e47p+0, 0x1.c199bdd85529cp+0, 0x1.cb720dcef9069p+0,
+        0x1.d5818dcfba487p+0, 0x1.dfc97337b9b5fp+0, 0x1.ea4afa2a490dap+0, 0x1.f50765b6e4540p+0,
+    };
+    /* x = n ln 2 / 32 + r, |r| < 0.011; ln 2 / 32 in two parts, the first with 33 bits. */
+    constexpr double part_high = 0.021660849390173098;
+    constexpr double part_low = 2.325192846878874e-12;
     const double least = -700.0;
     const double bounded = x > least ? x : least;
-    const bool small = x > -0.34; /* n = 0, without the conversions that find it */
-    const double n = small ? 0.0 : nearest_whole(bounded * 1.44269504088896340736);
-    const double r = (bounded - n * ln_2_high) - n * ln_2_low;
+    const auto n = static_cast<std::int64_t>(bounded * 46.16624130844683 - 0.5);
+    const double whole = static_cast<double>(n);
+    const double r = (bounded - whole * part_high) - whole * part_low;
 
-    /* Taylor series of the even and the odd part in z = r^2, side by side. */
     const double z = r * r;
-    Phases sum = {1.0 / 479001600.0, 1.0 / 6227020800.0};
-    sum = sum * z + Phases{1.0 / 3628800.0, 1.0 / 39916800.0};
-    sum = sum * z + Phases{1.0 / 40320.0, 1.0 / 362880.0};
-    sum = sum * z + Phases{1.0 / 720.0, 1.0 / 5040.0};
-    sum = sum * z + Phases{1.0 / 24.0, 1.0 / 120.0};
-    sum = sum * z + Phases{1.0 / 2.0, 1.0 / 6.0};
-    const double exponential = 1.0 + (r + z * (sum[0] + r * sum[1]));
-    if (small) {
-        return exponential;
-    }
-    const std::uint64_t bits = static_cast<std::uint64_t>(1023 + static_cast<std::int64_t>(n))
-                               << 52;
+    const double even = 1.0 / 2.0 + z * (1.0 / 24.0 + z * (1.0 / 720.0));
+    const double odd = 1.0 / 6.0 + z * (1.0 / 120.0);
+    const double beyond_1 = r + z * (even + r * odd);
+    const double fraction = power_of_two[n & 31];
+    const std::uint64_t bits = static_cast<std::uint64_t>(1023 + (n >> 5)) << 52;
     double power = 0.0;
     std::memcpy(&power, &bits, sizeof power);
-    return exponential * power;
+    return (fraction + fraction * beyond_1) * power;
 }
 
 Decay::Span Decay::decay(double time_s) const
 {
     constexpr double forgotten = 50.0; /* time constants */
     const double age = time_s * rate_per_s_;
-    return {time_s, age < forgotten ? falling_exponential(-age) : 0.0,
-            (1.0 / rate_per_s_) / time_s};
+    return {time_s, age < forgotten ? falling_exponential(-age) : 0.0, 1.0 / age};
 }
 
 double natural_logarithm(double x)

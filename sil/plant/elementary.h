@@ -28,8 +28,9 @@ template <int order> inline Phases turned_by_little(Phases vector, double angle_
         cosine -= z * (1.0 / 720.0 - z * (1.0 / 40320.0));
         sine -= z * (1.0 / 5040.0);
     }
-    cosine = 1.0 - z * (1.0 / 2.0 - z * cosine);
-    sine = angle_rad * (1.0 - z * (1.0 / 6.0 - z * sine));
+    const double zz = z * z;
+    cosine = (1.0 - z * (1.0 / 2.0)) + zz * cosine;
+    sine = angle_rad * ((1.0 - z * (1.0 / 6.0)) + zz * sine);
     return cosine * vector + sine * quarter_turn(vector);
 }
 

@@ -99,14 +99,14 @@ inline Terminal terminal(double positive_V, double negative_V, double current_A,
     return {0.0, 0.0, 0.0};
 }
 
-inline Terminals terminals_of(const Segment &segment, const MotorCoefficients &motor,
+inline Terminals terminals_of(const BridgeOutput &output, const MotorCoefficients &motor,
                               const MotorState &state)
 {
     const Phases emf_V = (motor.torque_constant * state.omega_rad_s) * state.q_axis;
     const Terminal a =
-        terminal(segment.if_positive_V[0], segment.if_negative_V[0], state.current_A[0], emf_V[0]);
+        terminal(output.if_positive_V[0], output.if_negative_V[0], state.current_A[0], emf_V[0]);
     const Terminal b =
-        terminal(segment.if_positive_V[1], segment.if_negative_V[1], state.current_A[1], emf_V[1]);
+        terminal(output.if_positive_V[1], output.if_negative_V[1], state.current_A[1], emf_V[1]);
     return {Phases{a.voltage_V, b.voltage_V}, Phases{a.conducting, b.conducting},
             Phases{a.direction, b.direction}};
 }
@@ -121,7 +121,7 @@ struct Course {
 };
 
 template <int order>
-void add_energies(const Course &course, const Series<order> &x, const Segment &segment,
+void add_energies(const Course &course, const Series<order> &x, const BridgeOutput &output,
                   Phases voltage_V, double h)
 {
     const MotorCoefficients &motor = course.motor;
@@ -129,7 +129,7 @@ void add_energies(const Course &course, const Series<order> &x, const Segment &s
     const Phases charge = integral<order>(x.current, in_both_lanes(h));
     const Phases current_squared = integral_of_square<order>(x.current, h);
     const double diode_J =
-        segment.diode_V[0] * magnitude(charge[0]) + segment.diode_V[1] * magnitude(charge[1]);
+        output.diode_V[0] * magnitude(charge[0]) + output.diode_V[1] * magnitude(charge[1]);
     integrals.diode_J += diode_J;
     integrals.supplied_J += dot(voltage_V, charge) + diode_J;
     integrals.copper_J += motor.resistance * (current_squared[0] + current_squared[1]);
@@ -139,13 +139,13 @@ void add_energies(const Course &course, const Series<order> &x, const Segment &s
 
 /* The state at the end of the step. */
 template <bool track_energy, int order>
-IN_PLACE void accept(const Course &course, const Series<order> &x, const Segment &segment,
+IN_PLACE void accept(const Course &course, const Series<order> &x, const BridgeOutput &output,
                      Phases voltage_V, double h)
 {
     const Phases step = in_both_lanes(h);
     course.integrals.voltage_Vs += step * voltage_V;
     if constexpr (track_energy) {
-        add_energies(course, x, segment, voltage_V, h);
+        add_energies(course, x, output, voltage_V, h);
     }
     course.state.current_A = value<order>(x.current, step);
     course.state.q_axis = value<order>(x.q_axis, step);
@@ -163,7 +163,7 @@ template <int order> struct Margin {
 
 template <int order>
 Margin<order> margin_of(int phase, const Series<order> &x, const MotorCoefficients &motor,
-                        const Segment &segment, const Terminals &terminals, double h)
+                        const BridgeOutput &output, const Terminals &terminals, double h)
 {
     Margin<order> margin = {};
     if (terminals.conducting[phase] == 0.0) {
@@ -173,7 +173,7 @@ Margin<order> margin_of(int phase, const Series<order> &x, const MotorCoefficien
             margin.coefficient[k] = sign * x.omega_q[k][phase];
         }
         margin.coefficient[0] +=
-            negative ? -segment.if_positive_V[phase] : segment.if_negative_V[phase];
+            negative ? -output.if_positive_V[phase] : output.if_negative_V[phase];
     } else {
         for (int k = 0; k <= order; k++) {
             margin.coefficient[k] = terminals.direction[phase] * x.current[k][phase];
@@ -189,8 +189,8 @@ struct Event {
 };
 
 template <int order>
-Event first_event(const Series<order> &x, const MotorCoefficients &motor, const Segment &segment,
-                  const Terminals &terminals, double h)
+Event first_event(const Series<order> &x, const MotorCoefficients &motor,
+                  const BridgeOutput &output, const Terminals &terminals, double h)
 {
     Event first = {h};
     const Phases along = terminals.direction * value<order>(x.current, in_both_lanes(h));
@@ -198,7 +198,7 @@ Event first_event(const Series<order> &x, const MotorCoefficients &motor, const 
         if (terminals.conducting[phase] != 0.0 && !(along[phase] < 0.0)) {
             continue; /* its current goes on */
         }
-        const Margin<order> margin = margin_of(phase, x, motor, segment, terminals, h);
+        const Margin<order> margin = margin_of(phase, x, motor, output, terminals, h);
         const double at_end = value<order>(margin.coefficient, h);
         if (at_end < 0.0) {
             const double zero_s = falling_zero<order>(margin.coefficient, h, at_end);
@@ -214,16 +214,16 @@ Event first_event(const Series<order> &x, const MotorCoefficients &motor, const 
 /* A step in dead time in which a phase may float or a current end: goes as far as the first event.
  */
 template <int order, bool track_energy>
-[[gnu::noinline]] double step_to_event(const Course &course, const Segment &segment, double h)
+[[gnu::noinline]] double step_to_event(const Course &course, const BridgeOutput &output, double h)
 {
-    const Terminals terminals = terminals_of(segment, course.motor, course.state);
+    const Terminals terminals = terminals_of(output, course.motor, course.state);
     Series<order> x;
     expand<true>(x, course.state, course.motor, terminals.voltage_V, terminals.conducting);
-    const Event event = first_event(x, course.motor, segment, terminals, h);
+    const Event event = first_event(x, course.motor, output, terminals, h);
     const Phases emf_Vs =
         course.motor.torque_constant * integral<order - 1>(x.omega_q, in_both_lanes(event.time_s));
     course.integrals.voltage_Vs += (1.0 - terminals.conducting) * emf_Vs;
-    accept<track_energy>(course, x, segment, terminals.voltage_V, event.time_s);
+    accept<track_energy>(course, x, output, terminals.voltage_V, event.time_s);
     if (event.blocking >= 0) {
         course.state.current_A[event.blocking] = 0.0;
     }
@@ -232,63 +232,65 @@ template <int order, bool track_energy>
 
 /* A step in dead time: advances by h or to the first event before; returns the time that passed. */
 template <int order, bool track_energy>
-IN_PLACE double step_in_dead_time(const Course &course, const Segment &segment, double h)
+IN_PLACE double step_in_dead_time(const Course &course, const BridgeOutput &output, double h)
 {
     const Phases before_A = course.state.current_A;
-    const Phases diodes_V = segment.if_negative_V - segment.if_positive_V;
+    const Phases diodes_V = output.if_negative_V - output.if_positive_V;
     const auto idle = (before_A == none) & (diodes_V != none);
     if ((idle[0] | idle[1]) != 0) {
-        return step_to_event<order, track_energy>(course, segment, h);
+        return step_to_event<order, track_energy>(course, output, h);
     }
-    const Phases voltage_V = before_A > none ? segment.if_positive_V : segment.if_negative_V;
+    const Phases voltage_V = before_A > none ? output.if_positive_V : output.if_negative_V;
     Series<order> x;
     expand<false>(x, course.state, course.motor, voltage_V, both_conduct);
     const Phases along = diodes_V * (before_A * value<order>(x.current, in_both_lanes(h)));
     if (along[0] < 0.0 || along[1] < 0.0) {
-        return step_to_event<order, track_energy>(course, segment, h);
+        return step_to_event<order, track_energy>(course, output, h);
     }
-    accept<track_energy>(course, x, segment, voltage_V, h);
+    accept<track_energy>(course, x, output, voltage_V, h);
     return h;
 }
 
 template <int order, bool track_energy>
-IN_PLACE double step(const Course &course, const Segment &segment, double h)
+IN_PLACE double step(const Course &course, const BridgeOutput &output, double h)
 {
-    if (segment.dead_time) {
-        return step_in_dead_time<order, track_energy>(course, segment, h);
+    if (output.dead_time) {
+        return step_in_dead_time<order, track_energy>(course, output, h);
     }
     Series<order> x;
-    expand<false>(x, course.state, course.motor, segment.if_positive_V, both_conduct);
-    accept<track_energy>(course, x, segment, segment.if_positive_V, h);
+    expand<false>(x, course.state, course.motor, output.if_positive_V, both_conduct);
+    accept<track_energy>(course, x, output, output.if_positive_V, h);
     return h;
 }
 
-/* To the end of a stretch of constant switches, in steps of at most longest_s. */
+/* Through a stretch of constant switches, in steps of at most longest_s. */
 template <int order, bool track_energy>
-IN_PLACE void cross(const Course &course, const Segment &segment, double longest_s)
+IN_PLACE void cross(const Course &course, const BridgeOutput &output, double duration_s,
+                    double longest_s)
 {
-    double left_s = segment.duration_s;
+    double left_s = duration_s;
     while (left_s > 0.0) {
         const double h = left_s < longest_s ? left_s : longest_s;
-        left_s -= step<order, track_energy>(course, segment, h);
+        left_s -= step<order, track_energy>(course, output, h);
     }
 }
 
 /* Through a timetable; rate: how fast the solution can change, 1/s. */
 template <bool track_energy>
-void follow(const Course &course, const Timetable &timetable, double rate)
+IN_PLACE void follow(const Course &course, const Timetable &timetable, double rate)
 {
     for (const Segment &segment : timetable) {
+        const BridgeOutput &output = *segment.output;
         const double duration_s = segment.duration_s;
         const double extent = rate * duration_s;
-        if (segment.dead_time && extent < reach_2) {
-            cross<2, track_energy>(course, segment, duration_s);
+        if (output.dead_time && extent < reach_2) {
+            cross<2, track_energy>(course, output, duration_s, duration_s);
         } else if (extent < reach_3) {
-            cross<3, track_energy>(course, segment, duration_s);
+            cross<3, track_energy>(course, output, duration_s, duration_s);
         } else if (extent < reach_4) {
-            cross<4, track_energy>(course, segment, duration_s);
+            cross<4, track_energy>(course, output, duration_s, duration_s);
         } else {
-            cross<5, track_energy>(course, segment, reach_5 / rate);
+            cross<5, track_energy>(course, output, duration_s, reach_5 / rate);
         }
     }
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sil/plant/elementary.h"
+#include "sil/plant/in_place.h"
 #include "sil/plant/integrator.h"
 #include "sil/plant/require.h"
 
@@ -104,7 +105,7 @@ void Motor::begin_period()
     rate_ = rate < fastest_rate ? rate : fastest_rate; /* also if not a number */
 }
 
-void Motor::advance(const Timetable &timetable)
+FOR_EACH_PROCESSOR void Motor::advance(const Timetable &timetable)
 {
     const integrator::Course course = {coefficients_, state_, integrals_};
     if (track_energy_) {

@@ -53,7 +53,8 @@ template <int order, bool belted> struct Series {
     Phases slope[order];                       /* f */
     Phases turned[order + 1][order + 1];       /* [j][n]: coefficient j + n of psi^j, j > 0 */
 
-    Phases iron_A; /* part of the current, constant */
+    Phases iron_A;           /* part of the current, constant */
+    Phases current_per_flux; /* their changes, at the start of the step */
 
     /* Taylor coefficients in psi: of m, of f, and of the detent torque. */
     Phases magnet_at[order + 1];
@@ -119,18 +120,33 @@ IN_PLACE void turn(Series<order, belted> &x, const RealCoefficients &motor)
     }
 }
 
-/* Coefficient k of the current, the flux's being known. */
+/*
+ * Coefficient k of the current, the flux's being known: what the cube of the flux has of earlier
+ * coefficients apart, because the flux's latest is what the next one waits for.
+ */
 template <bool turning, int k, int order, bool belted>
 IN_PLACE void magnetise(Series<order, belted> &x, const Magnetics &magnetics)
 {
-    x.flux_squared[k] = cauchy_square<k>(x.flux);
-    x.current[k] =
-        x.flux[k] + magnetics.phase_saturation * cauchy_product<k>(x.flux, x.flux_squared);
-    if constexpr (turning || k == 0) {
-        x.current[k] -= magnetics.phase_magnet_A * composed<k>(x.magnet_at, x.turned);
-    }
+    const Phases saturation = magnetics.phase_saturation;
     if constexpr (k == 0) {
-        x.current[0] += x.iron_A;
+        x.flux_squared[0] = x.flux[0] * x.flux[0];
+        x.current_per_flux = 1.0 + 3.0 * saturation * x.flux_squared[0];
+        x.current[0] = x.flux[0] + saturation * (x.flux[0] * x.flux_squared[0]) -
+                       magnetics.phase_magnet_A * x.magnet_at[0] + x.iron_A;
+    } else {
+        x.flux_squared[k] = 2.0 * x.flux[0] * x.flux[k];
+        Phases earlier = {0.0, 0.0};
+        if constexpr (turning) {
+            earlier -= magnetics.phase_magnet_A * composed<k>(x.magnet_at, x.turned);
+        }
+        if constexpr (k > 1) {
+            const Phases squared = cauchy_square<k - 2>(x.flux + 1);
+            const Phases cubed =
+                x.flux[0] * squared + cauchy_product<k - 2>(x.flux + 1, x.flux_squared + 1);
+            x.flux_squared[k] += squared;
+            earlier += saturation * cubed;
+        }
+        x.current[k] = x.current_per_flux * x.flux[k] + earlier;
     }
 }
 
@@ -165,32 +181,35 @@ IN_PLACE void expand(Series<order, belted> &x, const RealCoefficients &motor, co
     if constexpr (floating) {
         x.current[k] *= mode.conducting;
     }
+    /* What is known earlier comes first: the next coefficients wait for the flux and the current.
+     */
     x.slope[k] = x.slope_at[0];
-    Phases acceleration = {0.0, 0.0};
+    Phases opposed = {0.0, 0.0};
+    Phases pull = {0.0, 0.0};
     if constexpr (turning) {
         x.slope[k] = composed<k>(x.slope_at, x.turned);
-        const Phases pull = cauchy_product<k>(x.slope, x.flux);
-        acceleration = motor.torque * sum_in_both_lanes(pull) - composed<k>(x.detent_at, x.turned) -
-                       motor.friction * x.omega[k];
+        pull = cauchy_product<k>(x.slope, x.flux);
+        opposed = composed<k>(x.detent_at, x.turned) + motor.friction * x.omega[k];
     } else {
-        acceleration = motor.torque * sum_in_both_lanes(x.slope_at[0] * x.flux[k]);
+        pull = x.slope_at[0] * x.flux[k];
         if constexpr (k == 0) {
-            acceleration -= x.detent_at[0];
+            opposed = x.detent_at[0];
         }
     }
     if constexpr (belted) {
-        acceleration += pull_of_belt<k>(x, motor);
+        opposed -= pull_of_belt<k>(x, motor);
     }
     Phases voltage_V = mode.share * x.bus[k];
-    Phases bus = -(mode.source_rate + mode.brake_rate) * x.bus[k] -
-                 mode.per_capacitance * sum_in_both_lanes(mode.share * x.current[k]);
+    Phases bus = -(mode.source_rate + mode.brake_rate) * x.bus[k];
     Phases coulomb = {0.0, 0.0};
     if constexpr (k == 0) {
-        acceleration -= motor.load;
+        opposed += motor.load;
         coulomb = in_both_lanes(mode.sliding * motor.coulomb);
         voltage_V += mode.drop_V;
         bus += in_both_lanes(mode.source_rate * motor.supply.source_V);
     }
+    bus -= mode.per_capacitance * sum_in_both_lanes(mode.share * x.current[k]);
+    const Phases acceleration = motor.torque * sum_in_both_lanes(pull) - opposed;
     x.acceleration[k] = acceleration;
     x.omega[k + 1] = turning ? part * (acceleration - coulomb) : Phases{0.0, 0.0};
     x.bus[k + 1] = part * bus;
@@ -269,16 +288,16 @@ struct Terminal {
 
 /* Of a phase, with a leg in dead time or not: see integrator::Terminal. */
 template <int order, bool belted>
-IN_PLACE Terminal terminal(int phase, const Segment &segment, const Series<order, belted> &x,
+IN_PLACE Terminal terminal(int phase, const BridgeOutput &output, const Series<order, belted> &x,
                            const RealCoefficients &motor, const RealMotorState &state)
 {
-    const double legs = segment.diode_V[phase];
+    const double legs = output.diode_V[phase];
     if (legs == 0.0) {
-        return {segment.if_positive_V[phase], 0.0, 1.0, 0.0};
+        return {output.if_positive_V[phase], 0.0, 1.0, 0.0};
     }
     const double drop_V = legs * motor.diode_drop;
-    const double positive = segment.if_positive_V[phase] + legs;
-    const double negative = segment.if_negative_V[phase] - legs;
+    const double positive = output.bus_if_positive_V()[phase];
+    const double negative = output.bus_if_negative_V()[phase];
     double sign = x.current[0][phase];
     if (state.blocked[phase] || magnitude(sign) < no_current_A) {
         const double emf_V = open_circuit_V(x, motor.magnetics, phase);
@@ -293,6 +312,34 @@ IN_PLACE Terminal terminal(int phase, const Segment &segment, const Series<order
         return {negative, drop_V, 1.0, -1.0};
     }
     return {0.0, 0.0, 0.0, 0.0};
+}
+
+/* What the bridge offers both phases with a leg in dead time: mostly their currents say it. */
+template <int order, bool belted>
+IN_PLACE void set_terminals(Mode &mode, const Series<order, belted> &x, const BridgeOutput &output,
+                            const RealCoefficients &motor, const RealMotorState &state)
+{
+    const Phases none = {0.0, 0.0};
+    const auto carried = output.diode_V != none;
+    const auto small = (x.current[0] < in_both_lanes(no_current_A)) &
+                       (x.current[0] > in_both_lanes(-no_current_A)) & carried;
+    if (!state.blocked[0] && !state.blocked[1] && (small[0] | small[1]) == 0) {
+        const auto positive = x.current[0] > none;
+        const Phases drop_V = output.diode_V * in_both_lanes(motor.diode_drop);
+        mode.share = positive ? output.bus_if_positive_V() : output.bus_if_negative_V();
+        mode.drop_V = positive ? -drop_V : drop_V;
+        mode.conducting = Phases{1.0, 1.0};
+        mode.direction = carried ? (positive ? Phases{1.0, 1.0} : Phases{-1.0, -1.0}) : none;
+        mode.floating = false;
+        return;
+    }
+    const Terminal a = terminal(0, output, x, motor, state);
+    const Terminal b = terminal(1, output, x, motor, state);
+    mode.share = Phases{a.share, b.share};
+    mode.drop_V = Phases{a.drop_V, b.drop_V};
+    mode.conducting = Phases{a.conducting, b.conducting};
+    mode.direction = Phases{a.direction, b.direction};
+    mode.floating = a.conducting * b.conducting == 0.0;
 }
 
 /* At rest the rotor sticks as long as friction can hold it. */
@@ -356,20 +403,14 @@ inline void break_open(Mode &mode, const RealMotorState &state)
 
 /* Every member by itself: clearing the structure first takes a sixth of a step's time. */
 template <int order, bool belted>
-IN_PLACE Mode mode_of(const Series<order, belted> &x, const Segment &segment,
+IN_PLACE Mode mode_of(const Series<order, belted> &x, const BridgeOutput &output,
                       const RealCoefficients &motor, const RealMotorState &state)
 {
     Mode mode;
-    if (segment.dead_time) {
-        const Terminal a = terminal(0, segment, x, motor, state);
-        const Terminal b = terminal(1, segment, x, motor, state);
-        mode.share = Phases{a.share, b.share};
-        mode.drop_V = Phases{a.drop_V, b.drop_V};
-        mode.conducting = Phases{a.conducting, b.conducting};
-        mode.direction = Phases{a.direction, b.direction};
-        mode.floating = a.conducting * b.conducting == 0.0;
+    if (output.dead_time) {
+        set_terminals(mode, x, output, motor, state);
     } else {
-        mode.share = segment.if_positive_V;
+        mode.share = output.if_positive_V;
         mode.drop_V = Phases{0.0, 0.0};
         mode.conducting = Phases{1.0, 1.0};
         mode.direction = Phases{0.0, 0.0};
@@ -401,7 +442,7 @@ void add_energies_of_belt(const Course &course, const Series<order, belted> &x, 
 
 template <int order, bool belted>
 [[gnu::noinline]] void add_energies(const Course &course, const Series<order, belted> &x,
-                                    const Segment &segment, const Mode &mode, double h)
+                                    const BridgeOutput &output, const Mode &mode, double h)
 {
     const RealCoefficients &motor = course.motor;
     const Supply &supply = motor.supply;
@@ -411,8 +452,8 @@ template <int order, bool belted>
     const Phases charge = integral<order>(x.current, span_s);
     const Phases current_squared = integral_of_square<order>(x.current, h);
     const double way = integral<order>(x.omega, span_s)[0];
-    integrals.diode_J += motor.diode_drop * (segment.diode_V[0] * magnitude(charge[0]) +
-                                             segment.diode_V[1] * magnitude(charge[1]));
+    integrals.diode_J += motor.diode_drop * (output.diode_V[0] * magnitude(charge[0]) +
+                                             output.diode_V[1] * magnitude(charge[1]));
     integrals.copper_J += dot(motor.resistance, current_squared);
     integrals.friction_J += motor.friction[0] * inertia * integral_of_square<order>(x.omega, h)[0];
     integrals.load_J += motor.load[0] * inertia * way;
@@ -455,9 +496,9 @@ template <bool track_energy> IN_PLACE void relax(const Course &course, double h)
  * Share of the bus voltage between the legs of a phase that carries no current: a leg in dead time
  * is taken to stand at half the bus, between its diodes.
  */
-inline double between_legs(const Segment &segment, int phase)
+inline double between_legs(const BridgeOutput &output, int phase)
 {
-    return 0.5 * (segment.if_positive_V[phase] + segment.if_negative_V[phase]);
+    return 0.5 * (output.if_positive_V[phase] + output.if_negative_V[phase]);
 }
 
 /* Back-EMF of the phases at t = h as if open, L0 dx/dt. */
@@ -476,14 +517,14 @@ Phases induced_V(const Series<order, belted> &x, const Magnetics &magnetics, dou
 /* Voltage at the bridge of the phases at t = h, where the bus has bus_V. */
 template <int order, bool belted>
 IN_PLACE Phases terminal_V(const Course &course, const Series<order, belted> &x,
-                           const Segment &segment, const Mode &mode, double h, Phases bus_V)
+                           const BridgeOutput &output, const Mode &mode, double h, Phases bus_V)
 {
     Phases voltage_V = mode.share * bus_V + mode.drop_V;
     if (mode.floating) {
         voltage_V += (1.0 - mode.conducting) * induced_V(x, course.motor.magnetics, h);
         for (int phase = 0; phase < 2; phase++) {
             if (course.state.open[phase]) {
-                voltage_V[phase] = between_legs(segment, phase) * bus_V[phase];
+                voltage_V[phase] = between_legs(output, phase) * bus_V[phase];
             }
         }
     }
@@ -492,11 +533,11 @@ IN_PLACE Phases terminal_V(const Course &course, const Series<order, belted> &x,
 
 /* Behind the filter at t = h, of a voltage that is taken as a straight line within the step. */
 template <int order, bool belted>
-IN_PLACE void filter(const Course &course, const Series<order, belted> &x, const Segment &segment,
-                     const Mode &mode, double h, Phases bus_V)
+IN_PLACE void filter(const Course &course, const Series<order, belted> &x,
+                     const BridgeOutput &output, const Mode &mode, double h, Phases bus_V)
 {
-    const Phases first_V = terminal_V(course, x, segment, mode, 0.0, x.bus[0]);
-    const Phases last_V = terminal_V(course, x, segment, mode, h, bus_V);
+    const Phases first_V = terminal_V(course, x, output, mode, 0.0, x.bus[0]);
+    const Phases last_V = terminal_V(course, x, output, mode, h, bus_V);
     const Decay::Span &span = course.filter.over(h);
     const Phases lag_V = span.constants * (last_V - first_V);
     Phases &filtered_V = course.state.filtered_V;
@@ -505,8 +546,8 @@ IN_PLACE void filter(const Course &course, const Series<order, belted> &x, const
 
 /* The state at the end of the step. */
 template <bool track_energy, bool turning, int order, bool belted>
-IN_PLACE void accept(const Course &course, const Series<order, belted> &x, const Segment &segment,
-                     const Mode &mode, double h)
+IN_PLACE void accept(const Course &course, const Series<order, belted> &x,
+                     const BridgeOutput &output, const Mode &mode, double h)
 {
     RealMotorState &state = course.state;
     const Phases span_s = in_both_lanes(h);
@@ -514,18 +555,21 @@ IN_PLACE void accept(const Course &course, const Series<order, belted> &x, const
     course.integrals.voltage_Vs +=
         mode.share * integral<order>(x.bus, span_s) + mode.drop_V * span_s;
     if (course.motor.filter_rate > 0.0) {
-        filter(course, x, segment, mode, h, bus_V);
+        filter(course, x, output, mode, h, bus_V);
     }
     if constexpr (track_energy) {
-        add_energies(course, x, segment, mode, h);
+        add_energies(course, x, output, mode, h);
     }
     state.flux = value<order>(x.flux, span_s);
     if constexpr (turning) {
-        const double turned_rad =
-            course.motor.magnetics.teeth * integral<order>(x.omega, span_s)[0];
+        /* By the speed that was known, and by its change. */
+        const double teeth = course.motor.magnetics.teeth;
+        const double at_speed_rad = teeth * (x.omega[0][0] * h);
+        const double more_rad = teeth * integral_of_change<order>(x.omega, span_s)[0];
         state.omega_rad_s = value<order>(x.omega, span_s)[0];
-        state.electrical_rad += turned_rad;
-        state.axis = turned_by_little<order>(state.axis, turned_rad);
+        state.electrical_rad += at_speed_rad + more_rad;
+        state.axis =
+            turned_by_little<2>(turned_by_little<order>(state.axis, at_speed_rad), more_rad);
     }
     state.bus_V = bus_V[0];
     if constexpr (belted) {
@@ -549,7 +593,7 @@ template <int order> struct Margin {
 
 template <int order, bool belted>
 Margin<order> margin_of_phase(int phase, const Series<order, belted> &x,
-                              const RealCoefficients &motor, const Segment &segment,
+                              const RealCoefficients &motor, const BridgeOutput &output,
                               const Mode &mode, double h)
 {
     Margin<order> margin = {};
@@ -563,11 +607,11 @@ Margin<order> margin_of_phase(int phase, const Series<order, belted> &x,
     for (int k = 0; k < order; k++) {
         emf[k] = motor.magnetics.phase_inductance[phase] * (k + 1) * x.flux[k + 1][phase];
     }
-    const double drops = segment.diode_V[phase];
+    const double drops = output.diode_V[phase];
     const bool negative = value<order - 1>(emf, h) < 0.0;
     const double sign = negative ? 1.0 : -1.0;
     const double share =
-        negative ? -(segment.if_positive_V[phase] + drops) : segment.if_negative_V[phase] - drops;
+        negative ? -(output.if_positive_V[phase] + drops) : output.if_negative_V[phase] - drops;
     for (int k = 0; k < order; k++) {
         margin.coefficient[k] = sign * emf[k] + share * x.bus[k][0];
     }
@@ -650,17 +694,18 @@ template <int order> void consider(Event &first, End end, const Margin<order> &m
 
 template <int order, bool belted>
 Event first_event(const Series<order, belted> &x, const RealCoefficients &motor,
-                  const RealMotorState &state, const Segment &segment, const Mode &mode, double h)
+                  const RealMotorState &state, const BridgeOutput &output, const Mode &mode,
+                  double h)
 {
     Event first = {h};
     const Phases span_s = in_both_lanes(h);
     const Phases along = mode.direction * value<order>(x.current, span_s);
     for (int phase = 0; phase < 2; phase++) {
         const bool goes_on = mode.conducting[phase] != 0.0 && !(along[phase] < 0.0);
-        if (segment.diode_V[phase] != 0.0 && !state.open[phase] && !goes_on) {
+        if (output.diode_V[phase] != 0.0 && !state.open[phase] && !goes_on) {
             const End current = phase == 0 ? End::of_current_a : End::of_current_b;
             consider(first, mode.conducting[phase] != 0.0 ? current : End::of_floating,
-                     margin_of_phase(phase, x, motor, segment, mode, h), h);
+                     margin_of_phase(phase, x, motor, output, mode, h), h);
         }
     }
     if (motor.coulomb > 0.0) {
@@ -689,7 +734,16 @@ inline void hold_open(RealMotorState &state, const Magnetics &magnetics, int pha
     state.blocked[phase] = true;
 }
 
-/* Whether a mode ends within a step, which is the exception. */
+/* What the last term of the current is less than: five times what the reach of each order allows.
+ */
+template <int order, bool belted>
+IN_PLACE Phases last_term_A(const Series<order, belted> &x, const RealCoefficients &motor)
+{
+    const Phases flux = x.flux[0] < 0.0 ? -x.flux[0] : x.flux[0];
+    return 1e-4 * (motor.magnetics.phase_magnet_A + flux);
+}
+
+/* Whether a mode may end within a step, which is the exception. */
 template <bool turning, bool dead_time, int order, bool belted>
 IN_PLACE bool mode_ends(const Series<order, belted> &x, const RealCoefficients &motor,
                         const RealMotorState &state, const Mode &mode, double h)
@@ -701,8 +755,9 @@ IN_PLACE bool mode_ends(const Series<order, belted> &x, const RealCoefficients &
         return true;
     }
     if constexpr (dead_time) {
-        const Phases along = mode.direction * value<order>(x.current, span_s);
-        if (along[0] < 0.0 || along[1] < 0.0) {
+        const Phases along = mode.direction * value<order - 1>(x.current, span_s);
+        const auto doubtful = along < mode.direction * mode.direction * last_term_A(x, motor);
+        if ((doubtful[0] | doubtful[1]) != 0) {
             return true;
         }
     }
@@ -735,7 +790,7 @@ IN_PLACE void expand_all(Series<order, belted> &x, const RealCoefficients &motor
 
 /* As far as the first event; what ends there. */
 template <bool turning, bool track_energy, int order, bool belted>
-Event accept_to_event(const Course &course, Series<order, belted> &x, const Segment &segment,
+Event accept_to_event(const Course &course, Series<order, belted> &x, const BridgeOutput &output,
                       const Mode &mode, double h)
 {
     if (mode.floating) {
@@ -743,8 +798,8 @@ Event accept_to_event(const Course &course, Series<order, belted> &x, const Segm
     } else {
         expand_all<false, turning, true>(x, course.motor, mode);
     }
-    const Event event = first_event(x, course.motor, course.state, segment, mode, h);
-    accept<track_energy, turning>(course, x, segment, mode, event.time_s);
+    const Event event = first_event(x, course.motor, course.state, output, mode, h);
+    accept<track_energy, turning>(course, x, output, mode, event.time_s);
     return event;
 }
 
@@ -753,22 +808,22 @@ Event accept_to_event(const Course &course, Series<order, belted> &x, const Segm
  * that the series of all other steps stay in registers.
  */
 template <int order, bool belted, bool track_energy>
-[[gnu::noinline]] double step_to_event(const Course &course, const Segment &segment, double h)
+[[gnu::noinline]] double step_to_event(const Course &course, const BridgeOutput &output, double h)
 {
     const Magnetics &magnetics = course.motor.magnetics;
     RealMotorState &state = course.state;
     Series<order, belted> x;
     start(x, course.motor, state);
-    const Mode mode = mode_of(x, segment, course.motor, state);
+    const Mode mode = mode_of(x, output, course.motor, state);
     const Phases before = state.flux;
     const Event event = mode.stuck
-                            ? accept_to_event<false, track_energy>(course, x, segment, mode, h)
-                            : accept_to_event<true, track_energy>(course, x, segment, mode, h);
+                            ? accept_to_event<false, track_energy>(course, x, output, mode, h)
+                            : accept_to_event<true, track_energy>(course, x, output, mode, h);
     Phases floating_Vs =
         (1.0 - mode.conducting) * magnetics.phase_inductance * (state.flux - before);
     for (int phase = 0; phase < 2; phase++) {
         if (state.open[phase]) {
-            floating_Vs[phase] = between_legs(segment, phase) *
+            floating_Vs[phase] = between_legs(output, phase) *
                                  integral<order>(x.bus, in_both_lanes(event.time_s))[0];
         }
     }
@@ -793,62 +848,71 @@ template <int order, bool belted, bool track_energy>
 
 /* A step in which no phase floats; returns the time that passed. */
 template <bool turning, bool dead_time, bool track_energy, int order, bool belted>
-IN_PLACE double step_through(const Course &course, Series<order, belted> &x, const Segment &segment,
-                             const Mode &mode, double h)
+IN_PLACE double step_through(const Course &course, Series<order, belted> &x,
+                             const BridgeOutput &output, const Mode &mode, double h)
 {
-    expand_all<false, turning, track_energy || dead_time>(x, course.motor, mode);
+    expand_all<false, turning, track_energy>(x, course.motor, mode);
     if (mode_ends<turning, dead_time>(x, course.motor, course.state, mode, h)) {
-        return step_to_event<order, belted, track_energy>(course, segment, h);
+        return step_to_event<order, belted, track_energy>(course, output, h);
     }
-    accept<track_energy, turning>(course, x, segment, mode, h);
+    accept<track_energy, turning>(course, x, output, mode, h);
     return h;
 }
 
 /* Advances by h or to the first event before; returns the time that passed. */
 template <int order, bool belted, bool track_energy, bool dead_time>
-IN_PLACE double step(const Course &course, const Segment &segment, double h)
+IN_PLACE double step(const Course &course, const BridgeOutput &output, double h)
 {
     Series<order, belted> x;
     start(x, course.motor, course.state);
-    const Mode mode = mode_of(x, segment, course.motor, course.state);
+    const Mode mode = mode_of(x, output, course.motor, course.state);
     if (mode.floating) {
-        return step_to_event<order, belted, track_energy>(course, segment, h);
+        return step_to_event<order, belted, track_energy>(course, output, h);
     }
-    return mode.stuck ? step_through<false, dead_time, track_energy>(course, x, segment, mode, h)
-                      : step_through<true, dead_time, track_energy>(course, x, segment, mode, h);
+    return mode.stuck ? step_through<false, dead_time, track_energy>(course, x, output, mode, h)
+                      : step_through<true, dead_time, track_energy>(course, x, output, mode, h);
 }
 
-/* To the end of a stretch of constant switches, in steps of at most longest_s. */
+/* Through a stretch of constant switches, in steps of step_s as long as no mode ends. */
 template <int order, bool belted, bool track_energy>
-IN_PLACE void cross(const Course &course, const Segment &segment, double longest_s)
+IN_PLACE void cross(const Course &course, const BridgeOutput &output, double duration_s,
+                    double step_s)
 {
-    double left_s = segment.duration_s;
+    double left_s = duration_s;
     while (left_s > 0.0) {
-        const double h = left_s < longest_s ? left_s : longest_s;
-        left_s -= segment.dead_time ? step<order, belted, track_energy, true>(course, segment, h)
-                                    : step<order, belted, track_energy, false>(course, segment, h);
+        const double h = left_s < 1.000001 * step_s ? left_s : step_s;
+        left_s -= output.dead_time ? step<order, belted, track_energy, true>(course, output, h)
+                                   : step<order, belted, track_energy, false>(course, output, h);
     }
+}
+
+/* Of the fewest equal parts of a duration that are at most longest_s. */
+IN_PLACE double equal_part(double duration_s, double longest_s)
+{
+    const double parts = duration_s / longest_s;
+    const double whole = static_cast<double>(static_cast<int>(parts));
+    return duration_s / (whole < parts ? whole + 1.0 : whole);
 }
 
 /* Through a timetable; rate: how fast the solution can change, 1/s. */
 template <bool belted, bool track_energy>
-void follow(const Course &course, const Timetable &timetable, double rate)
+IN_PLACE void follow(const Course &course, const Timetable &timetable, double rate)
 {
     const Supply &supply = course.motor.supply;
     for (const Segment &segment : timetable) {
-        const bool draws =
-            segment.dead_time || segment.if_positive_V[0] != 0.0 || segment.if_positive_V[1] != 0.0;
-        const double bus_rate = supply.brake_rate + (draws ? supply.source_rate : 0.0);
+        const BridgeOutput &output = *segment.output;
         const double duration_s = segment.duration_s;
+        const double bus_rate = supply.brake_rate + (output.draws ? supply.source_rate : 0.0);
         if (rate * duration_s < reach_2.motor && bus_rate * duration_s < reach_2.bus) {
-            cross<2, belted, track_energy>(course, segment, duration_s);
+            cross<2, belted, track_energy>(course, output, duration_s, duration_s);
         } else if (rate * duration_s < reach_3.motor && bus_rate * duration_s < reach_3.bus) {
-            cross<3, belted, track_energy>(course, segment, duration_s);
+            cross<3, belted, track_energy>(course, output, duration_s, duration_s);
         } else {
             const double by_motor_s = reach_4.motor / rate;
             const double by_bus_s = reach_4.bus / bus_rate; /* infinite on a stiff bus */
-            cross<4, belted, track_energy>(course, segment,
-                                           by_motor_s < by_bus_s ? by_motor_s : by_bus_s);
+            const double longest_s = by_motor_s < by_bus_s ? by_motor_s : by_bus_s;
+            cross<4, belted, track_energy>(course, output, duration_s,
+                                           equal_part(duration_s, longest_s));
         }
     }
 }

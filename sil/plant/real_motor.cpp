@@ -234,7 +234,7 @@ void RealMotor::begin_period()
     rate_ = rate < fastest_rate ? rate : fastest_rate; /* also if not a number */
 }
 
-void RealMotor::advance(const Timetable &timetable)
+FOR_EACH_PROCESSOR void RealMotor::follow(const Timetable &timetable)
 {
     namespace with = real_integrator;
     const with::Course course = {coefficients_, state_, integrals_, filter_, source_};
@@ -245,6 +245,11 @@ void RealMotor::advance(const Timetable &timetable)
         track_energy_ ? with::follow<false, true>(course, timetable, rate_)
                       : with::follow<false, false>(course, timetable, rate_);
     }
+}
+
+void RealMotor::advance(const Timetable &timetable)
+{
+    follow(timetable);
     if (coefficients_.iron.present) {
         remagnetise();
     }

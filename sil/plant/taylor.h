@@ -72,6 +72,18 @@ template <int order, typename X, typename Time> IN_PLACE X integral(const X *x, 
     return integrals_from<order, 1>(x[0] * h, x, h, h * h);
 }
 
+/* The integral of x - x[0] over 0...h. */
+template <int order, typename X, typename Time> IN_PLACE X integral_of_change(const X *x, Time h)
+{
+    const Time power = h * h;
+    const X total = x[1] * (power * 0.5);
+    if constexpr (order > 1) {
+        return integrals_from<order, 2>(total, x, h, power * h);
+    } else {
+        return total;
+    }
+}
+
 /* The integral of its square over 0...h, to the order of the series. */
 template <int order, int k = 0, typename X> inline X integral_of_square(const X *x, double h)
 {

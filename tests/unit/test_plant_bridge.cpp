@@ -43,7 +43,7 @@ double voltage_at(const plant::Timetable &timetable, int count)
     for (const plant::Segment &segment : timetable) {
         end_s += segment.duration_s;
         if ((count + 0.5) * count_s < end_s) {
-            return segment.if_positive_V[0];
+            return segment.output->if_positive_V[0];
         }
     }
     return -1e9;
@@ -81,7 +81,7 @@ void test_a_pulse_shorter_than_the_dead_time_never_appears()
     const int half_pulse = dead_counts / 2 - 5;
     const plant::Timetable &timetable = bridge.period(high_counts(half_pulse, 0, 0, 0));
     for (const plant::Segment &segment : timetable) {
-        TEST_ASSERT_TRUE(segment.if_positive_V[0] <= 0.0);
+        TEST_ASSERT_TRUE(segment.output->if_positive_V[0] <= 0.0);
     }
     TEST_ASSERT_TRUE(voltage_at(timetable, 8500 - half_pulse) == -1.0);
     TEST_ASSERT_TRUE(voltage_at(timetable, 8500 + half_pulse + dead_counts - 1) == -1.0);

@@ -145,7 +145,8 @@ plant::MotorState after_one_millisecond(int parts)
     plant::Timetable timetable;
     timetable.count = 1;
     const plant::Phases voltage_V = {12.0, -7.0};
-    timetable.segments[0] = {1e-3 / parts, voltage_V, voltage_V, plant::Phases(), false};
+    const plant::BridgeOutput output = {voltage_V, voltage_V, plant::Phases(), false, true};
+    timetable.segments[0] = {1e-3 / parts, &output};
     for (int part = 0; part < parts; part++) {
         motor.begin_period();
         motor.advance(timetable);
