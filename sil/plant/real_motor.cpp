@@ -234,22 +234,25 @@ void RealMotor::begin_period()
     rate_ = rate < fastest_rate ? rate : fastest_rate; /* also if not a number */
 }
 
-FOR_EACH_PROCESSOR void RealMotor::follow(const Timetable &timetable)
+/* What most runs are, and all that is worth compiling twice. */
+FOR_EACH_PROCESSOR void RealMotor::follow_rigid(const Timetable &timetable)
+{
+    const real_integrator::Course course = {coefficients_, state_, integrals_, filter_, source_};
+    real_integrator::follow<false, false>(course, timetable, rate_);
+}
+
+void RealMotor::advance(const Timetable &timetable)
 {
     namespace with = real_integrator;
     const with::Course course = {coefficients_, state_, integrals_, filter_, source_};
     if (coefficients_.belted) {
         track_energy_ ? with::follow<true, true>(course, timetable, rate_)
                       : with::follow<true, false>(course, timetable, rate_);
+    } else if (track_energy_) {
+        with::follow<false, true>(course, timetable, rate_);
     } else {
-        track_energy_ ? with::follow<false, true>(course, timetable, rate_)
-                      : with::follow<false, false>(course, timetable, rate_);
+        follow_rigid(timetable);
     }
-}
-
-void RealMotor::advance(const Timetable &timetable)
-{
-    follow(timetable);
     if (coefficients_.iron.present) {
         remagnetise();
     }

@@ -126,7 +126,7 @@ class RealMotor
     double spring_J() const;
 
   private:
-    void follow(const Timetable &timetable);
+    void follow_rigid(const Timetable &timetable);
     double rotor_J() const;
     void remagnetise();
 

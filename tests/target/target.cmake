@@ -74,6 +74,9 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
       set(timeout_s 600) # closed loops: minutes under QEMU
     elseif(name MATCHES "^(axis_motion|initial_position|thermal_watch)$" AND numeric STREQUAL float)
       list(APPEND labels full) # ten seconds each; in fixed point they run
+    elseif(name STREQUAL invariant_ekf
+           OR (STEADYSTEP_CORE STREQUAL m0plus AND name MATCHES "^(drive|torque_mode)$"))
+      list(APPEND labels full) # ten to thirty seconds; the replays run the same code
     endif()
     set_tests_properties(target.unit.${name}.${numeric}
       PROPERTIES LABELS "${labels}" TIMEOUT ${timeout_s})

@@ -31,3 +31,13 @@ function(module_sources variable)
   endforeach()
   set(${variable} ${all} PARENT_SCOPE)
 endfunction()
+
+# precompile_headers(<target> <header>...): what most of its C++ sources include, and these, is read
+# once: a third less time to compile. A source still includes what it uses: a cache of compilations
+# does without, and with it each build behind a compiler launcher.
+function(precompile_headers target)
+  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem>
+      <functional> <map> <memory> <optional> <stdexcept> <string> <vector> ${ARGN})
+  endif()
+endfunction()
