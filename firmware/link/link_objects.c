@@ -3,6 +3,7 @@
 #include "firmware/application/setting_change.h"
 #include "firmware/link/axis_motion.h"
 #include "firmware/link/axis_torque.h"
+#include "firmware/link/data_sheet.h"
 #include "firmware/link/link.h"
 
 enum { CURRENT_LIMIT = 0x2120 }; /* its setting */
@@ -38,6 +39,12 @@ enum object_abort link_ask(struct application *application, const struct object 
     case 0x1010:
     case 0x1011:
         can_put(value, 1, 4); /* on command */
+        break;
+    case OBJECT_DATA_SHEET:
+        *text = data_sheet;
+        break;
+    case 0x1022: /* how it is stored: as text */
+        value[0] = 0;
         break;
     case 0x2400:
         can_put(value, capture_shown(&application->link->capture, object->sub),

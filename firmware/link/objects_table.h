@@ -60,6 +60,8 @@
     STORED(0x1018, 2, U32, RO, product, 1, "Product code")                                         \
     STORED(0x1018, 3, U32, RO, revision, 0x00000002, "Revision number")                            \
     STORED(0x1018, 4, U32, RO, serial, 0, "Serial number")                                         \
+    ASKED(0x1021, 0, DOMAIN, RO, 0, "Store EDS")                                                   \
+    ASKED(0x1022, 0, U8, RO, 0, "Store format")                                                    \
     STORED(0x1200, 1, U32, RO_NODE, sdo_request, 0x600, "COB-ID client to server")                 \
     STORED(0x1200, 2, U32, RO_NODE, sdo_response, 0x580, "COB-ID server to client")                \
     ASKED(0x1400, 0, U8, RO, 2, "Highest sub-index supported")                                     \

@@ -1,6 +1,7 @@
 #include "firmware/link/sdo.h"
 
 #include "firmware/application/application.h"
+#include "firmware/link/data_sheet.h"
 #include "firmware/link/link.h"
 #include "firmware/link/sdo_block.h"
 
@@ -63,7 +64,9 @@ uint32_t sdo_open(struct application *application, const struct can_frame *reque
     sdo->length =
         (uint32_t)(sdo->text == NULL ? object_bytes(&sdo->object) : text_length(sdo->text));
     if (abort == OBJECT_DONE && sdo->object.type == OBJECT_DOMAIN) {
-        sdo->length = capture_bytes(&application->link->capture);
+        sdo->length = sdo->object.index == OBJECT_DATA_SHEET
+                          ? data_sheet_bytes
+                          : capture_bytes(&application->link->capture);
         return sdo->length > 0u ? OBJECT_DONE : OBJECT_NO_DATA;
     }
     return abort;
@@ -74,7 +77,7 @@ void sdo_copy(const struct application *application, uint32_t offset, uint8_t *t
     const struct sdo_server *sdo = &application->link->sdo;
     const uint8_t *from = sdo->text == NULL ? sdo->value : (const uint8_t *)sdo->text;
 
-    if (sdo->object.type == OBJECT_DOMAIN) {
+    if (sdo->text == NULL && sdo->object.type == OBJECT_DOMAIN) {
         capture_copy(application, offset, to, count);
     } else {
         memcpy(to, from + offset, count);

@@ -1,4 +1,5 @@
 /* A client's access to objects: one frame or segments, and what it is refused. */
+#include "firmware/link/data_sheet.h"
 #include "tests/unit/link_bench.h"
 
 void setUp(void)
@@ -114,6 +115,24 @@ static void test_a_text_comes_in_segments_of_seven(void)
     asked("6000000000000000", "0373206E616D6500"); /* six, the last */
     asked("7000000000000000", "8008100001000405");
     asked("2308100000000000", "8008100002000106");
+}
+
+/* Which takes a fourth of an image: it may be without, and says so. */
+static void test_the_data_sheet_comes_in_segments_where_there_is_one(void)
+{
+    char begins[32];
+
+    asked("4022100000000000", "4F22100000000000"); /* as text */
+    if (data_sheet_bytes == 0u) {
+        asked("4021100000000000", "8021100024000008");
+        return;
+    }
+    snprintf(begins, sizeof begins, "41211000%02X%02X0000", (unsigned)(data_sheet_bytes & 0xffu),
+             (unsigned)(data_sheet_bytes >> 8 & 0xffu));
+    asked("4021100000000000", begins);
+    asked("6000000000000000", "005B46696C65496E"); /* [FileIn */
+    asked("7000000000000000", "10666F5D0A46696C"); /* fo], File */
+    TEST_ASSERT_EQUAL_STRING_LEN("says how to connect.", strstr(data_sheet, "says"), 20);
 }
 
 /* What a download has begun, an upload does not end, and the other way round. */
@@ -269,6 +288,7 @@ int main(void)
     RUN_TEST(test_what_is_no_request_of_eight_bytes_is_not_answered);
     RUN_TEST(test_a_real_number_that_is_stored_comes_in_two_segments);
     RUN_TEST(test_a_text_comes_in_segments_of_seven);
+    RUN_TEST(test_the_data_sheet_comes_in_segments_where_there_is_one);
     RUN_TEST(test_segments_go_the_way_that_the_transfer_does);
     RUN_TEST(test_numbers_of_every_type_are_put_and_shown);
     RUN_TEST(test_types_are_those_of_the_standard);
