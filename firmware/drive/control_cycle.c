@@ -207,8 +207,8 @@ static void act_at_once(struct drive *drive)
 }
 
 /* The detent torque at the instant of action, learned from what the encoder's observer has left of
-   it: drive_settings_check() grants it to no other. A period that is claimed has no time to learn.
- */
+   it: drive_settings_check() grants it to no other. A period in which a motion begins or ends, or a
+   plan, has no time to learn. */
 IN_PLACE void compensate_detent(struct drive *drive, const struct estimate *estimate,
                                 struct prediction *next)
 {
@@ -216,7 +216,9 @@ IN_PLACE void compensate_detent(struct drive *drive, const struct estimate *esti
 
     detent_compensation_step(&drive->detent, &drive->params.detent, next->rotor.position.fraction,
                              next->frame, next->rotor.speed, estimate->rotor.load_torque,
-                             !state_machine_period_is_claimed(drive));
+                             drive->reference.now.moving == drive->reference.next.moving &&
+                                 !(RARE(state_machine_period_is_claimed(drive)) &&
+                                   reference_has_begun_plan(&drive->reference)));
     encoder_observer_set_known_torque(&drive->estimator.encoder_observer,
                                       &drive->params.estimator.encoder_observer,
                                       drive->detent.torque);

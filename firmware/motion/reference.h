@@ -154,6 +154,12 @@ static inline bool reference_follows(const struct reference *reference)
     return reference->course == REFERENCE_STEADY;
 }
 
+/* It is in the first segment of a plan. */
+static inline bool reference_has_begun_plan(const struct reference *reference)
+{
+    return reference->phase == REFERENCE_PLANNED && reference->segment == 1u;
+}
+
 /* A profile is loaded or runs: another one would be refused. */
 static inline bool reference_busy(const struct reference *reference)
 {
