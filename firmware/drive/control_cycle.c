@@ -206,9 +206,17 @@ static void act_at_once(struct drive *drive)
                       actuation_act(&drive->actuation));
 }
 
+/* But in a claimed period in which a motion begins or ends, or a segment of a plan. */
+IN_PLACE bool has_time_to_learn(const struct drive *drive)
+{
+    const struct reference *reference = &drive->reference;
+
+    return !RARE(state_machine_period_is_claimed(drive)) ||
+           (reference->now.moving == reference->next.moving && !reference_is_planned(reference));
+}
+
 /* The detent torque at the instant of action, learned from what the encoder's observer has left of
-   it: drive_settings_check() grants it to no other. A period in which a motion begins or ends, or a
-   plan, has no time to learn. */
+   it: drive_settings_check() grants it to no other. */
 IN_PLACE void compensate_detent(struct drive *drive, const struct estimate *estimate,
                                 struct prediction *next)
 {
@@ -216,9 +224,7 @@ IN_PLACE void compensate_detent(struct drive *drive, const struct estimate *esti
 
     detent_compensation_step(&drive->detent, &drive->params.detent, next->rotor.position.fraction,
                              next->frame, next->rotor.speed, estimate->rotor.load_torque,
-                             drive->reference.now.moving == drive->reference.next.moving &&
-                                 !(RARE(state_machine_period_is_claimed(drive)) &&
-                                   reference_has_begun_plan(&drive->reference)));
+                             has_time_to_learn(drive));
     encoder_observer_set_known_torque(&drive->estimator.encoder_observer,
                                       &drive->params.estimator.encoder_observer,
                                       drive->detent.torque);

@@ -154,10 +154,10 @@ static inline bool reference_follows(const struct reference *reference)
     return reference->course == REFERENCE_STEADY;
 }
 
-/* It is in the first segment of a plan. */
-static inline bool reference_has_begun_plan(const struct reference *reference)
+/* By a plan, not by a profile. */
+static inline bool reference_is_planned(const struct reference *reference)
 {
-    return reference->phase == REFERENCE_PLANNED && reference->segment == 1u;
+    return reference->phase == REFERENCE_PLANNED;
 }
 
 /* A profile is loaded or runs: another one would be refused. */
