@@ -45,6 +45,7 @@ def the_drive_has_the_sheet_itself(bus):
     with bus.node.sdo[0x1021].open("rb", block_transfer=True) as stream:
         CHECKS.that(stream.read(-1) == pathlib.Path(EDS).read_bytes(), "1021h is the sheet, in blocks")
     CHECKS.that(bus.node.sdo[0x1022].raw == 0, "as text")
+    canopen.sdo.SdoClient.RESPONSE_TIMEOUT = 2  # of a client that it makes itself, on a busy machine
     ours = canopen.objectdictionary.eds.import_from_node(1, bus.network)
     bus.network.subscribe(bus.node.sdo.tx_cobid, bus.node.sdo.on_response)  # which it has ended
     CHECKS.that(ours is not None and set(ours) == set(bus.node.object_dictionary),
