@@ -206,7 +206,7 @@ static void act_at_once(struct drive *drive)
                       actuation_act(&drive->actuation));
 }
 
-/* But in a claimed period in which a motion begins or ends, or a segment of a plan. */
+/* No period has in which a motion begins or ends, or a segment of a plan: all of them claim it. */
 IN_PLACE bool has_time_to_learn(const struct drive *drive)
 {
     const struct reference *reference = &drive->reference;

@@ -10,10 +10,10 @@ __attribute__((section(".flash.data_sheet")))
 #endif
 static const char bytes[] = {
 #include STEADYSTEP_DATA_SHEET
-};
+    '\0'};
 
 const char *const data_sheet = bytes;
-const uint32_t data_sheet_bytes = sizeof bytes;
+const uint32_t data_sheet_bytes = sizeof bytes - 1u;
 
 #else
 

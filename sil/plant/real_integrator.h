@@ -611,7 +611,7 @@ Margin<order> margin_of_phase(int phase, const Series<order, belted> &x,
     const bool negative = value<order - 1>(emf, h) < 0.0;
     const double sign = negative ? 1.0 : -1.0;
     const double share =
-        negative ? -(output.if_positive_V[phase] + drops) : output.if_negative_V[phase] - drops;
+        negative ? -output.bus_if_positive_V()[phase] : output.bus_if_negative_V()[phase];
     for (int k = 0; k < order; k++) {
         margin.coefficient[k] = sign * emf[k] + share * x.bus[k][0];
     }
@@ -879,7 +879,7 @@ IN_PLACE void cross(const Course &course, const BridgeOutput &output, double dur
                     double step_s)
 {
     double left_s = duration_s;
-    while (left_s > 0.0) {
+    while (left_s > 0.0) { /* what rounding leaves is no step of its own */
         const double h = left_s < 1.000001 * step_s ? left_s : step_s;
         left_s -= output.dead_time ? step<order, belted, track_energy, true>(course, output, h)
                                    : step<order, belted, track_energy, false>(course, output, h);

@@ -235,10 +235,10 @@ void RealMotor::begin_period()
 }
 
 /* What most runs are, and all that is worth compiling twice. */
-FOR_EACH_PROCESSOR void RealMotor::follow_rigid(const Timetable &timetable)
+FOR_EACH_PROCESSOR static void follow_rigid(const real_integrator::Course &course,
+                                            const Timetable &timetable, double rate)
 {
-    const real_integrator::Course course = {coefficients_, state_, integrals_, filter_, source_};
-    real_integrator::follow<false, false>(course, timetable, rate_);
+    real_integrator::follow<false, false>(course, timetable, rate);
 }
 
 void RealMotor::advance(const Timetable &timetable)
@@ -251,7 +251,7 @@ void RealMotor::advance(const Timetable &timetable)
     } else if (track_energy_) {
         with::follow<false, true>(course, timetable, rate_);
     } else {
-        follow_rigid(timetable);
+        follow_rigid(course, timetable, rate_);
     }
     if (coefficients_.iron.present) {
         remagnetise();

@@ -126,7 +126,6 @@ class RealMotor
     double spring_J() const;
 
   private:
-    void follow_rigid(const Timetable &timetable);
     double rotor_J() const;
     void remagnetise();
 

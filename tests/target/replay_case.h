@@ -144,9 +144,9 @@ struct replay_case {
     {                                                                                              \
         name, law, DRIVE_FEEDBACK_SENSORLESS, estimator, commands, 0, REPLAY_NO_GAINS              \
     }
-#define REPLAY_ENCODER(name, law)                                                                  \
+#define REPLAY_ENCODER(name, law, commands)                                                        \
     {                                                                                              \
-        name, law, DRIVE_FEEDBACK_ENCODER, DRIVE_ESTIMATOR_INVARIANT_EKF, REPLAY_MOVES, 0,         \
+        name, law, DRIVE_FEEDBACK_ENCODER, DRIVE_ESTIMATOR_INVARIANT_EKF, commands, 0,             \
             REPLAY_NO_GAINS                                                                        \
     }
 
@@ -158,19 +158,17 @@ static const struct replay_case replay_cases[] = {
     REPLAY_SENSORLESS("pid", POSITION_LAW_PID, DRIVE_ESTIMATOR_INVARIANT_EKF, REPLAY_MOVES),
     REPLAY_SENSORLESS("steady-state-ekf", POSITION_LAW_STATE_FEEDBACK,
                       DRIVE_ESTIMATOR_STEADY_STATE_EKF, REPLAY_MOVES),
-    REPLAY_ENCODER("feedback-linearisation", POSITION_LAW_FEEDBACK_LINEARISATION),
-    {"encoder-references", POSITION_LAW_FEEDBACK_LINEARISATION, DRIVE_FEEDBACK_ENCODER,
-     DRIVE_ESTIMATOR_INVARIANT_EKF, REPLAY_REFERENCES, 0, REPLAY_NO_GAINS},
-    {"torque", POSITION_LAW_FEEDBACK_LINEARISATION, DRIVE_FEEDBACK_ENCODER,
-     DRIVE_ESTIMATOR_INVARIANT_EKF, REPLAY_TORQUES, 0, REPLAY_NO_GAINS},
-    REPLAY_ENCODER("microstepping", POSITION_LAW_MICROSTEPPING),
+    REPLAY_ENCODER("feedback-linearisation", POSITION_LAW_FEEDBACK_LINEARISATION, REPLAY_MOVES),
+    REPLAY_ENCODER("encoder-references", POSITION_LAW_FEEDBACK_LINEARISATION, REPLAY_REFERENCES),
+    REPLAY_ENCODER("torque", POSITION_LAW_FEEDBACK_LINEARISATION, REPLAY_TORQUES),
+    REPLAY_ENCODER("microstepping", POSITION_LAW_MICROSTEPPING, REPLAY_MOVES),
     /* What the law accepts with this winding: 4 R/(N L). */
     {"stmms", POSITION_LAW_STMMS, DRIVE_FEEDBACK_ENCODER, DRIVE_ESTIMATOR_INVARIANT_EKF,
      REPLAY_SLOW_MOVES, 32.8, REPLAY_NO_GAINS},
-    REPLAY_ENCODER("stmms-plus", POSITION_LAW_STMMS_PLUS),
-    REPLAY_ENCODER("foc", POSITION_LAW_FOC),
-    REPLAY_ENCODER("csmc", POSITION_LAW_CSMC),
-    REPLAY_ENCODER("csmc-equivalent", POSITION_LAW_CSMC_EQUIVALENT),
+    REPLAY_ENCODER("stmms-plus", POSITION_LAW_STMMS_PLUS, REPLAY_MOVES),
+    REPLAY_ENCODER("foc", POSITION_LAW_FOC, REPLAY_MOVES),
+    REPLAY_ENCODER("csmc", POSITION_LAW_CSMC, REPLAY_MOVES),
+    REPLAY_ENCODER("csmc-equivalent", POSITION_LAW_CSMC_EQUIVALENT, REPLAY_MOVES),
     {"csmc-servo",
      POSITION_LAW_CSMC_SERVO,
      DRIVE_FEEDBACK_ENCODER,
