@@ -8,7 +8,7 @@ import pathlib
 import struct
 import time
 
-from canopen_bus import EDS, Bus, canopen, wait_for
+from canopen_bus import EDS, Bus, as_it_comes, canopen, wait_for
 from served import Checks, Line, Served
 
 CHECKS = Checks()
@@ -118,7 +118,8 @@ def it_is_enabled_in_time(node):
         with contextlib.suppress(RuntimeError):
             node.state = "SWITCH ON DISABLED"
         wait_for(lambda: node.state == "SWITCH ON DISABLED")
-        said.append(enabling_took_too_long(node))
+        with as_it_comes(node):
+            said.append(enabling_took_too_long(node))
     CHECKS.that(not said[-1], f"it is enabled in time: {said}")
 
 
