@@ -13,6 +13,7 @@ struct current_control_params current_control_design(const struct motor_params *
     params.integral = coef_from_double(integral);
     params.unwind = coef_from_double(integral / proportional);
     params.reactance = coef_from_double(per_unit_reactance(base, motor));
+    current_control_params_fit_coefficients(&params);
     return params;
 }
 

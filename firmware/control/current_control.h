@@ -23,6 +23,7 @@
 #include "firmware/motor/motor_params.h"
 #include "firmware/motor/park.h"
 #include "firmware/motor/per_unit.h"
+#include "firmware/numeric/coefficients.h"
 
 struct current_control_params {
     coef_t proportional;
@@ -30,6 +31,13 @@ struct current_control_params {
     coef_t unwind;    /* Ki/Kp */
     coef_t reactance; /* N L: voltage per speed and current */
 };
+
+#define CURRENT_CONTROL_PARAMS_COEFFICIENTS(X)                                                     \
+    X(proportional, current_proportional)                                                          \
+    X(integral, current_integral)                                                                  \
+    X(unwind, current_unwind)                                                                      \
+    X(reactance, current_reactance)
+COEFFICIENTS(current_control_params, CURRENT_CONTROL_PARAMS_COEFFICIENTS)
 
 /* Mechanical speeds: of the frame of the currents, and of the rotor, whose back-EMF it is. */
 struct rotation {
@@ -59,20 +67,21 @@ current_control_step(struct current_control *control, const struct current_contr
                      struct dq reference, struct dq current, struct rotation speed,
                      num_t voltage_limit)
 {
-    const num_t reactance = num_mul_coef(speed.frame, params->reactance);
+    const struct current_control_params *gain = KNOWN(current_control_params, params);
+    const num_t reactance = num_mul_coef(speed.frame, gain->reactance);
     const struct dq error = {reference.d - current.d, reference.q - current.q};
-    const struct dq wanted = {num_mul_coef(error.d, params->proportional) + control->integral.d -
+    const struct dq wanted = {num_mul_coef(error.d, gain->proportional) + control->integral.d -
                                   num_mul(reactance, current.q),
-                              num_mul_coef(error.q, params->proportional) + control->integral.q +
+                              num_mul_coef(error.q, gain->proportional) + control->integral.q +
                                   num_mul(reactance, current.d) + speed.rotor};
     struct dq voltage = wanted;
 
-    control->integral.d += num_mul_coef(error.d, params->integral);
-    control->integral.q += num_mul_coef(error.q, params->integral);
+    control->integral.d += num_mul_coef(error.d, gain->integral);
+    control->integral.q += num_mul_coef(error.q, gain->integral);
     if (RARE(exceeds_voltage(wanted, voltage_limit))) {
         voltage = limit_voltage(wanted, voltage_limit);
-        control->integral.d += num_mul_coef(voltage.d - wanted.d, params->unwind);
-        control->integral.q += num_mul_coef(voltage.q - wanted.q, params->unwind);
+        control->integral.d += num_mul_coef(voltage.d - wanted.d, gain->unwind);
+        control->integral.q += num_mul_coef(voltage.q - wanted.q, gain->unwind);
     }
     return voltage;
 }

@@ -14,7 +14,7 @@ struct error_feedback_params error_feedback_scale(const struct position_law_task
     const struct per_unit *base = task->base;
     const double position = gains->position_A_rad * base->rad_per_turn / base->current_A;
     const double speed = gains->speed_As_rad * base->speed_rad_s / base->current_A;
-    const struct error_feedback_params params = {
+    struct error_feedback_params params = {
         .position = coef_from_double(position),
         .speed = coef_from_double(speed),
         .reference_acceleration = coef_from_double(gains->reference_acceleration_As2_rad *
@@ -25,5 +25,6 @@ struct error_feedback_params error_feedback_scale(const struct position_law_task
         .speed_error_limit = error_limit(speed, 2.0 * task->speed_limit_rad_s / base->speed_rad_s),
         .current_limit = num_from_double(task->current_limit_A / base->current_A),
     };
+    error_feedback_params_fit_coefficients(&params);
     return params;
 }

@@ -8,6 +8,7 @@
 #define STEADYSTEP_ERROR_FEEDBACK_H
 
 #include "firmware/control/position_law.h"
+#include "firmware/numeric/coefficients.h"
 
 struct error_feedback_params {
     coef_t position;
@@ -18,6 +19,13 @@ struct error_feedback_params {
     num_t speed_error_limit;
     num_t current_limit;
 };
+
+#define ERROR_FEEDBACK_PARAMS_COEFFICIENTS(X)                                                      \
+    X(position, feedback_position)                                                                 \
+    X(speed, feedback_speed)                                                                       \
+    X(reference_acceleration, feedback_acceleration)                                               \
+    X(reference_friction, feedback_friction)
+COEFFICIENTS(error_feedback_params, ERROR_FEEDBACK_PARAMS_COEFFICIENTS)
 
 /* SI. */
 struct error_feedback_gains {
@@ -37,14 +45,14 @@ struct error_feedback_params error_feedback_scale(const struct position_law_task
 static inline num_t error_feedback(const struct error_feedback_params *params,
                                    const struct position_law_input *input)
 {
+    const struct error_feedback_params *gain = KNOWN(error_feedback_params, params);
     num_t position_error = num_headroom(input->position_error, params->position_error_limit);
     num_t speed_error =
         num_headroom(input->reference_speed - input->speed, params->speed_error_limit);
 
-    return num_mul_coef(position_error, params->position) +
-           num_mul_coef(speed_error, params->speed) +
-           num_mul_coef(input->reference_acceleration, params->reference_acceleration) +
-           num_mul_coef(input->reference_speed, params->reference_friction);
+    return num_mul_coef(position_error, gain->position) + num_mul_coef(speed_error, gain->speed) +
+           num_mul_coef(input->reference_acceleration, gain->reference_acceleration) +
+           num_mul_coef(input->reference_speed, gain->reference_friction);
 }
 
 #endif

@@ -3,7 +3,7 @@
 struct modulator_params modulator_design(uint32_t half_period_counts, double max)
 {
     const double half = (double)half_period_counts / 2.0;
-    const struct modulator_params params = {
+    struct modulator_params params = {
         .half_period_counts = (int32_t)half_period_counts,
         .middle_counts = (int32_t)half,
         .swing_counts = (int32_t)(half * max),
@@ -11,6 +11,7 @@ struct modulator_params modulator_design(uint32_t half_period_counts, double max
         .counts = coef_from_double(half * NUM_COUNT_SCALE),
         .voltage_per_count = coef_from_double(NUM_CODE_SCALE / half),
     };
+    modulator_params_fit_coefficients(&params);
     return params;
 }
 

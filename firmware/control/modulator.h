@@ -10,6 +10,7 @@
 #define STEADYSTEP_MODULATOR_H
 
 #include "firmware/motor/park.h"
+#include "firmware/numeric/coefficients.h"
 
 struct modulator_params {
     int32_t half_period_counts;
@@ -19,6 +20,11 @@ struct modulator_params {
     coef_t counts;            /* modulation to counts of one leg */
     coef_t voltage_per_count; /* at nominal bus */
 };
+
+#define MODULATOR_PARAMS_COEFFICIENTS(X)                                                           \
+    X(counts, modulator_counts)                                                                    \
+    X(voltage_per_count, modulator_voltage_per_count)
+COEFFICIENTS(modulator_params, MODULATOR_PARAMS_COEFFICIENTS)
 
 struct modulator {
     num_t bus; /* measured, per-unit */
@@ -77,8 +83,8 @@ static inline int32_t modulator_swing(const struct modulator *modulator,
                                       const struct modulator_params *params, num_t voltage)
 {
     const int32_t limit = params->swing_counts;
-    const int32_t swing =
-        counts_from_num(num_mul(voltage, modulator->bus_reciprocal), params->counts);
+    const int32_t swing = counts_from_num(num_mul(voltage, modulator->bus_reciprocal),
+                                          KNOWN(modulator_params, params)->counts);
 
     /* One comparison: what is below -limit wraps to a large number. */
     if (RARE((uint32_t)swing + (uint32_t)limit > 2u * (uint32_t)limit)) {
@@ -98,7 +104,7 @@ static inline struct leg_pair modulator_legs(const struct modulator_params *para
 static inline num_t modulator_voltage(const struct modulator *modulator,
                                       const struct modulator_params *params, int32_t swing)
 {
-    const num_t m = num_from_code(swing, params->voltage_per_count);
+    const num_t m = num_from_code(swing, KNOWN(modulator_params, params)->voltage_per_count);
 
     return num_mul(m, modulator->bus);
 }

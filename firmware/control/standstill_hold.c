@@ -27,6 +27,7 @@ struct standstill_hold_params standstill_hold_design(const struct per_unit *base
     }
     params.error_limit = num_from_double(error_limit_turns);
     params.speed_limit = num_from_double(ramp_travel_turns / ramp_periods / base->turns_per_period);
+    standstill_hold_params_fit_coefficients(&params);
     return params;
 }
 
@@ -94,7 +95,8 @@ void standstill_hold_consider(struct standstill_hold *hold,
 num_t standstill_hold_torque_current(const struct standstill_hold_params *params, num_t speed,
                                      num_t load_torque)
 {
-    num_t current = load_torque - num_mul_coef(speed, params->damping);
+    const struct standstill_hold_params *gain = KNOWN(standstill_hold_params, params);
+    num_t current = load_torque - num_mul_coef(speed, gain->damping);
 
     return num_limit(current, params->current_limit);
 }

@@ -16,6 +16,7 @@
 #include "firmware/motor/motor_params.h"
 #include "firmware/motor/park.h"
 #include "firmware/motor/per_unit.h"
+#include "firmware/numeric/coefficients.h"
 
 struct standstill_hold_params {
     num_t current;        /* i_d* when ramped in */
@@ -29,6 +30,9 @@ struct standstill_hold_params {
     num_t speed_limit;
     bool enters_at_rest; /* false: it holds only while the drive is being enabled */
 };
+
+#define STANDSTILL_HOLD_PARAMS_COEFFICIENTS(X) X(damping, hold_damping)
+COEFFICIENTS(standstill_hold_params, STANDSTILL_HOLD_PARAMS_COEFFICIENTS)
 
 struct standstill_hold {
     bool active;

@@ -5,6 +5,7 @@
 #include "firmware/design/mechanical_control_design.h"
 #include "firmware/design/text.h"
 #include "firmware/drive/board_limits.h"
+#include "firmware/drive/coefficients.h"
 #include "firmware/drive/default_settings.h"
 #include "firmware/drive/estimator_design.h"
 #include "firmware/drive/interrupt_view.h"
@@ -361,7 +362,8 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
     synchronism_design(drive, settings);
     if (!design_law(drive, &drive->settings, period_s, error) ||
         !design_hold(drive, settings, period_s, error) ||
-        !design_detection(drive, &drive->settings, period_s, error)) {
+        !design_detection(drive, &drive->settings, period_s, error) ||
+        !coefficients_fit(drive, error)) {
         return false;
     }
     torque_constant_put(drive, num_from_double(settings->initial_torque_constant_change));

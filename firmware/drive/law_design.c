@@ -1,5 +1,7 @@
 #include "firmware/drive/law_design.h"
 
+#include "firmware/drive/coefficients.h"
+
 /* Gains given by name are the user's own: only their range is checked. */
 static bool check_law_gains(const struct drive_settings *settings, char error[DRIVE_ERROR_TEXT])
 {
@@ -44,5 +46,6 @@ bool law_design(const struct drive *drive, const struct drive_settings *settings
     };
 
     return check_law_gains(settings, error) &&
-           position_law_design(settings->law, law, &task, error);
+           position_law_design(settings->law, law, &task, error) &&
+           coefficients_of_law_fit(settings->law, law, error);
 }

@@ -10,6 +10,7 @@ struct measurement_params measurement_design(const struct hal_facts *facts,
         coef_from_double(facts->phase_voltage_V_per_code / base->voltage_V * NUM_CODE_SCALE);
     params.bus_voltage = coef_from_double(facts->bus_V_per_code / base->voltage_V * NUM_CODE_SCALE);
     params.current_zero_code = facts->current_zero_code;
+    measurement_params_fit_coefficients(&params);
     return params;
 }
 

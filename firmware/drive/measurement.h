@@ -4,6 +4,7 @@
 
 #include "firmware/motor/park.h"
 #include "firmware/motor/per_unit.h"
+#include "firmware/numeric/coefficients.h"
 #include "hal/hal.h"
 
 struct measurement_params {
@@ -13,11 +14,20 @@ struct measurement_params {
     int32_t current_zero_code;
 };
 
+#define MEASUREMENT_PARAMS_COEFFICIENTS(X)                                                         \
+    X(current, measured_current)                                                                   \
+    X(phase_voltage, measured_phase_voltage)                                                       \
+    X(bus_voltage, measured_bus_voltage)
+COEFFICIENTS(measurement_params, MEASUREMENT_PARAMS_COEFFICIENTS)
+
 struct measurement {
     struct channels offset; /* of the four channels that are zeroed: offset_calibration.h */
     coef_t current_a;       /* per code; as the board has them, until the phases are balanced */
     coef_t current_b;
 };
+
+#define MEASUREMENT_COEFFICIENTS(X) X(current_a, measured_current) X(current_b, measured_current)
+COEFFICIENTS(measurement, MEASUREMENT_COEFFICIENTS)
 
 struct sample_set {
     struct channels winding;
@@ -50,7 +60,7 @@ static inline void measurement_set_offset(struct measurement *measurement, struc
 static inline num_t measurement_bus(const struct measurement_params *params,
                                     const struct hal_samples *samples)
 {
-    return num_from_code(samples->bus_voltage, params->bus_voltage);
+    return num_from_code(samples->bus_voltage, KNOWN(measurement_params, params)->bus_voltage);
 }
 
 /* Of the same two currents alone; for the background. */
@@ -62,17 +72,19 @@ static inline __attribute__((always_inline)) struct sample_set
 measurement_step(const struct measurement *measurement, const struct measurement_params *params,
                  const struct hal_samples *samples)
 {
+    const struct measurement *scale = KNOWN(measurement, measurement);
+    const struct measurement_params *scales = KNOWN(measurement_params, params);
     const struct channels *offset = &measurement->offset;
     const int32_t code_a = samples->current_a - params->current_zero_code;
     const int32_t code_b = samples->current_b - params->current_zero_code;
     struct sample_set now;
 
-    now.winding.current.a = num_from_code(code_a, measurement->current_a) - offset->current.a;
-    now.winding.current.b = num_from_code(code_b, measurement->current_b) - offset->current.b;
+    now.winding.current.a = num_from_code(code_a, scale->current_a) - offset->current.a;
+    now.winding.current.b = num_from_code(code_b, scale->current_b) - offset->current.b;
     now.winding.voltage.a =
-        num_from_code(samples->phase_voltage_a, params->phase_voltage) - offset->voltage.a;
+        num_from_code(samples->phase_voltage_a, scales->phase_voltage) - offset->voltage.a;
     now.winding.voltage.b =
-        num_from_code(samples->phase_voltage_b, params->phase_voltage) - offset->voltage.b;
+        num_from_code(samples->phase_voltage_b, scales->phase_voltage) - offset->voltage.b;
     now.bus = measurement_bus(params, samples);
     now.encoder_count = samples->encoder_count;
     return now;

@@ -16,6 +16,7 @@ static void renew(struct drive_params *params, const struct motor_model_params *
     params->model = *model;
     params->estimator.invariant_ekf.model = *model;
     params->current_control.reactance = reactance;
+    current_control_params_fit_coefficients(&params->current_control);
     params->reference.speed = reference->speed;
     params->reference.speed_remainder = reference->speed_remainder;
     params->reference.acceleration = reference->acceleration;

@@ -9,7 +9,7 @@ static struct invariant_ekf_gain_set scale(const struct per_unit *base,
     const double full_speed = k->angle_d_full_speed_rad_s / base->speed_rad_s;
     const double volts_per_turn = base->rad_per_turn / base->voltage_V;
     const bool odd = k->k_angle_d_rad_A != 0.0;
-    const struct invariant_ekf_gain_set set = {
+    struct invariant_ekf_gain_set set = {
         .current = coef_from_double(0.5 * (k->k_current_d + k->k_current_q)),
         .speed_q = coef_from_double(k->k_speed_q_rad_As * i / base->speed_rad_s),
         .angle_d = coef_from_double(k->k_angle_d_rad_A * turns_per_current / full_speed),
@@ -25,6 +25,7 @@ static struct invariant_ekf_gain_set scale(const struct per_unit *base,
         .bias_return = coef_from_double(k->bias_return_V_Nm * base->torque_Nm / base->voltage_V),
         .load_settle = coef_from_double(k->load_settle),
     };
+    invariant_ekf_gain_set_fit_coefficients(&set);
     return set;
 }
 

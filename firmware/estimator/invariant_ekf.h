@@ -43,6 +43,7 @@
 
 #include "firmware/design/invariant_ekf_design.h"
 #include "firmware/estimator/estimate.h"
+#include "firmware/numeric/coefficients.h"
 
 /* One set of gains, per-unit. */
 struct invariant_ekf_gain_set {
@@ -59,6 +60,21 @@ struct invariant_ekf_gain_set {
     coef_t bias_return;  /* voltage in q per torque on that way */
     coef_t load_settle;  /* share of the settled load's way to the estimate, each period */
 };
+
+#define INVARIANT_EKF_GAIN_SET_COEFFICIENTS(X)                                                     \
+    X(current, ekf_current)                                                                        \
+    X(speed_q, ekf_speed_q)                                                                        \
+    X(angle_d, ekf_angle_d)                                                                        \
+    X(angle_q, ekf_angle_q)                                                                        \
+    X(load_q, ekf_load_q)                                                                          \
+    X(bias_per_turn, ekf_bias_per_turn)                                                            \
+    X(bias_q, ekf_bias_q)                                                                          \
+    X(resistance, ekf_resistance)                                                                  \
+    X(load_return, ekf_load_return)                                                                \
+    X(angle_return, ekf_angle_return)                                                              \
+    X(bias_return, ekf_bias_return)                                                                \
+    X(load_settle, ekf_load_settle)
+COEFFICIENTS(invariant_ekf_gain_set, INVARIANT_EKF_GAIN_SET_COEFFICIENTS)
 
 struct invariant_ekf_params {
     struct motor_model_params model;

@@ -18,7 +18,7 @@ static inline struct invariant_ekf_correction
 invariant_ekf_correct_in_motion(const struct invariant_ekf_params *params, num_t speed,
                                 struct dq innovation)
 {
-    const struct invariant_ekf_gain_set *gain = &params->moving;
+    const struct invariant_ekf_gain_set *gain = KNOWN(invariant_ekf_gain_set, &params->moving);
     const num_t full = params->odd_gain_speed;
     const num_t direction = num_clamp(speed, -full, full);
     const num_t odd = num_mul(innovation.d, num_mul_coef(direction, gain->angle_d));
@@ -31,9 +31,11 @@ invariant_ekf_correct_in_motion(const struct invariant_ekf_params *params, num_t
 
 /* `away`: of the load from the one settled at. */
 static inline struct invariant_ekf_correction
-invariant_ekf_correct_in_hold(const struct invariant_ekf_gain_set *gain, struct dq innovation,
+invariant_ekf_correct_in_hold(const struct invariant_ekf_gain_set *gains, struct dq innovation,
                               num_t away)
 {
+    const struct invariant_ekf_gain_set *gain = KNOWN(invariant_ekf_gain_set, gains);
+
     return (struct invariant_ekf_correction){
         .turns = num_mul_coef(innovation.q, gain->angle_q) + num_mul_coef(away, gain->angle_return),
         .bias_q = num_mul_coef_nearest(innovation.q, gain->bias_q) -
@@ -65,10 +67,11 @@ invariant_ekf_innovate(const struct estimate *x, struct phases measured, struct 
 
 /* `bias_frame`: in which the offset is corrected along q. */
 __attribute__((always_inline)) static inline void
-invariant_ekf_correct(struct invariant_ekf *ekf, const struct invariant_ekf_gain_set *gain,
+invariant_ekf_correct(struct invariant_ekf *ekf, const struct invariant_ekf_gain_set *gains,
                       const struct invariant_ekf_innovation *innovation,
                       struct invariant_ekf_correction by, struct sincos bias_frame)
 {
+    const struct invariant_ekf_gain_set *gain = KNOWN(invariant_ekf_gain_set, gains);
     struct estimate *x = &ekf->estimate;
     const struct outlook *expected = &x->next;
 
@@ -108,7 +111,8 @@ invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_p
     if (ekf->following_periods < params->rest_periods) {
         return &params->holding;
     }
-    ekf->settled_load += num_mul_coef(away, params->following.load_settle);
+    ekf->settled_load +=
+        num_mul_coef(away, KNOWN(invariant_ekf_gain_set, &params->following)->load_settle);
     return &params->following;
 }
 

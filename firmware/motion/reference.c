@@ -15,9 +15,10 @@ struct reference_params reference_design(const struct per_unit *base, double per
     struct reference_params params;
 
     params.speed = coef_from_double(speed);
-    params.speed_remainder = coef_from_double(speed - coef_to_double(params.speed));
     params.acceleration = coef_from_double(acceleration / ACCELERATION_SCALE);
     params.jerk = coef_from_double(acceleration / JERK_SCALE);
+    reference_params_fit_coefficients(&params);
+    params.speed_remainder = coef_from_double(speed - coef_to_double(params.speed));
     params.creep_speed = num_from_double(creep.speed_rad_s / base->speed_rad_s);
     params.creep_acceleration =
         num_from_double(creep.acceleration_rad_s2 / base->acceleration_rad_s2);

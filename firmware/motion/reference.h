@@ -19,6 +19,7 @@
 #include "firmware/motion/motion_plan.h"
 #include "firmware/motion/profile.h"
 #include "firmware/motor/per_unit.h"
+#include "firmware/numeric/coefficients.h"
 #include "firmware/simulation.h"
 
 /* Acceleration is shown through 32 bits of 2^-38 turn; profile_plan keeps it below 2^31 of them. */
@@ -34,6 +35,13 @@ struct reference_params {
     num_t creep_speed;      /* what moves below is slow; 0: nothing is */
     num_t creep_acceleration;
 };
+
+/* The remainder has the shift that it happens to have. */
+#define REFERENCE_PARAMS_COEFFICIENTS(X)                                                           \
+    X(speed, reference_speed)                                                                      \
+    X(acceleration, reference_acceleration)                                                        \
+    X(jerk, reference_jerk)
+COEFFICIENTS(reference_params, REFERENCE_PARAMS_COEFFICIENTS)
 
 struct reference_sample {
     struct position position; /* electrical */
@@ -116,7 +124,7 @@ static inline num_t reference_jerk(const struct reference *reference,
     if (RARE((uint32_t)high + range >= 2u * range)) {
         limited = high < 0 ? -INT32_MAX : INT32_MAX;
     }
-    return num_mul_coef(turns_from_angle(limited), params->jerk);
+    return num_mul_coef(turns_from_angle(limited), KNOWN(reference_params, params)->jerk);
 }
 
 /* A sixth of the jerk, 2^-64 turn per period^3. */
@@ -247,7 +255,8 @@ static inline void reference_show(struct reference *r, const struct reference_pa
 {
     const num_t speed = turns_from_angle((int32_t)(r->at.speed >> 32));
 
-    r->next.speed = num_mul_coef_fine(speed, params->speed, params->speed_remainder);
+    r->next.speed =
+        num_mul_coef_fine(speed, KNOWN(reference_params, params)->speed, params->speed_remainder);
 }
 
 /* The rest of it, constant but for a jerk. */
@@ -257,7 +266,8 @@ static inline void reference_show_acceleration(struct reference *r,
     const num_t acceleration =
         turns_from_angle((int32_t)(r->at.acceleration >> REFERENCE_ACCELERATION_SHIFT));
 
-    r->next.acceleration = num_mul_coef(acceleration, params->acceleration);
+    r->next.acceleration =
+        num_mul_coef(acceleration, KNOWN(reference_params, params)->acceleration);
 }
 
 static inline void reference_count_slow(struct reference *r)

@@ -26,14 +26,17 @@ struct motor_model_params motor_model_design(const struct motor_params *motor,
         coef_from_double(rate * rate * (1.0 / 2.0 - x * (1.0 / 3.0 - x / 8.0)));
     params.resistance_min = num_from_double(0.25 * nominal);
     params.resistance_max = num_from_double(3.0 * nominal);
+    motor_model_params_fit_coefficients(&params);
     return params;
 }
 
 void winding_set_resistance(struct winding *winding, const struct motor_model_params *params,
                             num_t resistance)
 {
+    const struct motor_model_params *model = KNOWN(motor_model_params, params);
+
     winding->resistance = num_clamp(resistance, params->resistance_min, params->resistance_max);
     winding->admittance =
         params->nominal_admittance - num_mul_coef(winding->resistance - params->nominal_resistance,
-                                                  params->admittance_per_resistance);
+                                                  model->admittance_per_resistance);
 }

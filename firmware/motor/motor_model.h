@@ -18,6 +18,7 @@
 #include "firmware/motor/motor_params.h"
 #include "firmware/motor/park.h"
 #include "firmware/motor/per_unit.h"
+#include "firmware/numeric/coefficients.h"
 
 struct motor_model_params {
     coef_t rate;             /* T/L: current per period and unit of voltage; T R/L per resistance */
@@ -32,6 +33,16 @@ struct motor_model_params {
     num_t resistance_min; /* range of the calibrated resistance */
     num_t resistance_max;
 };
+
+#define MOTOR_MODEL_PARAMS_COEFFICIENTS(X)                                                         \
+    X(rate, model_rate)                                                                            \
+    X(emf_droop, model_emf_droop)                                                                  \
+    X(speed_per_torque, model_speed_per_torque)                                                    \
+    X(friction, model_friction)                                                                    \
+    X(turns_per_speed, model_turns_per_speed)                                                      \
+    X(half_turns_per_speed, model_half_turns_per_speed)                                            \
+    X(admittance_per_resistance, model_admittance_per_resistance)
+COEFFICIENTS(motor_model_params, MOTOR_MODEL_PARAMS_COEFFICIENTS)
 
 /* The winding with its present resistance. */
 struct winding {
@@ -58,7 +69,7 @@ void winding_set_resistance(struct winding *winding, const struct motor_model_pa
 /* Electrical turns of a rotor at this speed in half a period, below an eighth. */
 static inline num_t half_period_turns(const struct motor_model_params *params, num_t speed)
 {
-    return num_mul_coef(speed, params->half_turns_per_speed);
+    return num_mul_coef(speed, KNOWN(motor_model_params, params)->half_turns_per_speed);
 }
 
 /* Phase currents one period on under a mean voltage over it. */
@@ -67,7 +78,8 @@ static inline struct phases predict_current(const struct motor_model_params *par
                                             num_t speed, struct sincos mid_period,
                                             struct phases voltage)
 {
-    const num_t droop = num_mul_coef(num_mul(speed, speed), params->emf_droop);
+    const num_t droop =
+        num_mul_coef(num_mul(speed, speed), KNOWN(motor_model_params, params)->emf_droop);
     const num_t emf = speed - num_mul(droop, speed);
     const num_t across_a =
         voltage.a - num_mul(current.a, winding->resistance) + num_mul_unit(emf, mid_period.sin);
@@ -92,9 +104,10 @@ static inline struct phases forced_current(const struct winding *winding, struct
 static inline void predict_rotor(const struct motor_model_params *params, struct rotor *rotor,
                                  num_t i_q)
 {
-    num_t torque = i_q - num_mul_coef(rotor->speed, params->friction) - rotor->load_torque;
-    num_t speed = rotor->speed + num_mul_coef(torque, params->speed_per_torque);
-    num_t turns = num_mul_coef(rotor->speed + speed, params->half_turns_per_speed);
+    const struct motor_model_params *model = KNOWN(motor_model_params, params);
+    num_t torque = i_q - num_mul_coef(rotor->speed, model->friction) - rotor->load_torque;
+    num_t speed = rotor->speed + num_mul_coef(torque, model->speed_per_torque);
+    num_t turns = num_mul_coef(rotor->speed + speed, model->half_turns_per_speed);
 
     rotor->position = position_add(rotor->position, angle_from_turns(turns));
     rotor->speed = speed;

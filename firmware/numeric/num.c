@@ -92,6 +92,18 @@ coef_t coef_from_double(double x)
     return k;
 }
 
+coef_t coef_of_shift(double x, int shift)
+{
+    const coef_t unit = coef_with_shift(1, shift);
+    const double m = x / coef_to_double(unit);
+    const double limit = INT16_MAX;
+    const double within = m > limit ? limit : m < -limit ? -limit : m;
+    coef_t k = unit;
+
+    k.mantissa = (int16_t)(within < 0.0 ? within - 0.5 : within + 0.5);
+    return k;
+}
+
 double coef_to_double(coef_t k)
 {
     double x = (double)k.mantissa / 65536.0;

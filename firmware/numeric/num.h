@@ -14,6 +14,7 @@
  * num_t needs two 16 x 16 multiplications on a Cortex-M0+, which has no long multiply. Products
  * round towards minus infinity and are the same, bit for bit, on every core and compiler. Right
  * shifts of negative numbers are arithmetic (implementation-defined in C11; so in gcc and clang).
+ * In an image for one motor the compiler knows the shifts of most (coefficients.h).
  * A number that left -32...32 would be undefined. Factors are limited before their product
  * (num_headroom), with limits that follow from the gains at start-up; a gain that leaves none is
  * refused there. Shown by tests/unit/test_headroom.c under the sanitizer.
@@ -37,7 +38,12 @@
 /* NUM_FORMAT: the format's name, as a token. */
 #if STEADYSTEP_NUM == NUM_FIXED
 
+#ifdef STEADYSTEP_COEFFICIENT_SHIFTS
+#include STEADYSTEP_COEFFICIENT_SHIFTS
+#define NUM_FORMAT one_motor
+#else
 #define NUM_FORMAT fixed
+#endif
 
 typedef int32_t num_t;
 typedef int32_t unit_t;
@@ -60,6 +66,11 @@ static inline int32_t num_mul_high16(int32_t a, int16_t m)
 {
 #if defined(__ARM_ARCH_6M__)
     return (a >> 16) * m + (((a & 0xffff) * m) >> 16);
+#elif defined(__ARM_FEATURE_DSP)
+    int32_t product;
+
+    __asm__("smulwb %0, %1, %2" : "=r"(product) : "r"(a), "r"(m));
+    return product;
 #else
     return (int32_t)(((int64_t)a * m) >> 16);
 #endif
@@ -97,7 +108,9 @@ static inline num_t num_mul_unit_nearest(num_t a, unit_t u)
  */
 static inline num_t num_mul_coef(num_t a, coef_t k)
 {
-#if defined(__ARM_ARCH_6M__)
+#if defined(STEADYSTEP_COEFFICIENT_SHIFTS)
+    return num_shift_left(num_mul_high16(a, k.mantissa), k.left) >> k.right;
+#elif defined(__ARM_ARCH_6M__)
     const union {
         coef_t coef;
         uint32_t word;
@@ -139,6 +152,9 @@ static inline coef_t coef_more(coef_t k, num_t more)
     const int32_t factor = (more >> (NUM_FRACTION_BITS - 15)) + (1 << 15);
     int32_t mantissa = (k.mantissa * factor + (1 << 14)) >> 15;
 
+#ifdef STEADYSTEP_COEFFICIENT_SHIFTS /* what is changed in operation has been left room for it */
+    mantissa = mantissa > INT16_MAX ? INT16_MAX : mantissa < -INT16_MAX ? -INT16_MAX : mantissa;
+#endif
     if (mantissa > INT16_MAX || mantissa < INT16_MIN) {
         mantissa = (mantissa + 1) >> 1;
         if (k.right > 0u) {
@@ -238,6 +254,18 @@ static inline num_t num_abs(num_t a)
 {
     return a < 0 ? -a : a;
 }
+
+/* Left minus right is `shift`. */
+static inline coef_t coef_with_shift(int16_t mantissa, int shift)
+{
+    const coef_t known = {.mantissa = mantissa,
+                          .left = (uint8_t)(shift > 0 ? shift : 0),
+                          .right = (uint8_t)(shift < 0 ? -shift : 0)};
+    return known;
+}
+
+/* The nearest gain with this shift; saturates. */
+coef_t coef_of_shift(double x, int shift);
 
 #else /* floating point */
 

@@ -1,6 +1,7 @@
 #include "hal/sil/firmware_image.h"
 
 #include "firmware/application/application.h"
+#include "firmware/drive/coefficients.h"
 #include "firmware/drive/drive_hash.h"
 #include "firmware/linkage.h"
 
@@ -124,6 +125,29 @@ static uint64_t image_hash(const void *drive)
     return self->hash;
 }
 
+/* Who asked, of a coefficient in doubles. */
+struct viewer {
+    void (*view)(void *context, const char *name, double value);
+    void *context;
+};
+
+static void view_double(void *context, const char *name, coef_t coefficient)
+{
+    const struct viewer *viewer = context;
+
+    viewer->view(viewer->context, name, coef_to_double(coefficient));
+}
+
+static void image_coefficients(const void *drive,
+                               void (*view)(void *context, const char *name, double value),
+                               void *context)
+{
+    const struct instance *self = drive;
+    struct viewer viewer = {view, context};
+
+    coefficients_show(&self->application.drive, view_double, &viewer);
+}
+
 /* firmware_image_<format>, visible outside the linked image. */
 #define EXPORTED            CALLED_FROM_OUTSIDE __attribute__((visibility("default")))
 #define PASTE(a, b)         a##b
@@ -145,4 +169,5 @@ EXPORTED const struct firmware_image IMAGE_OF(NUM_FORMAT) = {
     .hash = image_hash,
     .put_memory = image_put_memory,
     .follow_control = image_follow_control,
+    .coefficients = image_coefficients,
 };

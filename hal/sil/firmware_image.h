@@ -14,7 +14,7 @@ extern "C" {
 #endif
 
 struct firmware_image {
-    const char *numeric; /* "float", "fixed" or "double" */
+    const char *numeric; /* "float", "fixed", "double" or "one_motor" */
     size_t drive_bytes;  /* size of one application; allocate with alignment of max_align_t */
 
     /* Start-up: designs all gains. false: settings refused, reason in error. */
@@ -42,11 +42,17 @@ struct firmware_image {
     void (*put_memory)(void *drive, uint32_t *words, size_t count);
     /* Behind the control interrupt, while the board is asked to: application_follow_control. */
     void (*follow_control)(void *drive);
+    /* The coefficients of firmware/drive/coefficients.h of a drive that is designed. */
+    void (*coefficients)(const void *drive,
+                         void (*view)(void *context, const char *name, double value),
+                         void *context);
 };
 
 extern const struct firmware_image firmware_image_float;
 extern const struct firmware_image firmware_image_fixed;
 extern const struct firmware_image firmware_image_double;
+extern const struct firmware_image
+    firmware_image_one_motor; /* fixed point: numeric/coefficients.h */
 
 #ifdef __cplusplus
 }

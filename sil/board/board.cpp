@@ -273,6 +273,18 @@ const hal_samples &Board::samples() const
     return impl_->samples;
 }
 
+std::vector<std::pair<std::string, double>> Board::coefficients() const
+{
+    std::vector<std::pair<std::string, double>> list;
+    impl_->image.coefficients(
+        impl_->drive,
+        [](void *context, const char *name, double value) {
+            static_cast<decltype(list) *>(context)->emplace_back(name, value);
+        },
+        &list);
+    return list;
+}
+
 const hal_outputs &Board::outputs() const
 {
     return impl_->outputs;

@@ -9,6 +9,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "hal/sil/firmware_image.h"
 #include "sil/board/drive_board.h"
@@ -53,6 +56,8 @@ class Board : public DriveBoard
 
     const hal_samples &samples() const;
     const hal_outputs &outputs() const;
+    /* By name, in the drive's order; a name may come several times. */
+    std::vector<std::pair<std::string, double>> coefficients() const;
 
   private:
     void start();

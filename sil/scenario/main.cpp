@@ -31,6 +31,7 @@
 #include "sil/scenario/report.h"
 #include "sil/scenario/runner.h"
 #include "sil/scenario/settings_file.h"
+#include "sil/scenario/shifts.h"
 #include "sil/scenario/dictionary_json.h"
 #include "sil/scenario/pages.h"
 #include "sil/scenario/sweep.h"
@@ -56,6 +57,7 @@ struct Options {
     bool campaign_stretch = false;
     std::string numeric, seed, seeds, out, trace = "csv", folder;
     std::string serve; /* SCENARIO; "": a drive with its defaults */
+    std::string shifts;
     serve::ServeOptions serving;
     int tcp = -1, knobs_tcp = -1, can_tcp = -1; /* -1: not asked for */
     std::string can_link;
@@ -418,6 +420,13 @@ int serve_command(Options options)
     return held;
 }
 
+int shifts_command(const Options &options)
+{
+    print(coefficient_shifts(
+        read_scenario(options.catalogue(), options.shifts, options.given, "shifts")));
+    return held;
+}
+
 /* As it is asked for by name. */
 std::string name_of(const fs::path &file)
 {
@@ -532,7 +541,7 @@ void add_run_options(CLI::App &command, Options &options)
     command
         .add_option("--numeric", options.numeric,
                     "number format of the drive; else the scenario's first, float as a rule")
-        ->check(CLI::IsMember({"float", "fixed", "double"}));
+        ->check(CLI::IsMember({"float", "fixed", "double", "one_motor"}));
     CLI::Option *seed =
         command.add_option("--seed", options.seed, "seed of all noise")->check(not_empty());
     CLI::Option *seeds = command
@@ -566,7 +575,7 @@ void add_serve_options(CLI::App &command, Options &options)
                        "reference motor on `bench`");
     add_given_options(command, options);
     command.add_option("--numeric", options.numeric, "number format of the drive")
-        ->check(CLI::IsMember({"float", "fixed", "double"}));
+        ->check(CLI::IsMember({"float", "fixed", "double", "one_motor"}));
     command.add_option("--seed", options.seed, "seed of all noise")->check(not_empty());
     command.add_option("--image", options.given.image, "image of the STM32G474 board, an .elf")
         ->check(CLI::ExistingFile);
@@ -657,6 +666,10 @@ int run_program(int argc, char **argv)
     CLI::App *serve =
         app.add_subcommand("serve", "let a simulated drive live in real time behind a serial line");
     add_serve_options(*serve, options);
+    CLI::App *shifts = app.add_subcommand(
+        "shifts", "the header of an image for one motor, in fixed point (firmware/README.md)");
+    shifts->add_option("SCENARIO", options.shifts, "name or path: its motor and drive")->required();
+    add_given_options(*shifts, options);
     CLI::App *check_motor = app.add_subcommand(
         "check-motor", "say what motor files mean and whether their values go together");
     check_motor->add_option("MOTOR", options.motors, "names or paths")->required();
@@ -691,6 +704,9 @@ int run_program(int argc, char **argv)
         }
         if (*serve) {
             return serve_command(options);
+        }
+        if (*shifts) {
+            return shifts_command(options);
         }
         return *run ? run_command(options) : sweep_command(options);
     } catch (const CLI::Success &asked) {

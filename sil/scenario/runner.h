@@ -16,7 +16,7 @@
 namespace scenario
 {
 
-/* The image of "float", "fixed" or "double"; nullptr: no such format. */
+/* The image of "float", "fixed", "double" or "one_motor"; nullptr: no such format. */
 const firmware_image *image_of(const std::string &numeric);
 
 /* Powers a board up, posts what can be judged before the run, and lets it go again; throws

@@ -90,7 +90,7 @@ void read_numerics(TableReader &reader, std::vector<std::string> &numerics)
     if (list == nullptr) {
         return;
     }
-    const std::vector<std::string> formats = {"float", "fixed", "double"};
+    const std::vector<std::string> formats = {"float", "fixed", "double", "one_motor"};
     numerics.clear();
     for (const Value &item : list->items) {
         const bool known = item.kind == Value::Kind::text &&

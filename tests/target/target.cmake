@@ -49,6 +49,9 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
   elseif(numeric STREQUAL fixed)
     list(FILTER unit_tests INCLUDE REGEX "test_(${long_tests}|num|num_armv6m|trig|park)\\.c$")
   endif()
+  if(numeric STREQUAL one_motor) # the same source as fixed
+    list(FILTER unit_tests INCLUDE REGEX "test_num\\.c$")
+  endif()
   foreach(source IN LISTS unit_tests)
     cmake_path(GET source STEM stem)
     string(REGEX REPLACE "^test_" "" name ${stem})
@@ -82,7 +85,8 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
       PROPERTIES LABELS "${labels}" TIMEOUT ${timeout_s})
   endforeach()
 
-  foreach(case IN LISTS replay_cases)
+  replay_cases_of(${numeric} cases)
+  foreach(case IN LISTS cases)
     add_replay(${case} ${numeric} ${host_build}/tests/target/record_input_${numeric})
     set(target replay_${case}_${numeric})
     add_dependencies(${target} host_recorder)
@@ -96,7 +100,11 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
   endforeach()
 
   # One case of each path through the interrupt, and one that no case leaves anything out of.
-  foreach(case IN ITEMS default-sensorless feedback-linearisation references)
+  set(longest default-sensorless feedback-linearisation references)
+  if(numeric STREQUAL one_motor)
+    set(longest)
+  endif()
+  foreach(case IN LISTS longest)
     add_test(NAME target.longest-path.${case}.${numeric}
       COMMAND ${PROJECT_SOURCE_DIR}/tools/longest_path --executed
               $<TARGET_FILE:replay_${case}_${numeric}>)

@@ -93,9 +93,9 @@ void dummy_follow_control(void *)
 }
 
 const firmware_image image = {
-    "dummy",     sizeof(Dummy),    dummy_init,          nullptr,          dummy_control_cycle,
-    dummy_brake, dummy_law_gain,   dummy_command,       dummy_background, dummy_signals,
-    dummy_hash,  dummy_put_memory, dummy_follow_control};
+    "dummy",     sizeof(Dummy),    dummy_init,           nullptr,          dummy_control_cycle,
+    dummy_brake, dummy_law_gain,   dummy_command,        dummy_background, dummy_signals,
+    dummy_hash,  dummy_put_memory, dummy_follow_control, nullptr};
 
 plant::Config config()
 {

@@ -1,0 +1,69 @@
+#include "sil/scenario/shifts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "sil/board/board.h"
+#include "sil/scenario/text.h"
+
+namespace scenario
+{
+
+namespace
+{
+
+using Coefficients = std::vector<std::pair<std::string, double>>;
+
+/* A mantissa is below 2^15; of these, three bits are room. */
+constexpr int room_bits = 3;
+
+/* The largest magnitude of each name, in the order of the drive. */
+Coefficients largest(const Coefficients &all)
+{
+    Coefficients out;
+    for (const auto &[name, value] : all) {
+        const auto same = std::find_if(
+            out.begin(), out.end(), [&name = name](const auto &row) { return row.first == name; });
+        if (same == out.end()) {
+            out.emplace_back(name, std::abs(value));
+        } else {
+            same->second = std::max(same->second, std::abs(value));
+        }
+    }
+    return out;
+}
+
+int shift_of(double magnitude)
+{
+    int exponent = 0;
+    std::frexp(magnitude, &exponent);
+    return magnitude == 0 ? 0 : std::max(exponent + 1 + room_bits, -31);
+}
+
+} // namespace
+
+std::string coefficient_shifts(const Scenario &scenario)
+{
+    if (scenario.drive.feedback != DRIVE_FEEDBACK_SENSORLESS ||
+        scenario.drive.estimator != DRIVE_ESTIMATOR_INVARIANT_EKF ||
+        (scenario.drive.law != POSITION_LAW_STATE_FEEDBACK &&
+         scenario.drive.law != POSITION_LAW_PID)) {
+        throw InputError(scenario.name +
+                         ": an image for one motor is for feedback sensorless, estimator "
+                         "invariant-ekf, and law state-feedback or pid");
+    }
+    const sil::Board board(scenario.plant, firmware_image_fixed, scenario.drive);
+    std::string text =
+        "/* The shifts of an image for one motor (firmware/numeric/coefficients.h), as "
+        "written by\n   `steadystep-sil shifts " +
+        scenario.asked + "`; behind each the largest such coefficient. */\n";
+    for (const auto &[name, magnitude] : largest(board.coefficients())) {
+        text += format("#define COEF_SHIFT_%s (%d) /* ", name.c_str(), shift_of(magnitude)) +
+                format("%.4g */\n", magnitude);
+    }
+    return text;
+}
+
+} // namespace scenario
