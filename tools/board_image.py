@@ -2,9 +2,10 @@
 """Writes the C file that gives an image its version and its default motor.
 
 usage: board_image.py --root ROOT --motor FILE --version V --board NAME --pin-map FILE
-                      --numeric FORMAT --flags FLAGS OUTPUT.c
+                      --numeric FORMAT [--shifts FILE] --flags FLAGS OUTPUT.c
 
-The hash is of the sources that the image is made of, motor, pin map and the compiler's flags, so
+The hash is of the sources that the image is made of, motor, pin map, shifts (of an image for one
+motor, firmware/numeric/coefficients.h) and the compiler's flags, so
 that the same sources give the same image, wherever and whenever they are built. OUTPUT.c is left
 alone if nothing has changed.
 """
@@ -17,8 +18,8 @@ from pathlib import Path
 from motor_parameters import NotAMotor, parameters_of
 
 
-def source_hash(root, board, motor, pin_map, flags):
-    """Motor and pin map count by their name, as they may lie anywhere."""
+def source_hash(root, board, named, flags):
+    """What is `named` counts by its name, as it may lie anywhere."""
     digest = hashlib.sha256(flags.encode())
     files = [root / "hal" / "hal.h"]
     for folder in ("firmware", "hal/cortex_m", f"hal/{board}"):
@@ -26,7 +27,7 @@ def source_hash(root, board, motor, pin_map, flags):
     for path in sorted(p for p in files if p.parent.name != "pin_maps"):
         digest.update(path.relative_to(root).as_posix().encode() + b"\0")
         digest.update(path.read_bytes())
-    for path in (motor, pin_map):
+    for path in named:
         digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:12]
 
@@ -63,12 +64,14 @@ def main():
     parser = argparse.ArgumentParser()
     for name in ("root", "motor", "version", "board", "pin-map", "numeric", "flags"):
         parser.add_argument(f"--{name}", required=True)
+    parser.add_argument("--shifts", type=Path)
     parser.add_argument("output", type=Path)
     given = parser.parse_args()
     root = Path(given.root)
     motor = Path(given.motor)
     pin_map = Path(given.pin_map)
-    digest = source_hash(root, given.board, motor, pin_map, f"{given.flags} {given.numeric}")
+    named = [motor, pin_map] + ([given.shifts] if given.shifts else [])
+    digest = source_hash(root, given.board, named, f"{given.flags} {given.numeric}")
     values = motor_values(motor)
     numbers = "".join(f"    .{key} = {value!r},\n" for key, value in values.items())
     text = (

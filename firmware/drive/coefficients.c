@@ -58,7 +58,6 @@ void coefficients_show(const struct drive *drive, coefficient_viewer *view, void
     standstill_hold_params_show_coefficients(&params->hold, view, context);
     current_control_params_show_coefficients(&params->current_control, view, context);
     modulator_params_show_coefficients(&params->modulator, view, context);
-    bridge_loss_params_show_coefficients(&params->bridge_loss, view, context);
     show_law(params->position_law, &params->law, view, context);
 }
 
@@ -85,7 +84,7 @@ static void fit_one(void *context, const char *name, coef_t coefficient)
 
         fit->fits = design_refuse_limit(
             fit->error,
-            (struct refusal){.quantity = name,
+            (struct refusal){.quantity = name[0] != '\0' ? name : "a coefficient",
                              .value = magnitude,
                              .relation = "at most",
                              .limit = magnitude * limit / size,

@@ -241,11 +241,13 @@ static inline bool obey(struct drive *drive, struct queued_command *command)
 }
 
 /* Apart: it needs many registers. */
-__attribute__((noinline)) static void preempt(struct drive *drive, const struct motion_plan *plan)
+__attribute__((noinline)) static void preempt(struct drive *drive, const struct motion_plan *plan,
+                                              uint32_t wait)
 {
     if (drive->supervision.state == DRIVE_OPERATION_ENABLED &&
         reference_preempt(&drive->reference, plan)) {
         command_queue_accept_preemption(&drive->commands);
+        command_queue_rest_if_empty(&drive->commands, drive->supervision.period, wait);
     }
 }
 
@@ -258,7 +260,7 @@ static void take_plan(struct drive *drive, uint32_t wait)
 
     if (plan != NULL) {
         state_machine_claim_period(drive);
-        preempt(drive, plan);
+        preempt(drive, plan, wait);
     } else {
         command_queue_rest(queue, period, wait);
     }

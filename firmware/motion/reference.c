@@ -283,7 +283,11 @@ bool reference_preempt(struct reference *r, const struct motion_plan *plan)
     r->continuation = NULL;
     r->phase = REFERENCE_PLANNED;
     r->periods_left = r->periods_left > 0u ? 1u : 0u;
-    r->course = REFERENCE_TURNS;
+    if (reference_is_still(r)) {
+        r->course = REFERENCE_STARTS;
+    } else if (r->course < REFERENCE_STEADY || plan->creeps) {
+        r->course = REFERENCE_TURNS;
+    } /* else the step that follows goes on, and the phase ends with it */
     return true;
 }
 

@@ -69,7 +69,7 @@ enum reference_course {
     REFERENCE_TURNS,    /* it creeps, or something has been asked for */
     REFERENCE_SETS_OUT, /* a profile has begun: the first period of motion */
     REFERENCE_ARRIVES,  /* it has ended: the first period of rest */
-    REFERENCE_STARTS,   /* a profile begins from rest */
+    REFERENCE_STARTS,   /* a profile or plan begins from rest */
     REFERENCE_STILL,
     REFERENCE_STEADY, /* a phase of constant acceleration */
     REFERENCE_JERKS
@@ -294,7 +294,7 @@ static inline bool reference_is_still(const struct reference *r)
     return r->course == REFERENCE_STILL;
 }
 
-/* The same, and a profile may begin with the next step. */
+/* The same, and a profile or plan may begin with the next step. */
 static inline bool reference_is_at_rest(const struct reference *r)
 {
     return r->course == REFERENCE_STILL || r->course == REFERENCE_STARTS;

@@ -23,7 +23,6 @@
 #include "firmware/motor/motor_params.h"
 #include "firmware/motor/park.h"
 #include "firmware/motor/per_unit.h"
-#include "firmware/numeric/coefficients.h"
 
 /* A transistor's body diode at a tenth of its rated current; 0.2 V more or less is 0.4 V t_d/T. */
 #define BRIDGE_DIODE_DROP_V 0.9
@@ -37,13 +36,6 @@ struct bridge_loss_params {
     num_t short_pulse;        /* mean voltage of a pulse as long as the dead time */
     coef_t shift_per_voltage; /* i_z / 2 for such a pulse: current per unit of voltage */
 };
-
-#define BRIDGE_LOSS_PARAMS_COEFFICIENTS(X)                                                         \
-    X(loss_per_bus, loss_per_bus)                                                                  \
-    X(ripple, loss_ripple)                                                                         \
-    X(sign_per_current, loss_sign_per_current)                                                     \
-    X(shift_per_voltage, loss_shift_per_voltage)
-COEFFICIENTS(bridge_loss_params, BRIDGE_LOSS_PARAMS_COEFFICIENTS)
 
 /* `dead_time_s` 0: nothing is lost. */
 __attribute__((cold)) struct bridge_loss_params bridge_loss_design(const struct motor_params *motor,

@@ -22,24 +22,54 @@
 #ifndef STEADYSTEP_COEFFICIENTS_H
 #define STEADYSTEP_COEFFICIENTS_H
 
+#include <stddef.h>
+
 #include "firmware/numeric/num.h"
 
-/* Sees a coefficient of that name; `shift` is left minus right. */
+/* Sees a coefficient of that name; where sentences are left out, so are names: "". */
 typedef void coefficient_viewer(void *context, const char *name, coef_t coefficient);
 
-#define COEFFICIENT_SHOW(member, name) view(context, #name, k->member);
+struct coefficient_row {
+    uint8_t offset; /* in its struct */
+#ifdef STEADYSTEP_COEFFICIENT_SHIFTS
+    int8_t shift; /* left minus right */
+#endif
+#ifndef STEADYSTEP_WITHOUT_SENTENCES
+    const char *name;
+#endif
+};
+
+void coefficients_view(const void *owner, const struct coefficient_row *rows, size_t count,
+                       coefficient_viewer *view, void *context);
+
+#ifdef STEADYSTEP_COEFFICIENT_SHIFTS
+#define COEFFICIENT_SHIFT(name) , COEF_SHIFT_##name
+#else
+#define COEFFICIENT_SHIFT(name)
+#endif
+#ifdef STEADYSTEP_WITHOUT_SENTENCES
+#define COEFFICIENT_NAME(name)
+#else
+#define COEFFICIENT_NAME(name) , #name
+#endif
+#define COEFFICIENT_ROW(member, name)                                                              \
+    {offsetof(owner, member) COEFFICIENT_SHIFT(name) COEFFICIENT_NAME(name)},
+#define COEFFICIENT_ROWS(tag, list)                                                                \
+    typedef struct tag owner;                                                                      \
+    static const struct coefficient_row rows[] = {list(COEFFICIENT_ROW)}
 
 #ifdef STEADYSTEP_COEFFICIENT_SHIFTS
 
-#define COEFFICIENT_FIT(member, name)                                                              \
-    k->member = coef_of_shift(coef_to_double(k->member), COEF_SHIFT_##name);
+void coefficients_fit_rows(void *owner, const struct coefficient_row *rows, size_t count);
+
 #define COEFFICIENT_KNOW(member, name)                                                             \
     known.member = coef_with_shift(k->member.mantissa, COEF_SHIFT_##name);
 
 #define COEFFICIENTS_FIT_AND_KNOW(tag, list)                                                       \
     static inline void tag##_fit_coefficients(struct tag *k)                                       \
     {                                                                                              \
-        list(COEFFICIENT_FIT)                                                                      \
+        COEFFICIENT_ROWS(tag, list);                                                               \
+        coefficients_fit_rows(k, rows, sizeof rows / sizeof rows[0]);                              \
     }                                                                                              \
     __attribute__((always_inline)) static inline struct tag tag##_known(const struct tag *k)       \
     {                                                                                              \
@@ -65,7 +95,8 @@ typedef void coefficient_viewer(void *context, const char *name, coef_t coeffici
     static inline void tag##_show_coefficients(const struct tag *k, coefficient_viewer *view,      \
                                                void *context)                                      \
     {                                                                                              \
-        list(COEFFICIENT_SHOW)                                                                     \
+        COEFFICIENT_ROWS(tag, list);                                                               \
+        coefficients_view(k, rows, sizeof rows / sizeof rows[0], view, context);                   \
     }
 
 #endif

@@ -121,10 +121,14 @@ find_motor(${STEADYSTEP_MOTOR} motor)
 # board_image_source(<file> <number format>): version and default motor; looked at in every build,
 # written when something has changed.
 function(board_image_source file numeric)
+  set(shifts)
+  if(numeric STREQUAL one_motor)
+    set(shifts --shifts ${coefficient_shifts})
+  endif()
   add_custom_target(board_image_source
     COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/tools/board_image.py
             --root ${PROJECT_SOURCE_DIR} --motor ${motor} --version ${PROJECT_VERSION}
-            --board ${STEADYSTEP_BOARD} --pin-map ${pin_map} --numeric ${numeric}
+            --board ${STEADYSTEP_BOARD} --pin-map ${pin_map} --numeric ${numeric} ${shifts}
             "--flags=${CMAKE_C_FLAGS} ${CMAKE_C_FLAGS_RELEASE}" ${file}
     BYPRODUCTS ${file}
     VERBATIM)

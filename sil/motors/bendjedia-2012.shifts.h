@@ -32,10 +32,6 @@
 #define COEF_SHIFT_current_reactance               (5)   /* 1.72 */
 #define COEF_SHIFT_modulator_counts                (1)   /* 0.06485 */
 #define COEF_SHIFT_modulator_voltage_per_count     (8)   /* 15.42 */
-#define COEF_SHIFT_loss_per_bus                    (-3)  /* 0.005 */
-#define COEF_SHIFT_loss_ripple                     (1)   /* 0.1111 */
-#define COEF_SHIFT_loss_sign_per_current           (13)  /* 450 */
-#define COEF_SHIFT_loss_shift_per_voltage          (1)   /* 0.1111 */
 #define COEF_SHIFT_feedback_position               (4)   /* 0.8171 */
 #define COEF_SHIFT_feedback_speed                  (8)   /* 9.94 */
 #define COEF_SHIFT_feedback_acceleration           (5)   /* 1 */

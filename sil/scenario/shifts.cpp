@@ -59,9 +59,15 @@ std::string coefficient_shifts(const Scenario &scenario)
         "/* The shifts of an image for one motor (firmware/numeric/coefficients.h), as "
         "written by\n   `steadystep-sil shifts " +
         scenario.asked + "`; behind each the largest such coefficient. */\n";
-    for (const auto &[name, magnitude] : largest(board.coefficients())) {
-        text += format("#define COEF_SHIFT_%s (%d) /* ", name.c_str(), shift_of(magnitude)) +
-                format("%.4g */\n", magnitude);
+    const Coefficients rows = largest(board.coefficients());
+    std::size_t widest = 0;
+    for (const auto &[name, magnitude] : rows) {
+        widest = std::max(widest, name.size());
+    }
+    for (const auto &[name, magnitude] : rows) {
+        const std::string shift = format("(%d)", shift_of(magnitude));
+        text += format("#define COEF_SHIFT_%-*s %-5s /* %.4g */\n", int(widest), name.c_str(),
+                       shift.c_str(), magnitude);
     }
     return text;
 }
