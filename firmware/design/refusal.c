@@ -19,6 +19,15 @@ bool design_refuse(char error[DESIGN_ERROR_TEXT], const char *text)
     return false;
 }
 
+static void put_quantity(struct text *text, double value, int digits, const char *unit)
+{
+    text_number(text, value, digits);
+    if (unit[0] != '\0') {
+        text_put(text, " ");
+        text_put(text, unit);
+    }
+}
+
 bool design_refuse_limit(char error[DESIGN_ERROR_TEXT], struct refusal refusal)
 {
     struct text text = text_in(error, DESIGN_ERROR_TEXT);
@@ -26,15 +35,11 @@ bool design_refuse_limit(char error[DESIGN_ERROR_TEXT], struct refusal refusal)
 
     text_put(&text, refusal.quantity);
     text_put(&text, " ");
-    text_number(&text, refusal.value, digits);
-    text_put(&text, " ");
-    text_put(&text, refusal.unit);
+    put_quantity(&text, refusal.value, digits, refusal.unit);
     text_put(&text, ": must be ");
     text_put(&text, refusal.relation);
     text_put(&text, " ");
-    text_number(&text, refusal.limit, digits);
-    text_put(&text, " ");
-    text_put(&text, refusal.unit);
+    put_quantity(&text, refusal.limit, digits, refusal.unit);
     text_put(&text, ", ");
     text_put(&text, refusal.reason);
     return false;

@@ -47,10 +47,9 @@ static void show_estimator(const struct estimator_params *params, coefficient_vi
     }
 }
 
-void coefficients_show(const struct drive *drive, coefficient_viewer *view, void *context)
+/* All but the law's. */
+static void show_drive(const struct drive_params *params, coefficient_viewer *view, void *context)
 {
-    const struct drive_params *params = &drive->params;
-
     measurement_params_show_coefficients(&params->measurement, view, context);
     motor_model_params_show_coefficients(&params->model, view, context);
     show_estimator(&params->estimator, view, context);
@@ -58,15 +57,23 @@ void coefficients_show(const struct drive *drive, coefficient_viewer *view, void
     standstill_hold_params_show_coefficients(&params->hold, view, context);
     current_control_params_show_coefficients(&params->current_control, view, context);
     modulator_params_show_coefficients(&params->modulator, view, context);
-    show_law(params->position_law, &params->law, view, context);
+}
+
+void coefficients_show(const struct drive *drive, coefficient_viewer *view, void *context)
+{
+    show_drive(&drive->params, view, context);
+    show_law(drive->params.position_law, &drive->params.law, view, context);
 }
 
 #ifdef STEADYSTEP_COEFFICIENT_SHIFTS
 
-/* Left for what is learned in operation: 65 % of the inductance (inductance.c). */
-#define ROOM 1.7
+/* Of a mantissa. What is learned in operation, 65 % of the inductance (inductance.c), moves the
+   drive's; a law's moves with a design. */
+#define MOST_OF_DRIVE (INT16_MAX / 1.7)
+#define MOST_OF_LAW   (INT16_MAX - 1.0) /* a larger number has become INT16_MAX */
 
 struct fit {
+    double most;
     bool fits;
     char *error;
 };
@@ -74,11 +81,10 @@ struct fit {
 static void fit_one(void *context, const char *name, coef_t coefficient)
 {
     struct fit *fit = context;
-    const double limit = INT16_MAX / ROOM;
     const double mantissa = coefficient.mantissa;
     const double size = mantissa < 0.0 ? -mantissa : mantissa;
 
-    if (fit->fits && size > limit) {
+    if (fit->fits && size > fit->most) {
         const double value = coef_to_double(coefficient);
         const double magnitude = value < 0.0 ? -value : value;
 
@@ -87,7 +93,7 @@ static void fit_one(void *context, const char *name, coef_t coefficient)
             (struct refusal){.quantity = name[0] != '\0' ? name : "a coefficient",
                              .value = magnitude,
                              .relation = "at most",
-                             .limit = magnitude * limit / size,
+                             .limit = magnitude * fit->most / size,
                              .unit = "",
                              .reason = "by the shifts of this image, which is for one motor"});
     }
@@ -95,16 +101,16 @@ static void fit_one(void *context, const char *name, coef_t coefficient)
 
 bool coefficients_fit(const struct drive *drive, char error[DRIVE_ERROR_TEXT])
 {
-    struct fit fit = {true, error};
+    struct fit fit = {MOST_OF_DRIVE, true, error};
 
-    coefficients_show(drive, fit_one, &fit);
+    show_drive(&drive->params, fit_one, &fit);
     return fit.fits;
 }
 
 bool coefficients_of_law_fit(enum position_law law, const union position_law_params *params,
                              char error[DRIVE_ERROR_TEXT])
 {
-    struct fit fit = {true, error};
+    struct fit fit = {MOST_OF_LAW, true, error};
 
     show_law(law, params, fit_one, &fit);
     return fit.fits;

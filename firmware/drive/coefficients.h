@@ -14,8 +14,8 @@ void coefficients_show(const struct drive *drive, coefficient_viewer *view, void
 
 #ifdef STEADYSTEP_COEFFICIENT_SHIFTS
 
-/* Start-up: whether all are within their shifts, with room for what is learned in operation; false:
-   refused, the first that is not in error. */
+/* Start-up: whether all but the law's are within their shifts, with room for what is learned in
+   operation; false: refused, the first that is not in error. */
 bool coefficients_fit(const struct drive *drive, char error[DRIVE_ERROR_TEXT]);
 
 /* The same of a law's constants. */

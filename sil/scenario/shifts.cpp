@@ -16,8 +16,8 @@ namespace
 
 using Coefficients = std::vector<std::pair<std::string, double>>;
 
-/* A mantissa is below 2^15; of these, three bits are room. */
-constexpr int room_bits = 3;
+/* A mantissa is below 2^15; of these, two bits are room. */
+constexpr int room_bits = 2;
 
 /* The largest magnitude of each name, in the order of the drive. */
 Coefficients largest(const Coefficients &all)

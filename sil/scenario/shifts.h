@@ -10,9 +10,9 @@ namespace scenario
 {
 
 /*
- * Shifts for the drive of this scenario: each coefficient has room to grow to 4.7 times and more
- * before an image with them refuses it, and 11 bits at least. Throws InputError: the drive is none
- * that an image for one motor makes faster.
+ * Shifts for the drive of this scenario: each coefficient has room to grow to 2.3 times and more
+ * before an image with them refuses it, a law's to 4 times, and 12 bits at least. Throws
+ * InputError: the drive is none that an image for one motor makes faster.
  */
 std::string coefficient_shifts(const Scenario &scenario);
 

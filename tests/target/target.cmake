@@ -50,7 +50,7 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
     list(FILTER unit_tests INCLUDE REGEX "test_(${long_tests}|num|num_armv6m|trig|park)\\.c$")
   endif()
   if(numeric STREQUAL one_motor) # the same source as fixed
-    list(FILTER unit_tests INCLUDE REGEX "test_num\\.c$")
+    list(FILTER unit_tests INCLUDE REGEX "test_coefficients\\.c$")
   endif()
   foreach(source IN LISTS unit_tests)
     cmake_path(GET source STEM stem)

@@ -15,9 +15,13 @@
  * SINE_ERROR     of trig.h
  */
 #if STEADYSTEP_NUM == NUM_FIXED
-#define NUM_ROUNDING  (1.0 / 67108864.0)
+#define NUM_ROUNDING (1.0 / 67108864.0)
+#ifdef STEADYSTEP_COEFFICIENT_SHIFTS
+#define COEF_ROUNDING (1.0 / 8192.0) /* two bits are room */
+#else
 #define COEF_ROUNDING (1.0 / 32768.0)
-#define SINE_ERROR    1e-4
+#endif
+#define SINE_ERROR 1e-4
 #elif STEADYSTEP_NUM == NUM_FLOAT
 #define NUM_ROUNDING  (1.0 / 8388608.0)
 #define COEF_ROUNDING (1.0 / 16777216.0)

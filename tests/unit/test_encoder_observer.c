@@ -194,7 +194,7 @@ static void test_what_the_encoder_or_the_period_cannot_bear_is_refused(void)
     task.counts_per_turn = 0;
     TEST_ASSERT_FALSE(encoder_observer_design(&params, &model, &task, error));
     TEST_ASSERT_EQUAL_STRING(
-        "encoder counts per turn 0 : must be at least 200 , four per rotor tooth", error);
+        "encoder counts per turn 0: must be at least 200, four per rotor tooth", error);
 }
 
 /* As far as one count shows as a speed behind the triple pole: 0.8 w_o of it. */

@@ -127,7 +127,7 @@ static void test_a_gain_beyond_its_range_is_refused_by_name_and_bound(void)
                                      strlen(gains[row].name));
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error, "must be at least "), error);
     }
-    TEST_ASSERT_EQUAL_STRING("damping 0.09 : must be at least 0.1 , the range of this gain",
+    TEST_ASSERT_EQUAL_STRING("damping 0.09: must be at least 0.1, the range of this gain",
                              refusal_of(0, 0.09));
 }
 
