@@ -19,27 +19,23 @@ bool design_refuse(char error[DESIGN_ERROR_TEXT], const char *text)
     return false;
 }
 
-static void put_quantity(struct text *text, double value, int digits, const char *unit)
-{
-    text_number(text, value, digits);
-    if (unit[0] != '\0') {
-        text_put(text, " ");
-        text_put(text, unit);
-    }
-}
-
 bool design_refuse_limit(char error[DESIGN_ERROR_TEXT], struct refusal refusal)
 {
     struct text text = text_in(error, DESIGN_ERROR_TEXT);
     const int digits = digits_of(refusal.value, refusal.limit);
+    const char *space = refusal.unit[0] != '\0' ? " " : "";
 
     text_put(&text, refusal.quantity);
     text_put(&text, " ");
-    put_quantity(&text, refusal.value, digits, refusal.unit);
+    text_number(&text, refusal.value, digits);
+    text_put(&text, space);
+    text_put(&text, refusal.unit);
     text_put(&text, ": must be ");
     text_put(&text, refusal.relation);
     text_put(&text, " ");
-    put_quantity(&text, refusal.limit, digits, refusal.unit);
+    text_number(&text, refusal.limit, digits);
+    text_put(&text, space);
+    text_put(&text, refusal.unit);
     text_put(&text, ", ");
     text_put(&text, refusal.reason);
     return false;

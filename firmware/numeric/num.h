@@ -103,30 +103,14 @@ static inline num_t num_mul_unit_nearest(num_t a, unit_t u)
 }
 
 /*
- * In an image for one motor, of whose shifts the compiler knows most: floor(a k), with all bits of
- * what is shifted left.
- */
-static inline num_t num_mul_known_coef(num_t a, coef_t k)
-{
-    if (k.left == 0u) {
-        return num_mul_high16(a, k.mantissa) >> k.right;
-    }
-#if defined(__ARM_ARCH_6M__)
-    return num_shift_left((a >> 16) * k.mantissa, k.left) +
-           (((a & 0xffff) * k.mantissa) >> (16u - k.left));
-#else
-    return (num_t)(((int64_t)a * k.mantissa) >> (16u - k.left));
-#endif
-}
-
-/*
- * In Arm code a gain is one word, loaded at once; a shift takes its count from the lowest byte of a
- * register, whatever stands above it.
+ * In an image for one motor the compiler knows most shifts. In other Arm code a gain is one word,
+ * loaded at once; a shift takes its count from the lowest byte of a register, whatever stands above
+ * it.
  */
 static inline num_t num_mul_coef(num_t a, coef_t k)
 {
 #if defined(STEADYSTEP_COEFFICIENT_SHIFTS)
-    return num_mul_known_coef(a, k);
+    return num_shift_left(num_mul_high16(a, k.mantissa), k.left) >> k.right;
 #elif defined(__ARM_ARCH_6M__)
     const union {
         coef_t coef;

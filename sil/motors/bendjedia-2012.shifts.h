@@ -1,5 +1,6 @@
-/* The shifts of an image for one motor (firmware/numeric/coefficients.h), as written by
-   `steadystep-sil shifts long-run`; behind each the largest such coefficient. */
+/* Shifts of an image for one motor (firmware/numeric/coefficients.h), and the largest such
+   coefficient. Written by
+   steadystep-sil shifts long-run --set plant.half_period_counts=3200 */
 #define COEF_SHIFT_measured_current                (9)   /* 32 */
 #define COEF_SHIFT_measured_phase_voltage          (9)   /* 41.6 */
 #define COEF_SHIFT_measured_bus_voltage            (8)   /* 20.8 */
@@ -30,8 +31,8 @@
 #define COEF_SHIFT_current_integral                (-3)  /* 0.01388 */
 #define COEF_SHIFT_current_unwind                  (-1)  /* 0.04111 */
 #define COEF_SHIFT_current_reactance               (4)   /* 1.72 */
-#define COEF_SHIFT_modulator_counts                (0)   /* 0.06485 */
-#define COEF_SHIFT_modulator_voltage_per_count     (7)   /* 15.42 */
+#define COEF_SHIFT_modulator_counts                (-2)  /* 0.02441 */
+#define COEF_SHIFT_modulator_voltage_per_count     (9)   /* 40.96 */
 #define COEF_SHIFT_feedback_position               (4)   /* 1.82 */
 #define COEF_SHIFT_feedback_speed                  (7)   /* 14.82 */
 #define COEF_SHIFT_feedback_acceleration           (4)   /* 1 */

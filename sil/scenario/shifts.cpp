@@ -55,10 +55,14 @@ std::string coefficient_shifts(const Scenario &scenario)
                          "invariant-ekf, and law state-feedback or pid");
     }
     const sil::Board board(scenario.plant, firmware_image_fixed, scenario.drive);
+    std::string command = "steadystep-sil shifts " + scenario.asked;
+    for (const std::string &setting : scenario.given.settings) {
+        command += " --set " + setting;
+    }
     std::string text =
-        "/* The shifts of an image for one motor (firmware/numeric/coefficients.h), as "
-        "written by\n   `steadystep-sil shifts " +
-        scenario.asked + "`; behind each the largest such coefficient. */\n";
+        "/* Shifts of an image for one motor (firmware/numeric/coefficients.h), and the "
+        "largest such\n   coefficient. Written by\n   " +
+        command + " */\n";
     const Coefficients rows = largest(board.coefficients());
     std::size_t widest = 0;
     for (const auto &[name, magnitude] : rows) {

@@ -26,7 +26,7 @@ struct Variable {
 struct ImageMap {
     std::string file;
     std::string core;           /* m4f or m0plus */
-    std::string numeric;        /* float or fixed */
+    std::string numeric;        /* float, fixed or one_motor */
     int half_period_counts = 0; /* of its PWM timer; 0: it has no board */
     std::map<std::string, Variable> signals;
     std::map<std::string, unsigned> interrupts; /* handler -> number of the exception */

@@ -26,6 +26,16 @@ endif()
 host_build(host_virtual_board host_build PROGRAMS stm32g071_run stm32g071_disturbances)
 add_test(NAME board.run
   COMMAND ${host_build}/tests/stm32g071_run $<TARGET_FILE:steadystep>)
+# The image for one motor, whose interrupt is shorter.
+set(one_motor ${PROJECT_BINARY_DIR}/one-motor)
+add_test(NAME board.one-motor COMMAND ${CMAKE_CTEST_COMMAND}
+  --build-and-test ${PROJECT_SOURCE_DIR} ${one_motor}
+  --build-generator ${CMAKE_GENERATOR} --build-target steadystep
+  --build-options -DSTEADYSTEP_CORE=${STEADYSTEP_CORE} -DSTEADYSTEP_BOARD=${STEADYSTEP_BOARD}
+    -DCMAKE_TOOLCHAIN_FILE=${CMAKE_TOOLCHAIN_FILE} -DCMAKE_BUILD_TYPE=${CMAKE_BUILD_TYPE}
+    -DCMSIS_DIR=${CMSIS_DIR} "-DCMAKE_C_FLAGS_RELEASE=${CMAKE_C_FLAGS_RELEASE}"
+    -DSTEADYSTEP_HOST_BUILD=${host_build} -DSTEADYSTEP_BOARD_NUMERIC=one_motor
+  --test-command ${host_build}/tests/stm32g071_run ${one_motor}/steadystep.elf)
 add_test(NAME board.disturbances
   COMMAND ${host_build}/tests/stm32g071_disturbances $<TARGET_FILE:steadystep>)
 set_tests_properties(
@@ -33,3 +43,4 @@ set_tests_properties(
   board.stack board.run
   board.disturbances
   PROPERTIES LABELS board TIMEOUT 120)
+set_tests_properties(board.one-motor PROPERTIES LABELS board TIMEOUT 300)

@@ -60,8 +60,8 @@ hal_facts board_facts()
 class Reference
 {
   public:
-    Reference()
-        : image_(firmware_image_fixed), drive_(1 + image_.drive_bytes / sizeof(std::max_align_t))
+    explicit Reference(const firmware_image &image)
+        : image_(image), drive_(1 + image_.drive_bytes / sizeof(std::max_align_t))
     {
         const hal_facts facts = board_facts();
         drive_settings settings;
@@ -187,7 +187,8 @@ int run(const std::string &file)
     machine.stops_behind_control_interrupt = true;
 
     const DriveMemory memory(machine, map);
-    Reference reference;
+    Reference reference(map.numeric == firmware_image_one_motor.numeric ? firmware_image_one_motor
+                                                                        : firmware_image_fixed);
     std::uint64_t hash = 0;
     std::uint32_t first_difference = UINT32_MAX, next = 0;
     std::uint32_t flags = 0, misplaced = 0;

@@ -15,6 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 
+from arm_image.image import Image  # noqa: E402
 from arm_image.longest_path import Costs, LongestPath  # noqa: E402
 from arm_image.variables import Variables  # noqa: E402
 
@@ -188,7 +189,7 @@ def check_variables(compiler):
     for expression, text in MISPLACED.items():
         said = refusal(lambda: variables.place(expression))
         wrong += check(f"{expression}: {said}", text in said, True)
-    said = refusal(lambda: image_map.signals(elf))
+    said = refusal(lambda: image_map.signals(Image(elf), elf))
     return wrong + check(f"signals: {said}", "no member `drive`" in said, True)
 
 

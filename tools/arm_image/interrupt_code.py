@@ -110,12 +110,15 @@ def tables_of_jumps(image, roots, left):
 
 def input_sections(image, left=()):
     """Of a linker script: those that the interrupts need, wherever they lie in the image, but for
-    the functions `left` in flash. Refuses (ValueError) one that the interrupts do not reach."""
+    the functions `left` in flash. Refuses (ValueError) one that the interrupts do not reach, unless
+    a question mark says that it may be compiled into another."""
     roots = [name for name in INTERRUPTS if name in image.symbols]
     functions, constants = outside(image, roots, inside=range(0))
     names = {base_name(f) for f in functions if not VENEER.fullmatch(f)}
+    sure = {name for name in left if not name.endswith("?")}
+    left = [name.removesuffix("?") for name in left]
     for name in left:
-        if name not in names:
+        if name in sure and name not in names:
             raise ValueError(f"{name}: the interrupt does not reach it, in flash or elsewhere")
     for name in sorted(names.difference(left)):
         yield f"*(.text.{name} .text.{name}.* .text.unlikely.{name} .text.unlikely.{name}.*)"
