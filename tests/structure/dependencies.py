@@ -51,6 +51,7 @@ MODULES = {
                        "firmware/application/application.h", "firmware/design/text.h"],
     "hal/stm32g474/pin_maps/": [],
     "hal/stm32g071/pin_maps/": [],
+    "sil/motors/": [],
     "sil/plant/": ["sil/plant/"],
     "sil/board/": ["sil/board/", "sil/plant/", "hal/", "firmware/interface/",
                    "firmware/application/settings_record.h"],

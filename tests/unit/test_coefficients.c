@@ -64,6 +64,8 @@ static void test_each_is_shown_by_its_name(void)
     TEST_ASSERT_TRUE(shown("hold_damping").value == coef_to_double(params->hold.damping));
     TEST_ASSERT_EQUAL_INT(1, shown("reference_jerk").times);
     TEST_ASSERT_EQUAL_INT(4, shown("ekf_angle_q").times); /* in motion, and three of the hold */
+    TEST_ASSERT_TRUE(shown("ekf_load_settle").value ==    /* the last of them */
+                     coef_to_double(params->estimator.invariant_ekf.following.load_settle));
     TEST_ASSERT_EQUAL_INT(0, shown("nothing").times);
 }
 

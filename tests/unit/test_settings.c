@@ -405,7 +405,7 @@ static void test_a_refusal_says_what_was_asked_and_what_is_allowed(void)
     setUp();
     settings.motor.rotor_teeth = 0;
     TEST_ASSERT_FALSE(drive_settings_check(&settings, error));
-    TEST_ASSERT_EQUAL_MEMORY("rotor_teeth 0 ", error, 14);
+    TEST_ASSERT_EQUAL_MEMORY("rotor_teeth 0:", error, 14);
     settings.motor.rotor_teeth = 1;
     TEST_ASSERT_TRUE(drive_settings_check(&settings, error));
     settings.motor.rotor_teeth = 1001;
