@@ -156,7 +156,8 @@ static inline void reference_place_in_motion(struct reference *reference, struct
     reference->periods_left = UINT32_MAX;
 }
 
-/* It goes on so, and has neither been stopped nor preempted. */
+/* It goes on so, and has not been stopped; a plan preempts it only when nothing places it any more.
+ */
 static inline bool reference_follows(const struct reference *reference)
 {
     return reference->course == REFERENCE_STEADY;
