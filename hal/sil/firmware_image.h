@@ -51,8 +51,7 @@ struct firmware_image {
 extern const struct firmware_image firmware_image_float;
 extern const struct firmware_image firmware_image_fixed;
 extern const struct firmware_image firmware_image_double;
-extern const struct firmware_image
-    firmware_image_one_motor; /* fixed point: numeric/coefficients.h */
+extern const struct firmware_image firmware_image_one_motor; /* numeric/coefficients.h */
 
 #ifdef __cplusplus
 }

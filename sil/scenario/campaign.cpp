@@ -8,6 +8,7 @@
 #include "sil/scenario/batch.h"
 #include "sil/scenario/campaign_journal.h"
 #include "sil/scenario/campaign_report.h"
+#include "sil/scenario/number_formats.h"
 #include "sil/scenario/output.h"
 #include "sil/scenario/table_reader.h"
 #include "sil/scenario/text.h"

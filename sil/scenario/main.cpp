@@ -27,6 +27,7 @@
 #include "sil/scenario/junit.h"
 #include "sil/scenario/motor_plausibility.h"
 #include "sil/scenario/motor_report.h"
+#include "sil/scenario/number_formats.h"
 #include "sil/scenario/output.h"
 #include "sil/scenario/report.h"
 #include "sil/scenario/runner.h"
@@ -541,7 +542,7 @@ void add_run_options(CLI::App &command, Options &options)
     command
         .add_option("--numeric", options.numeric,
                     "number format of the drive; else the scenario's first, float as a rule")
-        ->check(CLI::IsMember({"float", "fixed", "double", "one_motor"}));
+        ->check(CLI::IsMember(number_formats()));
     CLI::Option *seed =
         command.add_option("--seed", options.seed, "seed of all noise")->check(not_empty());
     CLI::Option *seeds = command
@@ -575,7 +576,7 @@ void add_serve_options(CLI::App &command, Options &options)
                        "reference motor on `bench`");
     add_given_options(command, options);
     command.add_option("--numeric", options.numeric, "number format of the drive")
-        ->check(CLI::IsMember({"float", "fixed", "double", "one_motor"}));
+        ->check(CLI::IsMember(number_formats()));
     command.add_option("--seed", options.seed, "seed of all noise")->check(not_empty());
     command.add_option("--image", options.given.image, "image of the STM32G474 board, an .elf")
         ->check(CLI::ExistingFile);

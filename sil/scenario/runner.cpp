@@ -424,17 +424,6 @@ void disturb(plant::Plant &plant, const Scenario &scenario)
 
 } // namespace
 
-const firmware_image *image_of(const std::string &numeric)
-{
-    for (const firmware_image *image : {&firmware_image_float, &firmware_image_fixed,
-                                        &firmware_image_double, &firmware_image_one_motor}) {
-        if (numeric == image->numeric) {
-            return image;
-        }
-    }
-    return nullptr;
-}
-
 void check(const Scenario &scenario, const firmware_image &image)
 {
     try {

@@ -16,9 +16,6 @@
 namespace scenario
 {
 
-/* The image of "float", "fixed", "double" or "one_motor"; nullptr: no such format. */
-const firmware_image *image_of(const std::string &numeric);
-
 /* Powers a board up, posts what can be judged before the run, and lets it go again; throws
    InputError if the drive or the plant refuses something. */
 void check(const Scenario &scenario, const firmware_image &image);

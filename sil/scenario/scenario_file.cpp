@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <iterator>
 
+#include "sil/scenario/number_formats.h"
 #include "sil/scenario/settings_file.h"
 #include "sil/scenario/table_reader.h"
 #include "sil/scenario/text.h"
@@ -90,7 +91,7 @@ void read_numerics(TableReader &reader, std::vector<std::string> &numerics)
     if (list == nullptr) {
         return;
     }
-    const std::vector<std::string> formats = {"float", "fixed", "double", "one_motor"};
+    const std::vector<std::string> &formats = number_formats();
     numerics.clear();
     for (const Value &item : list->items) {
         const bool known = item.kind == Value::Kind::text &&
@@ -104,7 +105,7 @@ void read_numerics(TableReader &reader, std::vector<std::string> &numerics)
         numerics.push_back(item.text);
     }
     if (numerics.empty()) {
-        reader.fail(key, "expected at least one of float, fixed, double");
+        reader.fail(key, "expected at least " + one_of("", formats));
     }
 }
 

@@ -56,6 +56,9 @@ std::string coefficient_shifts(const Scenario &scenario)
     }
     const sil::Board board(scenario.plant, firmware_image_fixed, scenario.drive);
     std::string command = "steadystep-sil shifts " + scenario.asked;
+    if (!scenario.given.parameters.empty()) {
+        command += " --parameters " + scenario.given.parameters;
+    }
     for (const std::string &setting : scenario.given.settings) {
         command += " --set " + setting;
     }

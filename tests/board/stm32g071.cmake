@@ -1,5 +1,6 @@
 # Checks of the STM32G071 image: register headers, and the image on the virtual board.
 include(HostBuild)
+include(ImageVariant)
 find_program(STEADYSTEP_HOST_CC NAMES cc gcc clang REQUIRED)
 set(board_tests ${PROJECT_SOURCE_DIR}/tests/board)
 
@@ -28,14 +29,8 @@ add_test(NAME board.run
   COMMAND ${host_build}/tests/stm32g071_run $<TARGET_FILE:steadystep>)
 # The image for one motor, whose interrupt is shorter.
 set(one_motor ${PROJECT_BINARY_DIR}/one-motor)
-add_test(NAME board.one-motor COMMAND ${CMAKE_CTEST_COMMAND}
-  --build-and-test ${PROJECT_SOURCE_DIR} ${one_motor}
-  --build-generator ${CMAKE_GENERATOR} --build-target steadystep
-  --build-options -DSTEADYSTEP_CORE=${STEADYSTEP_CORE} -DSTEADYSTEP_BOARD=${STEADYSTEP_BOARD}
-    -DCMAKE_TOOLCHAIN_FILE=${CMAKE_TOOLCHAIN_FILE} -DCMAKE_BUILD_TYPE=${CMAKE_BUILD_TYPE}
-    -DCMSIS_DIR=${CMSIS_DIR} "-DCMAKE_C_FLAGS_RELEASE=${CMAKE_C_FLAGS_RELEASE}"
-    -DSTEADYSTEP_HOST_BUILD=${host_build} -DSTEADYSTEP_BOARD_NUMERIC=one_motor
-  --test-command ${host_build}/tests/stm32g071_run ${one_motor}/steadystep.elf)
+add_image_variant(one-motor ${one_motor} one_motor
+  COMMAND ${host_build}/tests/stm32g071_run ${one_motor}/steadystep.elf)
 add_test(NAME board.disturbances
   COMMAND ${host_build}/tests/stm32g071_disturbances $<TARGET_FILE:steadystep>)
 set_tests_properties(
@@ -43,4 +38,3 @@ set_tests_properties(
   board.stack board.run
   board.disturbances
   PROPERTIES LABELS board TIMEOUT 120)
-set_tests_properties(board.one-motor PROPERTIES LABELS board TIMEOUT 300)

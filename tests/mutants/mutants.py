@@ -189,7 +189,7 @@ MUTANTS = [
     Mutant(CONTROL + "current_control.h", "current_control",
            "in_a_frame_at_rest_a_turning_rotor_makes_no_current",
            "num_mul_coef(speed.frame, gain->reactance)",
-           "num_mul_coef(speed.rotor, params->reactance)"),
+           "num_mul_coef(speed.rotor, gain->reactance)"),
     Mutant(CONTROL + "current_control.h", "current_control",
            "at_speed_no_current_flows_unasked",
            "num_mul(reactance, current.d) + speed.rotor", "num_mul(reactance, current.d)"),

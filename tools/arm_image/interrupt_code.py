@@ -115,11 +115,10 @@ def input_sections(image, left=()):
     roots = [name for name in INTERRUPTS if name in image.symbols]
     functions, constants = outside(image, roots, inside=range(0))
     names = {base_name(f) for f in functions if not VENEER.fullmatch(f)}
-    sure = {name for name in left if not name.endswith("?")}
-    left = [name.removesuffix("?") for name in left]
     for name in left:
-        if name in sure and name not in names:
+        if not name.endswith("?") and name not in names:
             raise ValueError(f"{name}: the interrupt does not reach it, in flash or elsewhere")
+    left = [name.removesuffix("?") for name in left]
     for name in sorted(names.difference(left)):
         yield f"*(.text.{name} .text.{name}.* .text.unlikely.{name} .text.unlikely.{name}.*)"
     for name in sorted({base_name(c) for c in constants if not VENEER.fullmatch(c)}):

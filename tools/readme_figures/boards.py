@@ -276,8 +276,9 @@ def cycles_of_all(sources):
                         if (of, form) == (core, numeric) and law not in defaults + preempted)
         return f"{values[0]:,.{digits}f} to {values[-1]:,.{digits}f}"
 
-    beyond = sorted(((row["worst_cycles"], law) for (core, _, law), row in rows.items()
-                     if core == "m0plus" and row["numeric"] == "fixed" and row["worst_us"] > 45 and law not in preempted))
+    beyond = sorted(((row["worst_cycles"], law) for (core, numeric, law), row in rows.items()
+                     if (core, numeric) == ("m0plus", "fixed") and row["worst_us"] > 45
+                     and law not in preempted))
     lines = [[law, f"{count:,}", spelled(count / 64, 1),
               why(law, place == 0)]
              for place, (count, law) in enumerate(beyond)]
