@@ -1,6 +1,6 @@
 #include "firmware/drive/coefficients.h"
 
-#include "firmware/design/refusal.h"
+#include "firmware/design/text.h"
 
 /* The law's, where it is linear in the errors; NULL: it is not. */
 static const struct error_feedback_params *
@@ -78,6 +78,7 @@ struct fit {
     char *error;
 };
 
+/* A mantissa that has become INT16_MAX stands for any larger one. */
 static void fit_one(void *context, const char *name, coef_t coefficient)
 {
     struct fit *fit = context;
@@ -85,17 +86,17 @@ static void fit_one(void *context, const char *name, coef_t coefficient)
     const double size = mantissa < 0.0 ? -mantissa : mantissa;
 
     if (fit->fits && size > fit->most) {
+        struct text text = text_in(fit->error, DRIVE_ERROR_TEXT);
         const double value = coef_to_double(coefficient);
         const double magnitude = value < 0.0 ? -value : value;
 
-        fit->fits = design_refuse_limit(
-            fit->error,
-            (struct refusal){.quantity = name[0] != '\0' ? name : "a coefficient",
-                             .value = magnitude,
-                             .relation = "at most",
-                             .limit = magnitude * fit->most / size,
-                             .unit = "",
-                             .reason = "by the shifts of this image, which is for one motor"});
+        text_put(&text, name[0] != '\0' ? name : "a coefficient");
+        text_put(&text, " ");
+        text_number(&text, magnitude, 4);
+        text_put(&text, size < INT16_MAX ? ": must be at most " : " or more: must be at most ");
+        text_number(&text, magnitude * fit->most / size, 4);
+        text_put(&text, ", by the shifts of this image, which is for one motor");
+        fit->fits = false;
     }
 }
 
