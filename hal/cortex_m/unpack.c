@@ -12,8 +12,8 @@ enum {
 enum model {
     MATCH = 0,                            /* by place, even or odd, and whether a match was last */
     AGAIN = MATCH + 4,                    /* by the latter */
-    LITERAL = AGAIN + 2,                  /* by place, and the bits so far behind a 1 */
-    LENGTH = LITERAL + 512,               /* by whether it is again */
+    LITERAL = AGAIN + 2,                  /* by literal_context, and the bits so far behind a 1 */
+    LENGTH = LITERAL + 9 * 256,           /* by whether it is again */
     DISTANCE = LENGTH + 2 * GAMMA_MODELS, /* by whether the length is above 2 */
     MODELS = DISTANCE + 2 * GAMMA_MODELS,
 };
@@ -62,6 +62,16 @@ static uint8_t take_literal(struct unpacker *unpacker, unsigned models)
     return (uint8_t)bits;
 }
 
+/* An odd place is the half of an instruction that says what it does: by three bits of the one
+   before it. */
+static unsigned literal_context(const uint8_t *begin, const uint8_t *to)
+{
+    if (((to - begin) & 1) == 0) {
+        return 8;
+    }
+    return to - begin > 1 ? to[-2] >> 2 & 7u : 0u;
+}
+
 static unsigned take_number(struct unpacker *unpacker, unsigned models)
 {
     unsigned bits = 0, number = 1;
@@ -84,7 +94,8 @@ static void unpack_region(struct unpacker *unpacker, uint8_t *to, const uint8_t 
     while (to < end) {
         const unsigned odd = (unsigned)(to - begin) & 1u;
         if (!take_bit(unpacker, MATCH + 2u * odd + matched)) {
-            *to++ = take_literal(unpacker, LITERAL + 256u * odd);
+            *to = take_literal(unpacker, LITERAL + 256u * literal_context(begin, to));
+            to++;
             matched = 0;
             continue;
         }

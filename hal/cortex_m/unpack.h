@@ -4,7 +4,8 @@
  * is, with fewer models.
  *
  * A region's bytes come one after the other, each step by a bit "match":
- * - 0: a literal, 8 bits, the highest first; a model for each beginning of them
+ * - 0: a literal, 8 bits, the highest first; a model for each beginning of them, and at odd places
+ *   for three bits of the byte two places earlier
  * - 1: earlier bytes of the region once more. A bit "again" is for the distance of the last match.
  *   Then how many, less one unless again; then how far back, unless again
  *
@@ -22,7 +23,7 @@ struct unpacked_region {
     const void *end;
 };
 
-/* Fills the regions, in the order of their addresses. Takes 3 KB of stack, and some 350 cycles for
+/* Fills the regions, in the order of their addresses. Takes 7 KB of stack, and some 350 cycles for
    each byte. */
 void unpack(const uint8_t *packed, const struct unpacked_region *regions, unsigned count);
 

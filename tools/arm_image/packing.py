@@ -23,11 +23,18 @@ def gamma(name, value):
         yield (name, bits, place), value >> place & 1
 
 
-def literal(parity, byte):
+def context(data, at):
+    """An odd place is the half of an instruction that says what it does: by three bits of the one before it."""
+    if at & 1 == 0:
+        return 8
+    return data[at - 2] >> 2 & 7 if at > 1 else 0
+
+
+def literal(context_of_it, byte):
     node = 1
     for place in range(7, -1, -1):
         bit = byte >> place & 1
-        yield (LITERAL, parity, node), bit
+        yield (LITERAL, context_of_it, node), bit
         node = 2 * node + bit
 
 
@@ -95,7 +102,7 @@ class Prices:
             model: [sixteenths(2 * n + 1, 2 * sum(both) + 2) for n in both]
             for model, both in counts.items()
         }
-        self.literals = [[self.sum(literal(p, byte)) for byte in range(256)] for p in range(2)]
+        self.literals = [[self.sum(literal(c, byte)) for byte in range(256)] for c in range(9)]
         self.lengths = [
             [0] * 2 + [self.sum(length_bits(n, again)) for n in range(2, LONGEST + 1)]
             for again in range(2)
@@ -164,7 +171,7 @@ def cheapest(data, matches, prices):
         last, matched = state[at]
         parity = at & 1
         kind = [cost[at] + prices.bit((MATCH, parity, matched), bit) for bit in range(2)]
-        reach(at + 1, kind[0] + prices.literals[parity][data[at]], 1, 0, last)
+        reach(at + 1, kind[0] + prices.literals[context(data, at)][data[at]], 1, 0, last)
         if 0 < last <= at:
             price = kind[1] + prices.bit((AGAIN, matched), 1)
             for length in range(1, common(data, at - last, at) + 1):
@@ -188,7 +195,7 @@ def put_region(coder, data, path):
     for length, distance in path:
         coder.put([((MATCH, at & 1, matched), int(distance > 0))])
         if distance == 0:
-            coder.put(literal(at & 1, data[at]))
+            coder.put(literal(context(data, at), data[at]))
         else:
             again = int(distance == last)
             coder.put([((AGAIN, matched), again)])
