@@ -19,6 +19,7 @@
 #define RESISTANCE_ERROR  NUM(0.6)   /* what a winding that warms up or is not known may have */
 #define CURRENT_DEVIATION NUM(0.075) /* of twice the rated current */
 #define CURRENT_MIN       NUM(0.025)
+#define FAST_TURNS        NUM(0.0625)
 
 static const double two_pi = 6.283185307179586476925;
 
@@ -171,11 +172,20 @@ static enum drive_fault judge_resistance(const struct drive *drive, const struct
     return look->larger == 0 ? DRIVE_FAULT_CURRENT_SENSOR_A : DRIVE_FAULT_CURRENT_SENSOR_B;
 }
 
-/* Never at the same place of a voltage that repeats itself. */
+/* A sixteenth of an electrical turn and more in a period: from look to look half a turn may pass,
+   and a current that goes through zero stands. */
+static bool turns_fast(const struct drive *drive)
+{
+    return num_abs(num_mul_coef(drive->estimator.estimate.rotor.speed,
+                                drive->params.model.turns_per_speed)) > FAST_TURNS;
+}
+
+/* Never at the same place of what repeats itself. */
 static uint32_t interval(const struct drive *drive)
 {
-    return LOOK_PERIODS +
-           (phase_watch_chatters(drive) ? drive->phase_watch.period / LOOK_PERIODS % 2u : 0u);
+    return phase_watch_chatters(drive) || turns_fast(drive)
+               ? LOOK_PERIODS + drive->phase_watch.period / LOOK_PERIODS % 2u
+               : LOOK_PERIODS;
 }
 
 void phase_watch_background(struct drive *drive)

@@ -191,6 +191,31 @@ static void test_with_an_encoder_and_state_feedback(void)
     }
 }
 
+/* Half an electrical turn lies between four periods at 1,250 Hz: from zero to zero of a current. */
+static void test_a_fast_rotor_is_looked_at_four_and_five_periods_apart(void)
+{
+    for (int fast = 0; fast < 2; fast++) {
+        uint32_t longest = 0;
+
+        setUp();
+        with_encoder(POSITION_LAW_STATE_FEEDBACK);
+        enable();
+        bridge.background = false;
+        for (int n = 0; n < 40; n++) {
+            const uint32_t before = drive.phase_watch.period;
+
+            period();
+            drive.estimator.estimate.rotor.speed =
+                num_from_double((fast == 1 ? 0.125 : 0.05) / drive.base.turns_per_period);
+            phase_watch_background(&drive);
+            if (drive.phase_watch.period - before > longest && n > 10) {
+                longest = drive.phase_watch.period - before;
+            }
+        }
+        TEST_ASSERT_EQUAL_UINT32(fast == 1 ? 5u : 4u, longest);
+    }
+}
+
 /* Nothing asks for more torque: only the true rotor's back-EMF shows that the load turns it. */
 static void test_an_encoder_that_stands_still_under_a_load_is_said(void)
 {
@@ -273,6 +298,7 @@ int main(void)
     RUN_TEST(test_without_an_encoder);
     RUN_TEST(test_with_an_encoder_and_its_default_law);
     RUN_TEST(test_with_an_encoder_and_state_feedback);
+    RUN_TEST(test_a_fast_rotor_is_looked_at_four_and_five_periods_apart);
     RUN_TEST(test_an_encoder_that_stands_still_under_a_load_is_said);
     RUN_TEST(test_a_rotor_that_is_pressed_against_a_stop_is_no_fault_of_the_encoder);
     RUN_TEST(test_a_sound_drive_says_nothing);
