@@ -2,7 +2,8 @@
 
 At each frequency the reference swings, and the drive records current and speed from the beginning of the motion on. A
 sensorless drive loses a rotor that a heavy load behind a stiff belt swings; the sweep is made with so little of the law's
-bandwidth that the rotor stays, each sine ends by itself, and between two of them the hold finds the rotor again."""
+bandwidth that the rotor stays, and each sine ends by itself. A rotor that is lost all the same would run away, so the drive
+opens its bridge there, whatever its policy; it is enabled again, and the swing is made with half the torque."""
 import cmath
 import contextlib
 import dataclasses
@@ -32,7 +33,9 @@ LIMIT_SHARE = 0.8                       # of current_limit_A
 DETENT_ZERO = 3.8317 / 4                # N amplitude at which the detent torque, 4 N to a turn, averages out: zero of J1
 DETENT_SHARE, DETENT_LOWER = 0.05, 0.3  # of the holding torque; of the stiffness
 TRIES = 3                               # with half the torque each, where a rotor loses step
-LOST = ("stalled", "lost")
+LOST = ("lost-synchronism", "stalled", "following-error", "estimate-range")  # faults of a swing that is too strong
+TURNS = "offset-range"                  # fault of enabling where the rotor still turns
+COMES_TO_REST_S, REST_TRIES = 0.3, 5
 ENABLED, OFF = ("OPERATION ENABLED", "SWITCHED ON"), ("SWITCH ON DISABLED", "READY TO SWITCH ON")
 
 
@@ -146,7 +149,7 @@ def _settings_of_the_sweep(drive: "Drive", progress: Progress) -> Iterator[None]
     before = {name: settings[name] for name in ("synchronism_policy", "rotor_inertia_percent")}
     try:
         switch_off(drive)
-        settings["synchronism_policy"] = "warn"
+        settings["synchronism_policy"] = "fault"
         percent = number(before["rotor_inertia_percent"])
         settings["rotor_inertia_percent"] = min(percent, SWEEP_PERCENT)
         drive.enable(progress=progress)
@@ -241,17 +244,18 @@ class _Sweep:
         """False: the rotor loses step there."""
         self._progress(f"{frequency_Hz:.0f} Hz", min(len(self._found) / total, 0.99))
         for _ in range(TRIES):
-            inertia = self._inertia_at(frequency_Hz)
-            if inertia is not None:
-                self._found[frequency_Hz], self._torque_at[frequency_Hz] = inertia, self._torque
+            try:
+                self._found[frequency_Hz], self._torque_at[frequency_Hz] = self._inertia_at(frequency_Hz), self._torque
                 return True
+            except DriveFault as fault:
+                if fault.name not in LOST:
+                    raise
             self._torque, self._lost_step = self._torque / 2, True
-            switch_off(self._drive)
-            self._drive.enable()
+            _enable_again(self._drive)
         return False
 
-    def _inertia_at(self, frequency_Hz: float) -> complex | None:
-        """As a share of that of the settings; None: the rotor has lost step."""
+    def _inertia_at(self, frequency_Hz: float) -> complex:
+        """As a share of that of the settings. Raises DriveFault, of LOST where the rotor has lost step."""
         from .drive import CONTROL_PERIOD_S
 
         begin_s, look_s = RAMP_S + SETTLING_S, max(LOOK_S, FEWEST_CYCLES / frequency_Hz)
@@ -261,8 +265,6 @@ class _Sweep:
             1 / (CONTROL_PERIOD_S * divider), CONTROL_PERIOD_S, unseen, Trigger("reference_moving", timeout_s=5.0),
             lambda: self._begin(frequency_Hz, begin_s + look_s + RAMP_S))
         _rest(self._drive)
-        if self._drive.read("synchronism") in LOST:
-            return None
         omega = 2 * math.pi * frequency_Hz
         first = next(n for n, at in enumerate(made.time_s) if at >= begin_s)
         half = (first + len(made)) // 2
@@ -280,6 +282,30 @@ class _Sweep:
             if self._drive.fault:
                 self._drive.raise_fault()
             raise
+
+
+def _enable_again(drive: "Drive") -> None:
+    """Behind a fault of the swing, as soon as the rotor has come to rest."""
+    for tries_left in reversed(range(REST_TRIES)):
+        drive.reset()
+        _pass(drive, COMES_TO_REST_S)
+        try:
+            drive.enable()
+            return
+        except DriveFault as fault:
+            if fault.name != TURNS or not tries_left:
+                raise
+
+
+def _pass(drive: "Drive", duration_s: float) -> None:
+    """By the drive's clock."""
+    from .drive import CONTROL_PERIOD_S
+
+    begin, end = int(drive.read("period")), time.monotonic() + 20
+    while (int(drive.read("period")) - begin) % 2**32 * CONTROL_PERIOD_S < duration_s:
+        if time.monotonic() > end:
+            raise TimedOut("the drive's clock stands")
+        time.sleep(0.01)
 
 
 def _rest(drive: "Drive") -> None:
