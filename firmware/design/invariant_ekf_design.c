@@ -100,6 +100,8 @@ static const struct tuning hold_tuning = {
 #define LOAD_STEP_NOISE 16.0
 #define LOAD_STEP_MIN   (0.015 / RATED_TORQUE_NM)
 #define LOAD_STEP_MAX   (0.025 / RATED_TORQUE_NM)
+/* Offsets of both phases add up to 1.41 of one, in the worst angle. */
+#define BOTH_PHASES 1.5
 /* A load step is followed until the rotor has swung out, in units of 1/w_h. */
 #define FOLLOWING_SWING 8.0
 /* Behind the gains that follow a load step the hold returns to the load found, for a while, unless
@@ -366,9 +368,18 @@ static double load_step_Nm(const struct motor_params *motor, double period_s, do
         hold_tuning.voltage_noise * motor->supply_V * period_s * square_root(periods);
     const double step_Nm = LOAD_STEP_NOISE * motor->rotor_teeth * hold_current_A * flux_Vs;
 
-    return step_Nm < LOAD_STEP_MIN * rated_Nm   ? LOAD_STEP_MIN * rated_Nm
-           : step_Nm < LOAD_STEP_MAX * rated_Nm ? step_Nm
-                                                : LOAD_STEP_MAX * rated_Nm;
+    return larger(LOAD_STEP_MIN * rated_Nm, smaller(LOAD_STEP_MAX * rated_Nm, step_Nm));
+}
+
+__attribute__((noinline)) void invariant_ekf_bear_offset(double period_s,
+                                                         double feigned_speed_rad_s,
+                                                         struct invariant_ekf_hold_gains *gains)
+{
+    /* Where as much returns in a period as is feigned in it. */
+    const double feigned_Nm =
+        BOTH_PHASES * feigned_speed_rad_s * period_s / gains->quiet.angle_return_rad_Nm;
+
+    gains->load_step_Nm = larger(gains->load_step_Nm, feigned_Nm);
 }
 
 bool invariant_ekf_settled_hold_design(const struct motor_params *motor, double period_s,

@@ -90,6 +90,15 @@ bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s
                                double hold_current_A, struct invariant_ekf_hold_gains *gains,
                                char error[DESIGN_ERROR_TEXT]);
 
+/*
+ * A current's offset feigns a speed (drive_blind_speed_rad_s), and in a settled hold the load at
+ * which as much angle returns; offsets in both phases 1.5 times that. Less is no step of the load:
+ * a hold that followed it would move the rotor with the current that compensates it, and begin anew
+ * before the offset is found.
+ */
+void invariant_ekf_bear_offset(double period_s, double feigned_speed_rad_s,
+                               struct invariant_ekf_hold_gains *gains);
+
 /* The same in two parts, one behind the other, of half its time each. */
 bool invariant_ekf_settled_hold_design(const struct motor_params *motor, double period_s,
                                        double hold_current_A,

@@ -121,7 +121,8 @@ struct speed_limit board_limits_speed(const struct drive_settings *settings,
                : (struct speed_limit){supplied_rad_s, "where the back-EMF takes up the supply"};
 }
 
-double drive_blind_speed_rad_s(const struct drive_settings *settings, const struct hal_facts *facts)
+__attribute__((noinline)) double drive_blind_speed_rad_s(const struct drive_settings *settings,
+                                                         const struct hal_facts *facts)
 {
     const double offset_A = facts->current_offset_codes * facts->current_A_per_code;
     const double resistance_ohm = settings->motor.resistance_ohm + facts->bridge_resistance_ohm;

@@ -75,13 +75,17 @@ __attribute__((noinline)) static bool design_steady_state_ekf(struct drive *driv
 }
 
 /* The gains are those of hold_current_A; less of it makes a softer spring. */
-static bool check_hold(const struct drive_settings *settings, double period_s,
-                       const struct invariant_ekf_hold_gains *gains, char error[DRIVE_ERROR_TEXT])
+__attribute__((noinline)) static bool fit_hold(const struct hal_facts *facts,
+                                               const struct drive_settings *settings,
+                                               struct invariant_ekf_hold_gains *gains,
+                                               char error[DRIVE_ERROR_TEXT])
 {
+    const double period_s = facts->control_period_s;
     struct text refusal = text_in(error, DRIVE_ERROR_TEXT);
     struct hold_task hold = hold_task_of(settings, period_s);
     char limit[DESIGN_ERROR_TEXT];
 
+    invariant_ekf_bear_offset(period_s, drive_blind_speed_rad_s(settings, facts), gains);
     if (!hold_estimator_check(&hold, gains, error)) {
         return false;
     }
@@ -121,7 +125,8 @@ __attribute__((noinline)) static bool design_invariant_ekf(struct drive *drive,
         return false;
     }
     drive_feed_watchdog(drive);
-    if (settings_ask_for_hold(settings) && !check_hold(settings, period_s, &holding, error)) {
+    if (settings_ask_for_hold(settings) &&
+        !fit_hold(drive->board->facts, settings, &holding, error)) {
         return false;
     }
     if (!settings->resistance_adaptation) {

@@ -3,7 +3,8 @@
 #include "firmware/drive/default_settings.h"
 
 bool drive_hold_bearing_of(const struct drive_settings *given, double period_s,
-                           struct drive_hold_bearing *bearing, char error[DRIVE_ERROR_TEXT])
+                           double blind_speed_rad_s, struct drive_hold_bearing *bearing,
+                           char error[DRIVE_ERROR_TEXT])
 {
     struct drive_settings settings = *given;
     const struct motor_params *motor = &settings.motor;
@@ -21,6 +22,7 @@ bool drive_hold_bearing_of(const struct drive_settings *given, double period_s,
         !hold_estimator_check(&task, &holding, error) || !hold_control_check(&task, error)) {
         return false;
     }
+    invariant_ekf_bear_offset(period_s, blind_speed_rad_s, &holding);
     *bearing = (struct drive_hold_bearing){
         .current_A = settings.hold_current_A,
         .heat_W = hold_heat_W(motor, settings.hold_current_A),

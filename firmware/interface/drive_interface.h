@@ -246,10 +246,11 @@ struct drive_hold_bearing {
     double drop_deg;          /* electrical; the estimate, by 2.5 % of R x rated current in 1/w_h */
 };
 
-/* Of settings that need not be complete. False, with the refusal in `error`, if the drive does not
-   bear the motor without an encoder. */
+/* Of settings that need not be complete, on a board that is blind below `blind_speed_rad_s`. False,
+   with the refusal in `error`, if the drive does not bear the motor without an encoder. */
 bool drive_hold_bearing_of(const struct drive_settings *settings, double period_s,
-                           struct drive_hold_bearing *bearing, char error[DRIVE_ERROR_TEXT]);
+                           double blind_speed_rad_s, struct drive_hold_bearing *bearing,
+                           char error[DRIVE_ERROR_TEXT]);
 
 /* With the default law of an encoder of so many counts, as it is designed of settings that need not
    be complete: its stiffness J w0^2, N m/rad, against what it has not observed yet. */

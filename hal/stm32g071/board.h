@@ -39,8 +39,8 @@ enum {
 /* Around a peak: 1 us of dead time, as much for the amplifiers to settle, and as much behind it. */
 #define LOW_STATE_s 4e-6
 
-/* What calibration leaves of a current's offset, assumed: a code, 0.8 mV, is 6 uV/K at the shunt
-   over 10 K behind a gain of 13.75. */
-#define CURRENT_OFFSET_CODES 1.0
+/* What calibration leaves of a current's offset, assumed: four codes, 3.3 mV, are 6 uV/K at the
+   shunt over 40 K behind a gain of 13.75. */
+#define CURRENT_OFFSET_CODES 4.0
 
 #endif

@@ -100,9 +100,9 @@ enum {
 /* Around a peak: 1 us of dead time, as much for the amplifiers to settle, and as much behind it. */
 #define LOW_STATE_s 4e-6
 
-/* What calibration leaves of a current's offset, assumed: a code, 0.8 mV, is the amplifier's drift
-   of 10 uV/K over 10 K at a gain of 8. */
-#define CURRENT_OFFSET_CODES 1.0
+/* What calibration leaves of a current's offset, assumed: four codes, 3.2 mV, are the amplifier's
+   drift of 10 uV/K over 40 K at a gain of 8. */
+#define CURRENT_OFFSET_CODES 4.0
 
 #ifndef HIGH_GATES_ACTIVE_LOW
 #define HIGH_GATES_ACTIVE_LOW 0

@@ -20,6 +20,9 @@
 namespace sil
 {
 
+/* What its HAL says of a board with this plant. */
+hal_facts facts_of(const plant::Config &plant);
+
 class Board : public DriveBoard
 {
   public:

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sil/board/board.h"
+
 namespace scenario
 {
 
@@ -48,8 +50,11 @@ HoldYield::HoldYield(const Scenario &scenario) : scenario_(scenario)
 {
     drive_hold_bearing bearing{};
     char refusal[DRIVE_ERROR_TEXT];
+    const hal_facts facts = sil::facts_of(scenario.plant);
     if (scenario.drive.feedback != DRIVE_FEEDBACK_ENCODER &&
-        drive_hold_bearing_of(&scenario.drive, scenario.plant.bridge.period_s, &bearing, refusal)) {
+        drive_hold_bearing_of(&scenario.drive, scenario.plant.bridge.period_s,
+                              drive_blind_speed_rad_s(&scenario.drive, &facts), &bearing,
+                              refusal)) {
         bearing_ = bearing;
     }
 }

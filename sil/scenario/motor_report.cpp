@@ -53,8 +53,8 @@ Figures consequences_of(const Motor &motor)
     return figures;
 }
 
-/* At the control period of the boards, with the default settings: the bearing, or why there is
-   none. */
+/* At the control period of the boards, with the default settings and a current range that suits the
+   motor: the bearing, or why there is none. */
 struct Sensorless {
     drive_hold_bearing bearing{};
     std::string refusal;
@@ -66,7 +66,7 @@ Sensorless sensorless_of(const Motor &motor)
     Sensorless found;
     char error[DRIVE_ERROR_TEXT];
     drive_settings_default(&settings, &motor.params);
-    if (!drive_hold_bearing_of(&settings, control_period_s, &found.bearing, error)) {
+    if (!drive_hold_bearing_of(&settings, control_period_s, 0.0, &found.bearing, error)) {
         found.refusal = error;
     }
     return found;

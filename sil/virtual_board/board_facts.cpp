@@ -17,7 +17,7 @@ namespace
 constexpr double dead_time_s = 1e-6, leg_delay_s = 20e-9, low_state_s = 4e-6;
 constexpr double counts_per_s = 170e6;
 constexpr double current_A_per_code = 12.0 / 4096, bus_V_per_code = 31.2 / 4096;
-constexpr double phase_voltage_V_per_code = 62.4 / 4096, current_offset_codes = 1;
+constexpr double phase_voltage_V_per_code = 62.4 / 4096, current_offset_codes = 4;
 
 double period_s(int half_period_counts)
 {

@@ -47,7 +47,7 @@ hal_facts board_facts()
     facts.converter_codes = 4096;
     facts.current_A_per_code = 12.0 / 4096.0;
     facts.current_zero_code = 2048;
-    facts.current_offset_codes = 1.0;
+    facts.current_offset_codes = 4.0;
     facts.bus_V_per_code = 31.2 / 4096.0;
     facts.phase_voltage_V_per_code = 62.4 / 4096.0;
     facts.has_phase_voltages = true;

@@ -243,16 +243,16 @@ def a_sweep_shows_the_error_and_the_window_it_is_asked_for(folder):
 
 
 def a_creep_that_the_sensing_hides_is_reported(folder):
-    """One code of +-100 A is 48.8 mA, over 0.37 ohm and 0.157 N m/A 0.115 rad/s."""
+    """Four codes of +-25 A are 48.8 mA, over 0.37 ohm and 0.157 N m/A 0.115 rad/s."""
     motion = ("[{time_s=0.0,command='velocity',speed_rad_s=SPEED,acceleration_rad_s2=50.0,"
               "jerk_rad_s3=1e5}]")
     for speed, blind in (("0.1", 0.11507), ("0.2", None)):
-        done = run_small(folder, SMALL, "--set", "plant.current_range_A=100", "--set",
+        done = run_small(folder, SMALL, "--set", "plant.current_range_A=25", "--set",
                          "event=" + motion.replace("SPEED", speed), "--set", "duration_s=0.2")
         said = summary_of(folder)["blind_below_rad_s"]
         CHECKS.that(said is None if blind is None else abs(said - blind) < 1e-4,
                     f"{speed} rad/s: {said}")
-        CHECKS.that(("blind: +-100 A for a 3 A motor: creep below 0.12 rad/s is out of reach"
+        CHECKS.that(("blind: +-25 A for a 3 A motor: creep below 0.12 rad/s is out of reach"
                      in done.stdout) == (blind is not None), f"{speed} rad/s: {done.stdout}")
 
 

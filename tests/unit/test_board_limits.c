@@ -145,6 +145,7 @@ static void test_the_blind_speed_is_that_whose_back_emf_the_offset_covers(void)
     settings.motor.resistance_ohm = 6.8;
     settings.motor.torque_constant_Nm_A = 0.1;
     facts.bridge_resistance_ohm = 0.2;
+    facts.current_offset_codes = 1.0;
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 12.0 / 4096.0 * 7.0 / 0.1,
                               drive_blind_speed_rad_s(&settings, &facts));
     facts.current_offset_codes = 4.0;

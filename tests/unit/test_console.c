@@ -52,7 +52,7 @@ static void test_it_announces_the_firmware_and_why_it_started(void)
     TEST_ASSERT_NOT_NULL(strstr(heard, "rotor_teeth=50"));
     TEST_ASSERT_NOT_NULL(strstr(heard,
                                 "law=state-feedback feedback=sensorless "
-                                "blind_below_rad_s=0.00690436 hold_torque_Nm=0.471 "
+                                "blind_below_rad_s=0.0276174 hold_torque_Nm=0.471 "
                                 "hold_load_step_Nm=0.341287 hold_heat_W=3.33 brake=0; started by: "
                                 "crash: hard fault at 0x08001234\n"));
     application_background(&bench.application);
@@ -629,7 +629,7 @@ static void test_the_start_names_settings_board_and_what_the_hold_bears(void)
                    "version, %s, on bench; settings: given resistance_ohm=0.37 inductance_H=0.0009 "
                    "torque_constant_Nm_A=0.157 viscous_friction_Nms_rad=0.000307 "
                    "inertia_kgm2=0.0001562 rated_current_A=3 supply_V=24 rotor_teeth=50 "
-                   "law=state-feedback feedback=sensorless blind_below_rad_s=0.00690436 "
+                   "law=state-feedback feedback=sensorless blind_below_rad_s=0.0276174 "
                    "hold_torque_Nm=0.471 hold_load_step_Nm=0.341287 hold_heat_W=3.33 brake=0; "
                    "started by: crash: hard fault at 0x08001234\n",
                    STEADYSTEP_NUM == NUM_FLOAT   ? "float"

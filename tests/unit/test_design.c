@@ -444,6 +444,18 @@ static void settled_hold_gains_of_the_reference_motor(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.025, hold.load_step_Nm);
 }
 
+/* 0.2 rad/s go on for 10.9 ms, against 11.775 N m/rad; of both phases 1.5 times. */
+static void what_an_offset_feigns_is_no_load_step(void)
+{
+    struct invariant_ekf_hold_gains hold;
+
+    TEST_ASSERT_TRUE(invariant_ekf_hold_design(&motor, period_s, 1.5, &hold, error));
+    invariant_ekf_bear_offset(period_s, 0.1, &hold);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.025, hold.load_step_Nm);
+    invariant_ekf_bear_offset(period_s, 0.2, &hold);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01 * 0.0385, 0.0385, hold.load_step_Nm);
+}
+
 static void a_hold_that_follows_leaves_the_offset_alone_and_lets_no_load_return(void)
 {
     struct invariant_ekf_hold_gains hold;
@@ -498,6 +510,7 @@ int main(void)
     RUN_TEST(paper_gain_at_standstill_is_the_one_extracted);
     RUN_TEST(motion_gains_are_the_optimum_found_for_the_reference_motor);
     RUN_TEST(settled_hold_gains_of_the_reference_motor);
+    RUN_TEST(what_an_offset_feigns_is_no_load_step);
     RUN_TEST(a_hold_that_follows_leaves_the_offset_alone_and_lets_no_load_return);
     RUN_TEST(an_unloaded_hold_learns_the_offset_alone);
     return UNITY_END();

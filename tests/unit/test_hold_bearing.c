@@ -15,7 +15,8 @@ void tearDown(void)
 
 static void ask(void)
 {
-    TEST_ASSERT_TRUE_MESSAGE(drive_hold_bearing_of(&settings, PERIOD_S, &bearing, error), error);
+    TEST_ASSERT_TRUE_MESSAGE(drive_hold_bearing_of(&settings, PERIOD_S, 0.0, &bearing, error),
+                             error);
 }
 
 static void near(double share, double expected, double actual)
@@ -77,10 +78,19 @@ static void test_a_light_rotor_is_thrown_less_and_led_as_fast_as_its_back_emf_be
     near(1e-3, 0.6975, bearing.thrown_deg);
 }
 
+/* A step that the offset of a current feigns, 0.0385 N m: 50 x 0.157 x 1.5 N m/rad x 0.2 rad/s
+ * x 10.9 ms x 1.5. */
+static void test_a_coarse_board_notices_less(void)
+{
+    settings.hold_current_A = 1.5;
+    TEST_ASSERT_TRUE(drive_hold_bearing_of(&settings, PERIOD_S, 0.2, &bearing, error));
+    near(0.01, 0.03168 * 0.0385 / 0.025, bearing.noticed_step_Nm);
+}
+
 static void test_a_heavy_rotor_is_refused_with_what_the_winding_would_do(void)
 {
     settings.motor.inertia_kgm2 *= 1000.0;
-    TEST_ASSERT_FALSE(drive_hold_bearing_of(&settings, PERIOD_S, &bearing, error));
+    TEST_ASSERT_FALSE(drive_hold_bearing_of(&settings, PERIOD_S, 0.0, &bearing, error));
     TEST_ASSERT_EQUAL_STRING("winding_drop_angle_error 41.24 degrees electrical: must be at most "
                              "20 degrees electrical, of 2.5 % of R x rated current: too little "
                              "back-EMF for its inertia",
@@ -120,6 +130,7 @@ int main(void)
     RUN_TEST(test_the_reference_motor_is_held_by_its_rated_current);
     RUN_TEST(test_half_the_current_bears_half_as_much_for_a_quarter_of_the_heat);
     RUN_TEST(test_a_light_rotor_is_thrown_less_and_led_as_fast_as_its_back_emf_bears);
+    RUN_TEST(test_a_coarse_board_notices_less);
     RUN_TEST(test_a_heavy_rotor_is_refused_with_what_the_winding_would_do);
     RUN_TEST(test_the_hold_is_damped_as_its_sampled_loop_is);
     RUN_TEST(test_the_law_is_as_stiff_as_its_bandwidth);
