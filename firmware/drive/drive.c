@@ -247,7 +247,7 @@ bool drive_init(struct drive *drive, const struct hal *board, const struct drive
 static struct following_error_params design_following_error(const struct drive *drive,
                                                             double period_s)
 {
-    const bool encoder = drive->settings.feedback == DRIVE_FEEDBACK_ENCODER;
+    const bool encoder = reads_encoder(&drive->settings);
     const struct following_error_task task = {
         .base = &drive->base,
         .period_s = period_s,
@@ -292,8 +292,7 @@ static void design_positions(struct enabling_params *enabling,
     const double error_rad = settings->initial_angle_error_rad;
 
     enabling->initial_position = position_from_rad(settings->initial_angle_rad + error_rad, teeth);
-    enabling->encoder_zero_known =
-        settings->feedback == DRIVE_FEEDBACK_ENCODER && settings->encoder_zero_known;
+    enabling->encoder_zero_known = reads_encoder(settings) && settings->encoder_zero_known;
     enabling->encoder_zero = position_from_rad(settings->encoder_zero_rad, teeth);
     enabling->encoder_zero_assumed =
         position_from_rad(settings->encoder_zero_rad + error_rad, teeth);
@@ -345,8 +344,7 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
     params->path.general = position_law_gives_voltage(settings->law) || settings->detent_learning ||
                            settings->standstill_pulses || params->path.infers_voltage ||
                            params->path.zero_delay || !settings->bridge_loss_compensation ||
-                           !settings->feed_forward ||
-                           settings->feedback == DRIVE_FEEDBACK_ENCODER ||
+                           !settings->feed_forward || reads_encoder(settings) ||
                            settings->estimator != DRIVE_ESTIMATOR_INVARIANT_EKF;
     params->enabling.initial_load_torque =
         num_from_double(settings->initial_load_torque_Nm / drive->base.torque_Nm);

@@ -61,6 +61,12 @@ static inline bool has_zero_delay(const struct path_params *path)
     return SERVES_SIMULATION && path->zero_delay;
 }
 
+/* Of settings that are in force: false, and known to be, where no estimator reads an encoder. */
+static inline bool reads_encoder(const struct drive_settings *settings)
+{
+    return ESTIMATORS_READ_ENCODER && settings->feedback == DRIVE_FEEDBACK_ENCODER;
+}
+
 /* The steps of enabling, and what is assumed of the motor before them. */
 struct enabling_params {
     struct position initial_position;     /* rotor; with initial_angle_error_rad */

@@ -212,7 +212,7 @@ bool planner_request_torque(struct drive *drive, const struct drive_command *com
     struct motion_request stop;
     struct drive_command velocity = {.speed_rad_s = command->speed_rad_s};
 
-    if (settings->feedback != DRIVE_FEEDBACK_ENCODER) {
+    if (!reads_encoder(settings)) {
         return design_refuse(error, "torque refused: without an encoder a slow rotor is lost");
     }
     if (velocity.speed_rad_s == 0.0) {

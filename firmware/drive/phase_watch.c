@@ -31,7 +31,7 @@ struct phase_watch_params phase_watch_design(const struct per_unit *base,
         (uint16_t)(NOISE_SHARE * settings->motor.rated_current_A / facts->current_A_per_code);
     double voltage = VOLTAGE_ERROR;
 
-    if (settings->feedback == DRIVE_FEEDBACK_ENCODER) {
+    if (reads_encoder(settings)) {
         voltage += COUNTS_ERROR * two_pi / (double)facts->encoder_counts_per_turn *
                    settings->observer_bandwidth_rad_s / base->speed_rad_s;
     }
@@ -115,7 +115,7 @@ static struct phases back_emf(const struct drive *drive)
 {
     const struct rotor *rotor = &drive->estimator.estimate.rotor;
     const struct reference_sample *reference = &drive->reference.next; /* at S(k+1) */
-    const bool encoder = drive->settings.feedback == DRIVE_FEEDBACK_ENCODER;
+    const bool encoder = reads_encoder(&drive->settings);
     const num_t speed = encoder ? rotor->speed : reference->speed;
     const num_t turn = num_mul_coef(speed, drive->params.model.turns_per_speed);
     const angle_t begin = encoder ? rotor->position.fraction + (angle_t)angle_from_turns(turn)

@@ -141,8 +141,7 @@ static bool winding_denies(struct drive *drive, uint32_t period)
 static enum drive_fault look(struct drive *drive, uint32_t period)
 {
     const struct following_error_params *following = &drive->params.following;
-    const bool encoder =
-        ESTIMATORS_READ_ENCODER && drive->settings.feedback == DRIVE_FEEDBACK_ENCODER;
+    const bool encoder = reads_encoder(&drive->settings);
     const bool watched = encoder ? following->limit > NUM(0.0)
                                  : drive->synchronism.monitored &&
                                        drive->synchronism.policy == DRIVE_SYNCHRONISM_FAULT;

@@ -7,8 +7,7 @@
 
 bool axis_torque_is_carried(const struct application *application)
 {
-    return ESTIMATORS_READ_ENCODER &&
-           application->drive.settings.feedback == DRIVE_FEEDBACK_ENCODER;
+    return reads_encoder(&application->drive.settings);
 }
 
 /* The target, cut at the current limit, in thousandths of the rated torque. */
