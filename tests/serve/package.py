@@ -6,6 +6,7 @@ usage: package.py SIL
 import csv
 import math
 import pathlib
+import signal
 import sys
 import tempfile
 import threading
@@ -178,6 +179,27 @@ def a_fault_is_in_words(drive, knobs):
     drive.settings["torque_constant_Nm_A"] = 0.157
 
 
+def a_response_that_comes_late_is_not_the_next_one_s(drive, process):
+    """Ctrl-C behind a request that will be refused, to a drive that stands still for a while."""
+    sdo, before = drive.objects.node.sdo, drive.settings["current_limit_A"]
+    read = sdo.read_response
+
+    def interrupted():
+        sdo.read_response = read
+        raise KeyboardInterrupt
+
+    process.send_signal(signal.SIGSTOP)
+    threading.Timer(0.3, lambda: process.send_signal(signal.SIGCONT)).start()
+    sdo.read_response = interrupted
+    try:
+        with drive.objects.transfer():
+            sdo.upload(0x5FFF, 0)
+    except KeyboardInterrupt:
+        pass
+    found = refusal(lambda: drive.settings["current_limit_A"])
+    CHECKS.that(found == "" and drive.settings["current_limit_A"] == before, f"it is the next one's: {found}")
+
+
 def a_lost_link_is_said(drive, knobs):
     knobs.turn('command = "power-cycle"')
     time.sleep(0.1)
@@ -227,6 +249,7 @@ with tempfile.TemporaryDirectory() as scratch, Simulated(program=SIL) as simulat
         it_captures(DRIVE, FOLDER)
         what_the_drive_records_itself(DRIVE)
         a_fault_is_in_words(DRIVE, simulated.knobs)
+        a_response_that_comes_late_is_not_the_next_one_s(DRIVE, simulated.process)
         a_lost_link_is_said(DRIVE, simulated.knobs)
 a_terminal_serves_as_well()
 CHECKS.end()

@@ -115,6 +115,58 @@ def the_detent_torque_makes_it_a_range():
     CHECKS.that(found.without_detent_Hz < 0.97 * found.resonance_Hz and " to 1" in str(found), str(found))
 
 
+# ---- a swing that is too strong ----
+
+
+class Sweeper:
+    """A drive whose rotor turns for a while behind each fault, and a sweep of it that ends in given faults."""
+
+    def __init__(self, *faults):
+        self.faults, self.torques, self.period, self.turns, self.resets = list(faults), [], 0, 0, 0
+        self.sweep = resonance._Sweep(resonance.Plan(self, 40.0, 400.0, 0.2, 1e-5, 0.4, 50), lambda what, share: None)
+        self.sweep._inertia_at = self.swing
+
+    settings = {"torque_constant_Nm_A": 0.1, "rated_current_A": 4.0}
+
+    def swing(self, _):
+        self.torques.append(self.sweep._torque)
+        if self.faults and self.faults[0]:
+            raise steadystep.DriveFault(self.faults.pop(0), 0, "", "")
+        return 1 + 0j
+
+    def read(self, _):
+        self.period += 1000
+        return self.period
+
+    def reset(self):
+        self.resets += 1
+
+    def enable(self):
+        if self.turns > 0:
+            self.turns -= 1
+            raise steadystep.DriveFault(resonance.TURNS, 0, "", "")
+
+
+def a_swing_that_is_too_strong_is_made_with_half_the_torque():
+    for fault in ("lost-synchronism", "stalled", "following-error", "estimate-range"):
+        drive = Sweeper(fault)
+        CHECKS.that(drive.sweep._measure(100.0, 10) and drive.torques == [1.0, 0.5], f"{fault}: {drive.torques}")
+    drive = Sweeper("stalled", "stalled", "stalled")
+    CHECKS.that(not drive.sweep._measure(100.0, 10) and drive.torques == [1.0, 0.5, 0.25], f"twice: {drive.torques}")
+    drive = Sweeper("current-sensor-b")
+    CHECKS.that(refusal(lambda: drive.sweep._measure(100.0, 10), steadystep.DriveFault) and drive.torques == [1.0],
+                "what the swing is not to blame for ends it")
+
+
+def a_rotor_that_still_turns_is_waited_for():
+    drive = Sweeper("lost-synchronism")
+    drive.turns = 3
+    CHECKS.that(drive.sweep._measure(100.0, 10) and drive.resets == 4, f"{drive.resets} resets")
+    drive = Sweeper("lost-synchronism")
+    drive.turns = 100
+    CHECKS.that(refusal(lambda: drive.sweep._measure(100.0, 10), steadystep.DriveFault) and drive.resets == 5, "not for ever")
+
+
 # ---- a served drive ----
 
 
@@ -214,6 +266,8 @@ friction_and_detent_torque_below_do_not_hide_one()
 at_an_edge_nothing_is_certain()
 a_swing_on_the_detent_torque_is_not_certain()
 the_detent_torque_makes_it_a_range()
+a_swing_that_is_too_strong_is_made_with_half_the_torque()
+a_rotor_that_still_turns_is_waited_for()
 if sys.argv[2:] == ["full"]:
     for SHARE, BELT_Hz in ((0.5, 120), (0.7, 350), (0.5, 250)):
         it_is_found(SHARE, BELT_Hz)

@@ -1,6 +1,8 @@
 """A client's access to a drive's objects over SDO: one at a time, and errors in words."""
 import contextlib
 import logging
+import queue
+import struct
 import threading
 import time
 from typing import Any, Callable, Iterator
@@ -18,7 +20,8 @@ logging.getLogger("canopen").addHandler(logging.NullHandler())  # what it says i
 
 OUT_OF_RANGE, WRONG_STATE, STORE_FAILED = 0x06090030, 0x08000022, 0x06060000
 RESPONSE_S, TRIES = 0.5, 1
-LATE_S = 0.1  # of a response behind an abort
+LATE_S = 2.0  # of a response behind an abort
+UPLOAD, UPLOADED = 0x40, 0x43  # command bytes of CiA 301, of four bytes
 PATIENCE_S, SILENCE_S = 10.0, 0.4  # with a server that serves another program; of a line that is dead
 
 Number = bool | int | float | str
@@ -100,10 +103,17 @@ class Objects:
                 raise
 
     def _give_up(self) -> None:
-        """What was asked is answered yet, perhaps: before the next request, whose response it would pass for."""
-        if not self.bus.lost:
-            self.node.sdo.abort()
-            time.sleep(LATE_S)
+        """What was asked is answered yet, perhaps, and would pass for the response to the next request. So a request of its own
+        is behind it: with its response all that came before has come."""
+        if self.bus.lost:
+            return
+        sdo, end = self.node.sdo, time.monotonic() + LATE_S
+        sdo.abort()
+        asked = struct.pack("<BHB4x", UPLOAD, 0x1000, 0)
+        sdo.send_request(asked)
+        with contextlib.suppress(queue.Empty):
+            while sdo.responses.get(timeout=max(end - time.monotonic(), 0.0))[:4] != bytes([UPLOADED]) + asked[1:4]:
+                pass
 
     def _refusal(self, error: SdoAbortedError) -> Refused:
         if error.code == OUT_OF_RANGE:
