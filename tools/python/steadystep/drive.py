@@ -6,7 +6,7 @@ from . import capture_in_drive
 from .axis import Axis
 from .byte_line import ByteLine, open_line
 from .capture import Capture, Recorder, record
-from .capture_in_drive import Trigger
+from .capture_in_drive import CONTROL_PERIOD_S, Trigger
 from .dictionary import dictionary
 from .errors import Refused, WrongVersion
 from .objects import Objects
@@ -15,7 +15,6 @@ from .settings import Progress, Settings, unseen
 if TYPE_CHECKING:
     from .resonance_curve import Resonance
 
-CONTROL_PERIOD_S = 1e-4  # of the boards and of the simulated one
 SAVE, LOAD = 0x65766173, 0x64616F6C
 
 

@@ -12,7 +12,7 @@ import time
 from typing import TYPE_CHECKING, Iterator, Sequence
 
 from . import capture_in_drive
-from .capture_in_drive import Trigger
+from .capture_in_drive import CONTROL_PERIOD_S, Trigger
 from .dictionary import Value
 from .errors import DriveFault, LostLink, Refused, TimedOut
 from .resonance_curve import BESIDE, NONE, Point, Resonance, find_minimum, is_passed, judge
@@ -91,8 +91,6 @@ def plan(drive: "Drive", lowest_Hz: float = 30.0, highest_Hz: float | None = Non
          torque_share: float | None = None) -> Plan:
     """Of a drive at rest, enabled or not; torque_share: 0.2, and 0.5 with an encoder, which loses no rotor. Raises Refused where
     no sweep is possible."""
-    from .drive import CONTROL_PERIOD_S
-
     most_Hz = 1 / (PERIODS_A_CYCLE * CONTROL_PERIOD_S)
     highest_Hz = 0.9 * most_Hz if highest_Hz is None else highest_Hz
     if torque_share is None:
@@ -256,8 +254,6 @@ class _Sweep:
 
     def _inertia_at(self, frequency_Hz: float) -> complex:
         """As a share of that of the settings. Raises DriveFault, of LOST where the rotor has lost step."""
-        from .drive import CONTROL_PERIOD_S
-
         begin_s, look_s = RAMP_S + SETTLING_S, max(LOOK_S, FEWEST_CYCLES / frequency_Hz)
         divider = max(1, int(1 / (CONTROL_PERIOD_S * SAMPLES_A_CYCLE * frequency_Hz)))
         made = capture_in_drive.record_in_drive(
@@ -299,8 +295,6 @@ def _enable_again(drive: "Drive") -> None:
 
 def _pass(drive: "Drive", duration_s: float) -> None:
     """By the drive's clock."""
-    from .drive import CONTROL_PERIOD_S
-
     begin, end = int(drive.read("period")), time.monotonic() + 20
     while (int(drive.read("period")) - begin) % 2**32 * CONTROL_PERIOD_S < duration_s:
         if time.monotonic() > end:
@@ -311,8 +305,6 @@ def _pass(drive: "Drive", duration_s: float) -> None:
 def _rest(drive: "Drive") -> None:
     """Until the reference rests, and so much longer that the hold has the rotor; by the drive's clock: a simulated one may
     be slow."""
-    from .drive import CONTROL_PERIOD_S
-
     end, since = time.monotonic() + 20, None
     while True:
         if drive.fault:
