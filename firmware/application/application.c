@@ -26,8 +26,7 @@ static bool design(struct application *application, const struct drive_settings 
     if (!machine_io_start(application, starts, error)) {
         return false;
     }
-    if (ESTIMATORS_READ_ENCODER && settings->feedback == DRIVE_FEEDBACK_ENCODER &&
-        application->facts.encoder_counts_per_turn == 0u) {
+    if (reads_encoder(settings) && application->facts.encoder_counts_per_turn == 0u) {
         return design_refuse(error, "feedback = encoder, but none is known: set "
                                     "encoder_counts_per_turn, or feedback = sensorless");
     }

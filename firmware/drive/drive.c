@@ -33,9 +33,8 @@ static void design_detent_compensation(struct drive *drive, const struct drive_s
         .base = &drive->base,
         .period_s = period_s,
         .observer_bandwidth_rad_s = settings->observer_bandwidth_rad_s,
-        .counts_per_turn = settings->feedback == DRIVE_FEEDBACK_ENCODER
-                               ? drive->board->facts->encoder_counts_per_turn
-                               : 0u,
+        .counts_per_turn =
+            reads_encoder(settings) ? drive->board->facts->encoder_counts_per_turn : 0u,
     };
     struct learned_parameters learned;
 

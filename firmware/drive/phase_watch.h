@@ -10,11 +10,12 @@
  * its observer see; over the periods in which a current law misses its reference by 15 % of the
  * rated current, or a voltage law acts. But for feedback linearisation voltage laws may change
  * their voltage's sign from period to period: of these the sum is of |...| with the sign of
- * u - R i - e. They are looked at four and five periods apart in turn, as are all where four are
- * half an electrical turn, from zero to zero of a current. A rotor that has pulled out shows a
- * back-EMF that is not its estimate's, too, but with currents that follow. Without an encoder e is
- * that of the reference, turned by what the estimate has been beside it over the last 13 ms: with
- * the reference's alone a rotor that lags, on a belt that swings, was a broken lead.
+ * u - R i - e. They are looked at four and five periods apart in turn, as are all from a
+ * sixteenth of an electrical turn a period on: half a turn leads from zero to zero of a current. A
+ * rotor that has pulled out shows a back-EMF that is not its estimate's, too, but with currents
+ * that follow. Without an encoder e is that of the reference, turned by what the estimate has been
+ * beside it over the last 13 ms: with the reference's alone a rotor that lags, on a belt that
+ * swings, was a broken lead.
  *
  * In a hold a stuck sensor lets the true current drift away, and the resistance that is found with
  * it: at the end of its range it is the sensor of the larger current.

@@ -6,6 +6,8 @@ enum {
     TOP = 1 << 24,
     GAMMA_BITS = 16, /* of a number, the first left out: at most one less */
     GAMMA_MODELS = GAMMA_BITS * (GAMMA_BITS + 1),
+    EVEN_PLACE = 8, /* of the contexts of a literal, behind eight of odd places */
+    CONTEXTS = 9,
 };
 
 /* Where the models of each kind begin. */
@@ -13,7 +15,7 @@ enum model {
     MATCH = 0,                            /* by place, even or odd, and whether a match was last */
     AGAIN = MATCH + 4,                    /* by the latter */
     LITERAL = AGAIN + 2,                  /* by literal_context, and the bits so far behind a 1 */
-    LENGTH = LITERAL + 9 * 256,           /* by whether it is again */
+    LENGTH = LITERAL + CONTEXTS * 256,    /* by whether it is again */
     DISTANCE = LENGTH + 2 * GAMMA_MODELS, /* by whether the length is above 2 */
     MODELS = DISTANCE + 2 * GAMMA_MODELS,
 };
@@ -67,7 +69,7 @@ static uint8_t take_literal(struct unpacker *unpacker, unsigned models)
 static unsigned literal_context(const uint8_t *begin, const uint8_t *to)
 {
     if (((to - begin) & 1) == 0) {
-        return 8;
+        return EVEN_PLACE;
     }
     return to - begin > 1 ? to[-2] >> 2 & 7u : 0u;
 }

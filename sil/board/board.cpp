@@ -28,7 +28,7 @@ hal_facts facts_of(const plant::Config &config)
     facts.converter_codes = static_cast<std::uint32_t>(plant::converter_codes(config.sensors));
     facts.current_A_per_code = plant::current_A_per_code(config.sensors);
     facts.current_zero_code = static_cast<std::uint16_t>(plant::current_zero_code(config.sensors));
-    facts.current_offset_codes = 4.0; /* as the reference board */
+    facts.current_offset_codes = current_offset_codes;
     facts.bus_V_per_code = plant::bus_V_per_code(config.sensors);
     facts.bridge_ntc_beta_K = config.sensors.bridge_ntc_beta_K;
     facts.phase_voltage_V_per_code = plant::phase_voltage_V_per_code(config.sensors);

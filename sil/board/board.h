@@ -20,6 +20,9 @@
 namespace sil
 {
 
+/* Of an offset, what calibration leaves: as the reference board. */
+constexpr double current_offset_codes = 4.0;
+
 /* What its HAL says of a board with this plant. */
 hal_facts facts_of(const plant::Config &plant);
 

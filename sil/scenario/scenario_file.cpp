@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <iterator>
 
+#include "sil/board/board.h"
 #include "sil/scenario/number_formats.h"
 #include "sil/scenario/settings_file.h"
 #include "sil/scenario/table_reader.h"
@@ -25,6 +26,8 @@ constexpr double most_rows = 6e6; /* 25 columns: 1.2 GB */
 constexpr double largest_position_rad = 1e7;
 /* Of the converters' ranges: 10 mA of 6 A, 5 mV of 31.2 V. */
 constexpr double residual_current = 10e-3 / 6.0, residual_voltage = 5e-3 / 31.2;
+static_assert(residual_current <= sil::current_offset_codes * 2.0 / 4096.0,
+              "a board as built drifts by no more than its drive assumes");
 
 /* `plant = "real"` is short for its model alone. */
 void spell_out_plant(Value &document)

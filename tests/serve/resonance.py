@@ -126,7 +126,7 @@ class Sweeper:
         self.sweep = resonance._Sweep(resonance.Plan(self, 40.0, 400.0, 0.2, 1e-5, 0.4, 50), lambda what, share: None)
         self.sweep._inertia_at = self.swing
 
-    settings = {"torque_constant_Nm_A": 0.1, "rated_current_A": 4.0}
+    settings, fault = {"torque_constant_Nm_A": 0.1, "rated_current_A": 4.0}, None
 
     def swing(self, _):
         self.torques.append(self.sweep._torque)
@@ -134,9 +134,9 @@ class Sweeper:
             raise steadystep.DriveFault(self.faults.pop(0), 0, "", "")
         return 1 + 0j
 
-    def read(self, _):
+    def read(self, name):
         self.period += 1000
-        return self.period
+        return self.period if name == "period" else 0
 
     def reset(self):
         self.resets += 1

@@ -10,6 +10,8 @@ LONGEST = 255
 CANDIDATES = 64  # earlier places that a match is looked for at
 PASSES = 3  # each counts by what the one before has learned
 
+EVEN_PLACE, CONTEXTS = 8, 9  # of a literal: one of even places, eight of odd ones
+
 MATCH, AGAIN, LITERAL = "match", "again", "literal"
 
 
@@ -26,7 +28,7 @@ def gamma(name, value):
 def context(data, at):
     """An odd place is the half of an instruction that says what it does: by three bits of the one before it."""
     if at & 1 == 0:
-        return 8
+        return EVEN_PLACE
     return data[at - 2] >> 2 & 7 if at > 1 else 0
 
 
@@ -102,7 +104,7 @@ class Prices:
             model: [sixteenths(2 * n + 1, 2 * sum(both) + 2) for n in both]
             for model, both in counts.items()
         }
-        self.literals = [[self.sum(literal(c, byte)) for byte in range(256)] for c in range(9)]
+        self.literals = [[self.sum(literal(c, byte)) for byte in range(256)] for c in range(CONTEXTS)]
         self.lengths = [
             [0] * 2 + [self.sum(length_bits(n, again)) for n in range(2, LONGEST + 1)]
             for again in range(2)

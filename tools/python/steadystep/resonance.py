@@ -284,7 +284,7 @@ def _enable_again(drive: "Drive") -> None:
     """Behind a fault of the swing, as soon as the rotor has come to rest."""
     for tries_left in reversed(range(REST_TRIES)):
         drive.reset()
-        _pass(drive, COMES_TO_REST_S)
+        _rest(drive, COMES_TO_REST_S)
         try:
             drive.enable()
             return
@@ -293,18 +293,9 @@ def _enable_again(drive: "Drive") -> None:
                 raise
 
 
-def _pass(drive: "Drive", duration_s: float) -> None:
-    """By the drive's clock."""
-    begin, end = int(drive.read("period")), time.monotonic() + 20
-    while (int(drive.read("period")) - begin) % 2**32 * CONTROL_PERIOD_S < duration_s:
-        if time.monotonic() > end:
-            raise TimedOut("the drive's clock stands")
-        time.sleep(0.01)
-
-
-def _rest(drive: "Drive") -> None:
-    """Until the reference rests, and so much longer that the hold has the rotor; by the drive's clock: a simulated one may
-    be slow."""
+def _rest(drive: "Drive", lasts_s: float = REST_S) -> None:
+    """Until the reference has rested for so long: for the hold to have the rotor, or a lost one to have stopped. By the drive's
+    clock: a simulated one may be slow."""
     end, since = time.monotonic() + 20, None
     while True:
         if drive.fault:
@@ -314,7 +305,7 @@ def _rest(drive: "Drive") -> None:
             since = None
         elif since is None:
             since = period
-        elif (period - since) % 2**32 * CONTROL_PERIOD_S >= REST_S:
+        elif (period - since) % 2**32 * CONTROL_PERIOD_S >= lasts_s:
             return
         if time.monotonic() > end:
             raise TimedOut("the axis has not come to rest within 20 s")
