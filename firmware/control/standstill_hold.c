@@ -6,6 +6,11 @@ static const double error_limit_turns = 0.05;
 /* The same of a rotor that is held where it is, and led. */
 #define FAR_LIMIT NUM(0.25)
 
+/* A swing is slow for less than the delay where it turns round. A period that is not slow takes
+   back so many that were. */
+#define STANDING_DELAYS 4u
+#define NOISE_COSTS     8u
+
 /* Within the ramp of the current the rotor may travel a sixteenth of an electrical turn. */
 static const double ramp_travel_turns = 0.0625;
 
@@ -40,6 +45,7 @@ void standstill_hold_reset(struct standstill_hold *hold,
     hold->active = false;
     hold->current = params->current;
     hold->i_d = NUM(0.0);
+    hold->standing = 0u;
 }
 
 void standstill_hold_enter(struct standstill_hold *hold, angle_t reference)
@@ -101,6 +107,20 @@ void standstill_hold_leave(struct standstill_hold *hold, uint32_t slow_periods, 
     } else if (moving) {
         hold->leads = true;
     }
+}
+
+bool standstill_hold_sees_rotor_stand(struct standstill_hold *hold,
+                                      const struct standstill_hold_params *params, num_t speed,
+                                      uint32_t slow_periods)
+{
+    const uint32_t before = slow_periods > params->delay_periods ? hold->standing : 0u;
+
+    if (num_abs(speed) < params->speed_limit) {
+        hold->standing = before + 1u;
+    } else {
+        hold->standing = before > NOISE_COSTS ? before - NOISE_COSTS : 0u;
+    }
+    return hold->standing / STANDING_DELAYS >= params->delay_periods;
 }
 
 void standstill_hold_consider(struct standstill_hold *hold,

@@ -11,8 +11,8 @@
  * current then ramps out in the rotor frame, where it makes no torque.
  *
  * A position law that is weak for its rotor may not bring it near, and unseen the estimate drifts.
- * So after four times the delay a slow rotor within a quarter of an electrical turn is held where
- * it is taken to be, and the frame leads it to the reference.
+ * So a rotor that stands, within a quarter of an electrical turn, is held where it is taken to be,
+ * and the frame leads it to the reference.
  */
 #ifndef STEADYSTEP_STANDSTILL_HOLD_H
 #define STEADYSTEP_STANDSTILL_HOLD_H
@@ -46,6 +46,7 @@ struct standstill_hold {
     int32_t offset;      /* of the frame from the reference that it leads its rotor to */
     num_t current;       /* the design's, but while enabling: to which i_d* ramps in */
     num_t i_d;
+    uint32_t standing; /* periods for which a rotor that is waited for has been slow */
 };
 
 struct standstill_hold_task {
@@ -142,12 +143,11 @@ static inline bool standstill_hold_waits(const struct standstill_hold_params *pa
     return RARE(slow_periods >= params->delay_periods);
 }
 
-/* It has been for so long that a rotor which is not near yet need not come near any more. */
-static inline bool standstill_hold_waits_long(const struct standstill_hold_params *params,
-                                              uint32_t slow_periods)
-{
-    return slow_periods / 4u >= params->delay_periods;
-}
+/* In each period in which the hold waits: whether its rotor stands, and not only turns round. It
+   has been slow for four times the delay but for a few periods of noise. */
+bool standstill_hold_sees_rotor_stand(struct standstill_hold *hold,
+                                      const struct standstill_hold_params *params, num_t speed,
+                                      uint32_t slow_periods);
 
 /*
  * Enters a hold that waits for it if the rotor has come near the reference, from the next period

@@ -240,7 +240,7 @@ MUTANTS = [
            "the_hold_waits_until_the_rotor_is_near",
            "near = away < params->error_limit", "near = true"),
     Mutant(CONTROL + "standstill_hold.c", "standstill_hold",
-           "a_rotor_that_does_not_come_near_is_held_where_it_is",
+           "a_rotor_that_stands_away_from_the_reference_is_held_where_it_is",
            "(leads && away < FAR_LIMIT)", "false"),
     Mutant(CONTROL + "standstill_hold.c", "standstill_hold",
            "its_frame_comes_back_to_the_reference",

@@ -7,6 +7,7 @@
 #define RAMP_PERIODS     100u /* 10 ms */
 #define RAMP_OUT_PERIODS 150u
 #define DELAY_PERIODS    150u /* 15 ms */
+#define STANDING_PERIODS (4u * DELAY_PERIODS)
 #define RESTING          (DELAY_PERIODS + 1u)
 
 static const struct standstill_hold_task task = {
@@ -46,10 +47,11 @@ static void step(uint32_t rest_periods, double error_electrical_deg, double spee
         (void)standstill_hold_motion_current(&hold, &params);
     }
     if (!hold.active && standstill_hold_waits(&params, rest_periods)) {
-        standstill_hold_consider(&hold, &params, reference,
-                                 num_from_double(error_electrical_deg / 360.0),
-                                 num_from_double(speed_rad_s / base.speed_rad_s),
-                                 standstill_hold_waits_long(&params, rest_periods));
+        standstill_hold_consider(
+            &hold, &params, reference, num_from_double(error_electrical_deg / 360.0),
+            num_from_double(speed_rad_s / base.speed_rad_s),
+            standstill_hold_sees_rotor_stand(
+                &hold, &params, num_from_double(speed_rad_s / base.speed_rad_s), rest_periods));
     }
     standstill_hold_leave(&hold, rest_periods, false);
 }
@@ -78,22 +80,30 @@ static void test_the_hold_begins_when_the_reference_has_rested_for_its_delay(voi
     TEST_ASSERT_TRUE(hold.i_d == NUM(0.0));
 }
 
+/* From the beginning of the wait on. */
+static void wait_for_rotor(uint32_t periods, double error_electrical_deg, double speed_rad_s)
+{
+    for (uint32_t k = 0; k < periods; k++) {
+        step(DELAY_PERIODS + k, error_electrical_deg, speed_rad_s);
+    }
+}
+
 /* 18 degrees electrical, from either side. */
 static void test_the_hold_waits_until_the_rotor_is_near(void)
 {
     static const double far[] = {19.0, -19.0, 90.0, -180.0};
 
     for (unsigned i = 0; i < sizeof far / sizeof far[0]; i++) {
-        step(4u * DELAY_PERIODS - 1u, far[i], 0.0);
+        wait_for_rotor(STANDING_PERIODS - 1u, far[i], 0.0);
         TEST_ASSERT_FALSE(hold.active);
     }
-    step(4u * DELAY_PERIODS - 1u, -17.0, 0.0);
+    wait_for_rotor(1u, -17.0, 0.0);
     TEST_ASSERT_TRUE(hold.active);
     TEST_ASSERT_FALSE(hold.leads);
 }
 
-/* After four times the delay: in the frame of the rotor, which is behind the reference or ahead. */
-static void test_a_rotor_that_does_not_come_near_is_held_where_it_is(void)
+/* In its own frame: it is behind the reference or ahead. */
+static void test_a_rotor_that_stands_away_from_the_reference_is_held_where_it_is(void)
 {
     static const double away_deg[] = {60.0, -60.0, 89.0};
 
@@ -102,7 +112,7 @@ static void test_a_rotor_that_does_not_come_near_is_held_where_it_is(void)
 
         standstill_hold_reset(&hold, &params);
         reference = 0x40000000u; /* 90 degrees */
-        step(4u * DELAY_PERIODS, away_deg[i], 0.0);
+        wait_for_rotor(STANDING_PERIODS, away_deg[i], 0.0);
         TEST_ASSERT_TRUE(hold.active);
         TEST_ASSERT_TRUE(hold.leads);
         TEST_ASSERT_NUM_WITHIN(SINE_ERROR, cos(rotor), num_from_unit(hold.frame.cos));
@@ -110,11 +120,33 @@ static void test_a_rotor_that_does_not_come_near_is_held_where_it_is(void)
     }
 }
 
-static void test_a_rotor_beyond_a_quarter_turn_or_too_fast_is_not_held(void)
+static void test_a_rotor_beyond_a_quarter_turn_is_not_held(void)
 {
-    step(UINT32_MAX, 91.0, 0.0);
+    wait_for_rotor(3u * STANDING_PERIODS, 91.0, 0.0);
     TEST_ASSERT_FALSE(hold.active);
-    step(UINT32_MAX, 60.0, 0.80);
+    wait_for_rotor(3u * STANDING_PERIODS, 60.0, 0.80);
+    TEST_ASSERT_FALSE(hold.active);
+}
+
+/* A rotor that turns round is slow for 10 ms in each half of a swing of 15 Hz; noise makes the
+   speed of one that stands too large in one period of ten. */
+static void test_a_rotor_that_turns_round_does_not_stand_but_a_noisy_one_does(void)
+{
+    for (uint32_t k = 0; k < 10000u; k++) {
+        step(DELAY_PERIODS + k, 60.0, k % 333u < 100u ? 0.5 : 1.5);
+        TEST_ASSERT_FALSE(hold.active);
+    }
+    for (uint32_t k = 0; k < 10000u && !hold.active; k++) {
+        step(DELAY_PERIODS + k, 60.0, k % 10u == 0u ? 1.0 : 0.5);
+    }
+    TEST_ASSERT_TRUE(hold.active);
+}
+
+/* What it has stood in a wait before says nothing of the next. */
+static void test_each_wait_begins_anew(void)
+{
+    wait_for_rotor(STANDING_PERIODS - 1u, 60.0, 0.0);
+    wait_for_rotor(STANDING_PERIODS - 1u, 60.0, 0.0);
     TEST_ASSERT_FALSE(hold.active);
 }
 
@@ -126,7 +158,7 @@ static void test_its_frame_comes_back_to_the_reference(void)
 
     for (int side = -1; side <= 1; side += 2) {
         standstill_hold_reset(&hold, &params);
-        step(UINT32_MAX, 60.0 * side, 0.0);
+        wait_for_rotor(STANDING_PERIODS, 60.0 * side, 0.0);
         for (int k = 1; k <= 8; k++) {
             TEST_ASSERT_TRUE(standstill_hold_return(&hold, 7 * degree, pace) ==
                              (side < 0 ? -pace : pace));
@@ -225,8 +257,10 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_hold_begins_when_the_reference_has_rested_for_its_delay);
     RUN_TEST(test_the_hold_waits_until_the_rotor_is_near);
-    RUN_TEST(test_a_rotor_that_does_not_come_near_is_held_where_it_is);
-    RUN_TEST(test_a_rotor_beyond_a_quarter_turn_or_too_fast_is_not_held);
+    RUN_TEST(test_a_rotor_that_stands_away_from_the_reference_is_held_where_it_is);
+    RUN_TEST(test_a_rotor_beyond_a_quarter_turn_is_not_held);
+    RUN_TEST(test_a_rotor_that_turns_round_does_not_stand_but_a_noisy_one_does);
+    RUN_TEST(test_each_wait_begins_anew);
     RUN_TEST(test_its_frame_comes_back_to_the_reference);
     RUN_TEST(test_the_hold_waits_until_the_rotor_is_slow);
     RUN_TEST(test_a_hold_once_begun_lasts_whatever_the_rotor_does);
