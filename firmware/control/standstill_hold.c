@@ -6,10 +6,9 @@ static const double error_limit_turns = 0.05;
 /* The same of a rotor that is held where it is, and led. */
 #define FAR_LIMIT NUM(0.25)
 
-/* A swing is slow for less than the delay where it turns round. A period that is not slow takes
-   back so many that were. */
+/* What swings by more than four times as far is away again in less than four delays. */
+#define PLACE           NUM(0.03125)
 #define STANDING_DELAYS 4u
-#define NOISE_COSTS     8u
 
 /* Within the ramp of the current the rotor may travel a sixteenth of an electrical turn. */
 static const double ramp_travel_turns = 0.0625;
@@ -45,7 +44,8 @@ void standstill_hold_reset(struct standstill_hold *hold,
     hold->active = false;
     hold->current = params->current;
     hold->i_d = NUM(0.0);
-    hold->standing = 0u;
+    hold->stands_at = NUM(0.0);
+    hold->stands = 0u;
 }
 
 void standstill_hold_enter(struct standstill_hold *hold, angle_t reference)
@@ -110,17 +110,16 @@ void standstill_hold_leave(struct standstill_hold *hold, uint32_t slow_periods, 
 }
 
 bool standstill_hold_sees_rotor_stand(struct standstill_hold *hold,
-                                      const struct standstill_hold_params *params, num_t speed,
-                                      uint32_t slow_periods)
+                                      const struct standstill_hold_params *params,
+                                      num_t position_error, uint32_t slow_periods)
 {
-    const uint32_t before = slow_periods > params->delay_periods ? hold->standing : 0u;
-
-    if (num_abs(speed) < params->speed_limit) {
-        hold->standing = before + 1u;
-    } else {
-        hold->standing = before > NOISE_COSTS ? before - NOISE_COSTS : 0u;
+    if (slow_periods <= params->delay_periods ||
+        num_abs(position_error - hold->stands_at) > PLACE) {
+        hold->stands_at = position_error;
+        hold->stands = 0u;
     }
-    return hold->standing / STANDING_DELAYS >= params->delay_periods;
+    hold->stands++;
+    return hold->stands / STANDING_DELAYS >= params->delay_periods;
 }
 
 void standstill_hold_consider(struct standstill_hold *hold,

@@ -46,7 +46,8 @@ struct standstill_hold {
     int32_t offset;      /* of the frame from the reference that it leads its rotor to */
     num_t current;       /* the design's, but while enabling: to which i_d* ramps in */
     num_t i_d;
-    uint32_t standing; /* periods for which a rotor that is waited for has been slow */
+    num_t stands_at; /* position error of a rotor that is waited for, electrical turns */
+    uint32_t stands; /* for so many periods */
 };
 
 struct standstill_hold_task {
@@ -144,10 +145,10 @@ static inline bool standstill_hold_waits(const struct standstill_hold_params *pa
 }
 
 /* In each period in which the hold waits: whether its rotor stands, and not only turns round. It
-   has been slow for four times the delay but for a few periods of noise. */
+   has not left its place, electrical turns off the reference, for four times the delay. */
 bool standstill_hold_sees_rotor_stand(struct standstill_hold *hold,
-                                      const struct standstill_hold_params *params, num_t speed,
-                                      uint32_t slow_periods);
+                                      const struct standstill_hold_params *params,
+                                      num_t position_error, uint32_t slow_periods);
 
 /*
  * Enters a hold that waits for it if the rotor has come near the reference, from the next period

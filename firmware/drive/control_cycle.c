@@ -287,11 +287,12 @@ __attribute__((noinline)) static void enter_hold(struct drive *drive)
     const struct outlook *rotor = &drive->estimator.estimate.next;
     const struct position reference = drive->reference.next.position;
 
-    standstill_hold_consider(&drive->hold, &drive->params.hold, reference.fraction,
-                             position_difference(reference, rotor->position), rotor->speed,
+    const struct standstill_hold_params *params = &drive->params.hold;
+    const num_t error = position_difference(reference, rotor->position);
+
+    standstill_hold_consider(&drive->hold, params, reference.fraction, error, rotor->speed,
                              drive->params.reference.creep_speed > NUM(0.0) &&
-                                 standstill_hold_sees_rotor_stand(&drive->hold, &drive->params.hold,
-                                                                  rotor->speed,
+                                 standstill_hold_sees_rotor_stand(&drive->hold, params, error,
                                                                   drive->reference.slow_periods));
     if (drive->hold.active) {
         state_machine_claim_period(drive);
