@@ -6,8 +6,9 @@ static const double error_limit_turns = 0.05;
 /* The same of a rotor that is held where it is, and led. */
 #define FAR_LIMIT NUM(0.25)
 
-/* What swings by more than four times as far is away again in less than four delays. */
-#define PLACE           NUM(0.03125)
+/* A thirty-second of a turn. What swings by more than four times as far is away again in less than
+   four delays. */
+#define PLACE           (1 << 27)
 #define STANDING_DELAYS 4u
 
 /* Within the ramp of the current the rotor may travel a sixteenth of an electrical turn. */
@@ -44,7 +45,6 @@ void standstill_hold_reset(struct standstill_hold *hold,
     hold->active = false;
     hold->current = params->current;
     hold->i_d = NUM(0.0);
-    hold->stands_at = NUM(0.0);
     hold->stands = 0u;
 }
 
@@ -113,13 +113,18 @@ bool standstill_hold_sees_rotor_stand(struct standstill_hold *hold,
                                       const struct standstill_hold_params *params,
                                       num_t position_error, uint32_t slow_periods)
 {
-    if (slow_periods <= params->delay_periods ||
-        num_abs(position_error - hold->stands_at) > PLACE) {
-        hold->stands_at = position_error;
+    const int32_t place = angle_from_any_turns(-position_error);
+    const int32_t away = (int32_t)((uint32_t)place - (uint32_t)hold->offset);
+
+    if (slow_periods <= params->delay_periods || away > PLACE || away < -PLACE) {
+        hold->offset = place;
         hold->stands = 0u;
     }
-    hold->stands++;
-    return hold->stands / STANDING_DELAYS >= params->delay_periods;
+    if (hold->stands < UINT16_MAX) {
+        hold->stands++;
+    }
+    return params->enters_at_rest &&
+           (hold->stands / STANDING_DELAYS >= params->delay_periods || hold->stands == UINT16_MAX);
 }
 
 void standstill_hold_consider(struct standstill_hold *hold,

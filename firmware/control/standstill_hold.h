@@ -43,11 +43,10 @@ struct standstill_hold {
     struct sincos frame; /* of the reference; of the middle of a period where it creeps */
     num_t speed;         /* of the frame: 0 at rest */
     bool leads;          /* the frame moves, or has not come to rest yet */
-    int32_t offset;      /* of the frame from the reference that it leads its rotor to */
-    num_t current;       /* the design's, but while enabling: to which i_d* ramps in */
+    uint16_t stands;     /* while it waits: for so many periods its rotor has not left its place */
+    int32_t offset; /* from the reference: of the frame that leads a rotor to it; of that place */
+    num_t current;  /* the design's, but while enabling: to which i_d* ramps in */
     num_t i_d;
-    num_t stands_at; /* position error of a rotor that is waited for, electrical turns */
-    uint32_t stands; /* for so many periods */
 };
 
 struct standstill_hold_task {

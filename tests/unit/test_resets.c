@@ -126,8 +126,8 @@ static void test_the_blocks_of_the_control(void)
     BEGINS_ANEW(struct standstill_hold, standstill_hold_reset(block, &p->hold),
                 PADDING(struct standstill_hold, active, frame),
                 LEAVES_UP_TO(struct standstill_hold, frame, leads),
-                PADDING(struct standstill_hold, leads, offset),
-                LEAVES_UP_TO(struct standstill_hold, offset, offset));
+                PADDING(struct standstill_hold, leads, stands),
+                LEAVES(struct standstill_hold, offset));
     /* what was learned stays */
     BEGINS_ANEW(struct detent_compensation, detent_compensation_reset(block),
                 LEAVES(struct detent_compensation, coefficient),
