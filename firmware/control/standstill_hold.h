@@ -40,10 +40,10 @@ COEFFICIENTS(standstill_hold_params, STANDSTILL_HOLD_PARAMS_COEFFICIENTS)
 
 struct standstill_hold {
     bool active;
-    struct sincos frame; /* of the reference; of the middle of a period where it creeps */
-    num_t speed;         /* of the frame: 0 at rest */
     bool leads;          /* the frame moves, or has not come to rest yet */
     uint16_t stands;     /* while it waits: for so many periods its rotor has not left its place */
+    struct sincos frame; /* of the reference; of the middle of a period where it creeps */
+    num_t speed;         /* of the frame: 0 at rest */
     int32_t offset; /* from the reference: of the frame that leads a rotor to it; of that place */
     num_t current;  /* the design's, but while enabling: to which i_d* ramps in */
     num_t i_d;
