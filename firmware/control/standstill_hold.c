@@ -3,14 +3,6 @@
 /* 18 degrees electrical: far inside the quarter turn from which the d axis draws the rotor in. */
 static const double error_limit_turns = 0.05;
 
-/* The same of a rotor that is held where it is, and led. */
-#define FAR_LIMIT NUM(0.25)
-
-/* A thirty-second of a turn. What swings by more than four times as far is away again in less than
-   four delays. */
-#define PLACE           (1 << 27)
-#define STANDING_DELAYS 4u
-
 /* Within the ramp of the current the rotor may travel a sixteenth of an electrical turn. */
 static const double ramp_travel_turns = 0.0625;
 
@@ -45,7 +37,6 @@ void standstill_hold_reset(struct standstill_hold *hold,
     hold->active = false;
     hold->current = params->current;
     hold->i_d = NUM(0.0);
-    hold->stands = 0u;
 }
 
 void standstill_hold_enter(struct standstill_hold *hold, angle_t reference)
@@ -54,7 +45,6 @@ void standstill_hold_enter(struct standstill_hold *hold, angle_t reference)
     hold->frame = sincos_of(reference);
     hold->speed = NUM(0.0);
     hold->leads = false;
-    hold->offset = 0;
 }
 
 void standstill_hold_align(struct standstill_hold *hold, angle_t angle, num_t speed, num_t current)
@@ -84,22 +74,6 @@ void standstill_hold_follow(struct standstill_hold *hold, angle_t reference, num
     hold->leads = goes_on;
 }
 
-num_t standstill_hold_return(struct standstill_hold *hold, int32_t step, num_t speed)
-{
-    const int32_t offset = hold->offset;
-
-    if (offset > step) {
-        hold->offset = offset - step;
-        return -speed;
-    }
-    if (offset < -step) {
-        hold->offset = offset + step;
-        return speed;
-    }
-    hold->offset = 0;
-    return NUM(0.0);
-}
-
 void standstill_hold_leave(struct standstill_hold *hold, uint32_t slow_periods, bool moving)
 {
     if (slow_periods == 0u) {
@@ -109,37 +83,12 @@ void standstill_hold_leave(struct standstill_hold *hold, uint32_t slow_periods, 
     }
 }
 
-bool standstill_hold_sees_rotor_stand(struct standstill_hold *hold,
-                                      const struct standstill_hold_params *params,
-                                      num_t position_error, uint32_t slow_periods)
-{
-    const int32_t place = angle_from_any_turns(-position_error);
-    const int32_t away = (int32_t)((uint32_t)place - (uint32_t)hold->offset);
-
-    if (slow_periods <= params->delay_periods || away > PLACE || away < -PLACE) {
-        hold->offset = place;
-        hold->stands = 0u;
-    }
-    if (hold->stands < UINT16_MAX) {
-        hold->stands++;
-    }
-    return params->enters_at_rest &&
-           (hold->stands / STANDING_DELAYS >= params->delay_periods || hold->stands == UINT16_MAX);
-}
-
 void standstill_hold_consider(struct standstill_hold *hold,
                               const struct standstill_hold_params *params, angle_t reference,
-                              num_t position_error, num_t speed, bool leads)
+                              num_t position_error, num_t speed)
 {
-    const num_t away = num_abs(position_error);
-    const bool near = away < params->error_limit;
-
-    if ((near || (leads && away < FAR_LIMIT)) && num_abs(speed) < params->speed_limit) {
-        const int32_t offset = near ? 0 : angle_from_turns(-position_error);
-
-        standstill_hold_enter(hold, reference + (angle_t)offset);
-        hold->offset = offset;
-        hold->leads = offset != 0;
+    if (num_abs(position_error) < params->error_limit && num_abs(speed) < params->speed_limit) {
+        standstill_hold_enter(hold, reference);
     }
 }
 

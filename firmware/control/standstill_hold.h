@@ -9,10 +9,6 @@
  * detent torque is quicker than any law of an angle that is not seen. Entered when the reference
  * has been slow for a while and the rotor has come near it, left as soon as it is faster; the d
  * current then ramps out in the rotor frame, where it makes no torque.
- *
- * A position law that is weak for its rotor may not bring it near, and unseen the estimate drifts.
- * So a rotor that stands, within a quarter of an electrical turn, is held where it is taken to be,
- * and the frame leads it to the reference.
  */
 #ifndef STEADYSTEP_STANDSTILL_HOLD_H
 #define STEADYSTEP_STANDSTILL_HOLD_H
@@ -40,12 +36,10 @@ COEFFICIENTS(standstill_hold_params, STANDSTILL_HOLD_PARAMS_COEFFICIENTS)
 
 struct standstill_hold {
     bool active;
-    bool leads;          /* the frame moves, or has not come to rest yet */
-    uint16_t stands;     /* while it waits: for so many periods its rotor has not left its place */
     struct sincos frame; /* of the reference; of the middle of a period where it creeps */
     num_t speed;         /* of the frame: 0 at rest */
-    int32_t offset; /* from the reference: of the frame that leads a rotor to it; of that place */
-    num_t current;  /* the design's, but while enabling: to which i_d* ramps in */
+    bool leads;          /* the frame moves, or has not come to rest yet */
+    num_t current;       /* the design's, but while enabling: to which i_d* ramps in */
     num_t i_d;
 };
 
@@ -68,8 +62,7 @@ void standstill_hold_reset(struct standstill_hold *hold,
                            const struct standstill_hold_params *params);
 
 /* Holds from now on, the current frame at rest at this reference. */
-__attribute__((noinline)) void standstill_hold_enter(struct standstill_hold *hold,
-                                                     angle_t reference);
+void standstill_hold_enter(struct standstill_hold *hold, angle_t reference);
 
 /* While enabling: holds at this angle of a frame that turns at `speed`, with this current. */
 void standstill_hold_align(struct standstill_hold *hold, angle_t angle, num_t speed, num_t current);
@@ -93,10 +86,6 @@ void standstill_hold_preset(struct standstill_hold *hold, num_t i_d);
  */
 void standstill_hold_follow(struct standstill_hold *hold, angle_t reference, num_t speed,
                             bool goes_on);
-
-/* A frame that is off its reference comes nearer by a step, 2^-32 turn; its speed, of which
-   `speed` is the magnitude. */
-num_t standstill_hold_return(struct standstill_hold *hold, int32_t step, num_t speed);
 
 /* Every fourth period of a hold is for its slow work: where it leads its rotor the frame turns,
    where it rests the resistance is adapted. What else takes its time and can wait leaves it alone.
@@ -143,20 +132,14 @@ static inline bool standstill_hold_waits(const struct standstill_hold_params *pa
     return RARE(slow_periods >= params->delay_periods);
 }
 
-/* In each period in which the hold waits: whether its rotor stands, and not only turns round. It
-   has not left its place, electrical turns off the reference, for four times the delay. */
-bool standstill_hold_sees_rotor_stand(struct standstill_hold *hold,
-                                      const struct standstill_hold_params *params,
-                                      num_t position_error, uint32_t slow_periods);
-
 /*
  * Enters a hold that waits for it if the rotor has come near the reference, from the next period
- * on. `position_error` in electrical turns. `leads`: a rotor that has not come near is led to it.
+ * on. `position_error` in electrical turns.
  */
 __attribute__((noinline)) void standstill_hold_consider(struct standstill_hold *hold,
                                                         const struct standstill_hold_params *params,
                                                         angle_t reference, num_t position_error,
-                                                        num_t speed, bool leads);
+                                                        num_t speed);
 
 /* The q current of the hold; `speed`: by how much the rotor is faster than the reference. */
 num_t standstill_hold_torque_current(const struct standstill_hold_params *params, num_t speed,

@@ -232,24 +232,15 @@ IN_PLACE void compensate_detent(struct drive *drive, const struct estimate *esti
     next->rotor.load_torque = estimate->rotor.load_torque + drive->detent.torque;
 }
 
-static int32_t half_turn_at(const struct drive *drive, num_t speed)
-{
-    return angle_from_turns(half_period_turns(&drive->params.model, speed));
-}
-
 /* To the middle of the periods in which the frame acts, S(k+2)...S(k+6). */
 static void lead_rotor(struct drive *drive)
 {
     const struct reference_sample *reference = &drive->reference.next;
-    const num_t pace = drive->params.reference.creep_speed;
-    const num_t speed = reference->speed +
-                        standstill_hold_return(&drive->hold, 8 * half_turn_at(drive, pace), pace);
-    const int32_t offset = drive->hold.offset;
+    const int32_t half_turn =
+        angle_from_turns(half_period_turns(&drive->params.model, reference->speed));
 
-    standstill_hold_follow(&drive->hold,
-                           reference->position.fraction + (angle_t)offset +
-                               6u * (angle_t)half_turn_at(drive, speed),
-                           speed, reference->moving || offset != 0);
+    standstill_hold_follow(&drive->hold, reference->position.fraction + 6u * (angle_t)half_turn,
+                           reference->speed, reference->moving);
 }
 
 /* Whether a hold may do its slow work. */
@@ -287,13 +278,8 @@ __attribute__((noinline)) static void enter_hold(struct drive *drive)
     const struct outlook *rotor = &drive->estimator.estimate.next;
     const struct position reference = drive->reference.next.position;
 
-    const struct standstill_hold_params *params = &drive->params.hold;
-    const num_t error = position_difference(reference, rotor->position);
-
-    standstill_hold_consider(&drive->hold, params, reference.fraction, error, rotor->speed,
-                             drive->params.reference.creep_speed > NUM(0.0) &&
-                                 standstill_hold_sees_rotor_stand(&drive->hold, params, error,
-                                                                  drive->reference.slow_periods));
+    standstill_hold_consider(&drive->hold, &drive->params.hold, reference.fraction,
+                             position_difference(reference, rotor->position), rotor->speed);
     if (drive->hold.active) {
         state_machine_claim_period(drive);
         estimator_begin_hold(&drive->estimator, &drive->params.estimator);
