@@ -9,6 +9,11 @@
 
 #define PERIODS_MAX 32u /* at once, of a background that was busy */
 
+static void begin_anew(struct standing_rotor *standing, uint32_t period)
+{
+    standing->period = period;
+}
+
 int32_t standing_rotor_look(struct standing_rotor *standing, num_t error, uint32_t period,
                             uint32_t longer)
 {
@@ -17,7 +22,7 @@ int32_t standing_rotor_look(struct standing_rotor *standing, num_t error, uint32
 
     if (away > PLACE || away < -PLACE || num_abs(error) >= FAR_LIMIT) {
         standing->place = place;
-        standing->period = period;
+        begin_anew(standing, period);
     }
     return period - standing->period >= longer ? standing->place : 0;
 }
@@ -42,7 +47,7 @@ void standing_rotor_background(struct drive *drive)
         if (drive->hold.offset != 0) {
             lead_back(drive, period);
         }
-        drive->standing.period = period;
+        begin_anew(&drive->standing, period);
         return;
     }
     atomic_signal_fence(memory_order_seq_cst);
@@ -54,7 +59,7 @@ void standing_rotor_background(struct drive *drive)
 
     atomic_signal_fence(memory_order_seq_cst);
     if (!waits) {
-        drive->standing.period = period;
+        begin_anew(&drive->standing, period);
         standstill_hold_put_place(&drive->hold, 0);
     } else if (period == interrupt_view_period(drive)) {
         standstill_hold_put_place(

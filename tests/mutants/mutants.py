@@ -253,7 +253,7 @@ MUTANTS = [
            " || num_abs(error) >= FAR_LIMIT", ""),
     Mutant(DRIVE + "standing_rotor.c", "standing_rotor",
            "its_place_is_known_while_the_hold_waits",
-           "        drive->standing.period = period;\n        standstill_hold_put_place",
+           "        begin_anew(&drive->standing, period);\n        standstill_hold_put_place",
            "        standstill_hold_put_place"),
     Mutant(DRIVE + "standing_rotor.c", "standing_rotor",
            "a_frame_comes_back_at_the_speed_at_which_it_creeps",
