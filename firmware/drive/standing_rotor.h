@@ -13,16 +13,14 @@
 
 #include <stdint.h>
 
-#include "firmware/numeric/num.h"
-
 struct standing_rotor {
     int32_t place;   /* of the rotor, off its reference, 2^-32 electrical turn */
     uint32_t period; /* in which it came there, or its frame was led last */
 };
 
-/* A look at a rotor for which the hold waits; `error`: reference less rotor, electrical turns.
-   Where it stands off its reference, 2^-32 turn; 0: it does not stand, or too far off. */
-int32_t standing_rotor_look(struct standing_rotor *standing, num_t error, uint32_t period,
+/* A look at a rotor for which the hold waits, whose place off its reference is in 2^-32 turn: the
+   place at which it stands; 0: it does not stand, or too far off. */
+int32_t standing_rotor_look(struct standing_rotor *standing, int64_t place, uint32_t period,
                             uint32_t longer);
 
 struct drive;

@@ -26,7 +26,7 @@ void tearDown(void)
 
 static void look(double error_deg)
 {
-    place = standing_rotor_look(&standing, num_from_double(error_deg / 360.0), ++now, DELAYS);
+    place = standing_rotor_look(&standing, (int64_t)(-error_deg * degree), ++now, DELAYS);
 }
 
 static void look_for(uint32_t periods, double error_deg)
