@@ -27,7 +27,7 @@ static struct creep_limits creep_limits(const struct drive_settings *settings)
 
 /* Whether the hold leads the rotor in the begin of every motion: a board that is blind below more
    than a sixteenth of what creeps does not see it stick there. A law that is made weak does not
-   catch what it takes over. */
+   catch it behind that. */
 #define BLIND_SHARE 16.0
 
 static bool leads_off(const struct drive_settings *settings, const struct hal_facts *facts,

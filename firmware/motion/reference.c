@@ -396,7 +396,7 @@ static bool turn_to_phase(struct reference *r, const struct reference_params *pa
 {
     if (r->course == REFERENCE_STARTS) {
         reference_count_slow(r);
-        r->creeps |= params->begin;
+        r->creeps |= (uint8_t)params->begin;
     } else if (!turn(r, params, held)) {
         return false;
     }

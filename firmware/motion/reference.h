@@ -34,7 +34,7 @@ struct reference_params {
     coef_t jerk;            /* per 2^-10 turn/period^3 */
     num_t creep_speed;      /* what moves below is slow; 0: nothing is */
     num_t creep_acceleration;
-    uint8_t begin; /* of every motion from rest: REFERENCE_CREEPS_AT_FIRST, or 0 */
+    uint32_t begin; /* of every motion from rest: REFERENCE_CREEPS_AT_FIRST, or 0 */
 };
 
 /* The remainder has the shift that it happens to have. */

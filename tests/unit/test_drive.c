@@ -65,13 +65,13 @@ static void test_a_board_that_is_blind_at_creep_has_every_begin_led(void)
 {
     board.facts = &encoder_facts;
     power_up();
-    TEST_ASSERT_EQUAL_UINT8(0, drive.params.reference.begin);
+    TEST_ASSERT_EQUAL_UINT32(0, drive.params.reference.begin);
     encoder_facts.current_offset_codes *= 16.0;
     power_up();
-    TEST_ASSERT_EQUAL_UINT8(REFERENCE_CREEPS_AT_FIRST, drive.params.reference.begin);
+    TEST_ASSERT_EQUAL_UINT32(REFERENCE_CREEPS_AT_FIRST, drive.params.reference.begin);
     settings.rotor_inertia_percent = 50.0;
     power_up();
-    TEST_ASSERT_EQUAL_UINT8(0, drive.params.reference.begin);
+    TEST_ASSERT_EQUAL_UINT32(0, drive.params.reference.begin);
 }
 
 /* ---- in operation ---- */
