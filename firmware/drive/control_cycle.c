@@ -236,13 +236,11 @@ IN_PLACE void compensate_detent(struct drive *drive, const struct estimate *esti
 static void lead_rotor(struct drive *drive)
 {
     const struct reference_sample *reference = &drive->reference.next;
-    const int32_t offset = drive->hold.offset;
     const int32_t half_turn =
         angle_from_turns(half_period_turns(&drive->params.model, reference->speed));
 
-    standstill_hold_follow(&drive->hold,
-                           reference->position.fraction + 6u * (angle_t)half_turn + (angle_t)offset,
-                           reference->speed, reference->moving || offset != 0);
+    standstill_hold_follow(&drive->hold, reference->position.fraction + 6u * (angle_t)half_turn,
+                           reference->speed, reference->moving);
 }
 
 /* Whether a hold may do its slow work. */
@@ -285,8 +283,7 @@ __attribute__((noinline)) static void enter_hold(struct drive *drive)
     if (drive->hold.active) {
         state_machine_claim_period(drive);
         estimator_begin_hold(&drive->estimator, &drive->params.estimator);
-        standstill_hold_leave(&drive->hold, drive->reference.slow_periods,
-                              drive->reference.next.moving);
+        leave_or_lead_hold(drive);
     }
 }
 

@@ -25,18 +25,6 @@ static struct creep_limits creep_limits(const struct drive_settings *settings)
         hold_creep_acceleration(&settings->motor, settings->hold_current_A)};
 }
 
-/* Whether the hold leads the rotor in the begin of every motion: a board that is blind below more
-   than a sixteenth of what creeps does not see it stick there. A law that is made weak does not
-   catch it behind that. */
-#define BLIND_SHARE 16.0
-
-static bool leads_off(const struct drive_settings *settings, const struct hal_facts *facts,
-                      double creep_rad_s)
-{
-    return creep_rad_s < BLIND_SHARE * drive_blind_speed_rad_s(settings, facts) &&
-           settings->rotor_inertia_percent == 100.0;
-}
-
 static void design_detent_compensation(struct drive *drive, const struct drive_settings *settings,
                                        double period_s)
 {
@@ -328,12 +316,7 @@ bool drive_design(struct drive *drive, const struct drive_settings *given,
     params->measurement = measurement_design(facts, &drive->base);
     params->model =
         motor_model_design(&settings->motor, &drive->base, period_s, facts->bridge_resistance_ohm);
-    const struct creep_limits creep = creep_limits(settings);
-
-    params->reference = reference_design(&drive->base, period_s, creep);
-    if (leads_off(settings, facts, creep.speed_rad_s)) {
-        reference_lead_off(&params->reference);
-    }
+    params->reference = reference_design(&drive->base, period_s, creep_limits(settings));
     params->current_control = current_control_design(&settings->motor, &drive->base, period_s,
                                                      settings->current_bandwidth_rad_s);
     belt_watch_design(drive, given);

@@ -22,7 +22,6 @@ struct reference_params reference_design(const struct per_unit *base, double per
     params.creep_speed = num_from_double(creep.speed_rad_s / base->speed_rad_s);
     params.creep_acceleration =
         num_from_double(creep.acceleration_rad_s2 / base->acceleration_rad_s2);
-    params.begin = 0u;
     return params;
 }
 
@@ -61,7 +60,7 @@ void reference_follow(struct reference *r)
 {
     r->phase = REFERENCE_PLANNED;
     r->periods_left = UINT32_MAX;
-    r->creeps = 0u;
+    r->creeps = false;
     r->stop_requested = false;
     r->jerks = false;
     r->at.acceleration = 0;
@@ -185,7 +184,7 @@ __attribute__((noinline)) static void begin_next_segment(struct reference *r)
     if (r->segment == r->plan->continues_after && continuation != NULL) {
         r->continuation = NULL;
         r->plan = continuation;
-        r->creeps |= continuation->creeps;
+        r->creeps = continuation->creeps;
         r->segment = 0;
     }
     if (r->segment == 0u) {
@@ -322,7 +321,7 @@ static bool is_slow(const struct reference *r, const struct reference_params *pa
     const struct reference_sample *sample = &r->next;
 
     return !sample->moving ||
-           (r->creeps != 0u && num_abs(sample->speed) < params->creep_speed &&
+           (r->creeps && num_abs(sample->speed) < params->creep_speed &&
             num_abs(sample->acceleration) <= (held ? params->creep_acceleration : NUM(0.0)));
 }
 
@@ -332,7 +331,7 @@ static enum reference_course course_of(const struct reference *r)
     if (r->phase == REFERENCE_REST) {
         return REFERENCE_STILL;
     }
-    if (r->creeps != 0u) {
+    if (r->creeps) {
         return REFERENCE_TURNS;
     }
     return reference_course_of_phase(r);
@@ -363,7 +362,6 @@ __attribute__((noinline)) static bool turn(struct reference *r,
         reference_count_slow(r);
     } else {
         r->slow_periods = 0u;
-        r->creeps &= REFERENCE_CREEPS;
     }
     reference_pass(r);
     r->now.moving = r->next.moving;
@@ -384,7 +382,7 @@ __attribute__((noinline)) static bool turn(struct reference *r,
 /* A phase has begun, and does not just go on. */
 static inline void keep_turning(struct reference *r)
 {
-    if (RARE(r->creeps != 0u || r->stop_requested)) {
+    if (RARE(r->creeps || r->stop_requested)) {
         r->course = REFERENCE_TURNS;
     } else if (RARE(!r->now.moving)) {
         r->course = REFERENCE_SETS_OUT;
@@ -396,7 +394,6 @@ static bool turn_to_phase(struct reference *r, const struct reference_params *pa
 {
     if (r->course == REFERENCE_STARTS) {
         reference_count_slow(r);
-        r->creeps |= (uint8_t)params->begin;
     } else if (!turn(r, params, held)) {
         return false;
     }

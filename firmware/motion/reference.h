@@ -34,7 +34,6 @@ struct reference_params {
     coef_t jerk;            /* per 2^-10 turn/period^3 */
     num_t creep_speed;      /* what moves below is slow; 0: nothing is */
     num_t creep_acceleration;
-    uint32_t begin; /* of every motion from rest: REFERENCE_CREEPS_AT_FIRST, or 0 */
 };
 
 /* The remainder has the shift that it happens to have. */
@@ -76,10 +75,6 @@ enum reference_course {
     REFERENCE_JERKS
 };
 
-/* What of a profile or plan may be slow. */
-#define REFERENCE_CREEPS          1u /* all of it: it is never faster */
-#define REFERENCE_CREEPS_AT_FIRST 2u /* until a step is not */
-
 struct reference {
     enum reference_course course;
     struct reference_sample now;  /* at S(k) */
@@ -89,7 +84,7 @@ struct reference {
     struct profile *profile; /* the one in force */
     enum reference_phase phase;
     uint32_t periods_left; /* of the phase */
-    uint8_t creeps;        /* the profile or plan: REFERENCE_CREEPS and its like */
+    bool creeps;           /* the profile or plan does */
     bool stop_requested;
     bool stopped; /* comes to rest where it may, not at the target */
     bool jerks;
@@ -281,12 +276,6 @@ static inline void reference_count_slow(struct reference *r)
     if (r->slow_periods < UINT32_MAX) {
         r->slow_periods++;
     }
-}
-
-/* With a held rotor, every motion from rest creeps until it is faster. */
-static inline void reference_lead_off(struct reference_params *params)
-{
-    params->begin = REFERENCE_CREEPS_AT_FIRST;
 }
 
 /* What was to come is now. Only a simulation asks for the present acceleration. */

@@ -60,20 +60,6 @@ static void test_a_law_without_current_control_lowers_the_speed_limit_itself(voi
                              error);
 }
 
-/* Blind below a sixteenth of creep: on the bench's board this motor is not. */
-static void test_a_board_that_is_blind_at_creep_has_every_begin_led(void)
-{
-    board.facts = &encoder_facts;
-    power_up();
-    TEST_ASSERT_EQUAL_UINT32(0, drive.params.reference.begin);
-    encoder_facts.current_offset_codes *= 16.0;
-    power_up();
-    TEST_ASSERT_EQUAL_UINT32(REFERENCE_CREEPS_AT_FIRST, drive.params.reference.begin);
-    settings.rotor_inertia_percent = 50.0;
-    power_up();
-    TEST_ASSERT_EQUAL_UINT32(0, drive.params.reference.begin);
-}
-
 /* ---- in operation ---- */
 
 static void test_the_first_hold_aligns_the_rotor_and_finds_the_resistance(void)
@@ -383,7 +369,6 @@ int main(void)
     RUN_TEST(test_settings_out_of_range_are_refused_before_anything_is_designed);
     RUN_TEST(test_a_motor_slower_than_the_control_is_refused);
     RUN_TEST(test_a_law_without_current_control_lowers_the_speed_limit_itself);
-    RUN_TEST(test_a_board_that_is_blind_at_creep_has_every_begin_led);
     RUN_TEST(test_the_first_hold_aligns_the_rotor_and_finds_the_resistance);
     RUN_TEST(test_current_sensors_that_differ_are_balanced_and_the_rotor_comes_back);
     RUN_TEST(test_an_encoder_is_aligned_with_a_rotor_at_rest);
