@@ -176,7 +176,6 @@ enum synchronism synchronism_monitor_judge_motion(struct synchronism_monitor *mo
 
     monitor->held = 0u;
     monitor->settled = NUM(0.0);
-    monitor->led_speed = NUM(0.0);
     monitor->opposite = count(monitor->opposite, magnitude > params->standing_speed &&
                                                      !(monitor->disturbance < allowed));
     return monitor->opposite < params->opposite_blocks ? SYNCHRONISM_SURE : SYNCHRONISM_LOST;
@@ -186,13 +185,13 @@ enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *moni
                                                 const struct synchronism_monitor_params *params,
                                                 num_t speed, bool leads)
 {
-    const num_t magnitude = num_abs(speed);
-    const num_t led = leads ? magnitude : NUM(0.0);
-    const num_t allowed =
-        params->settled_floor + num_half(monitor->led_speed) + quarter(magnitude - led);
+    const num_t allowed = params->settled_floor + quarter(num_abs(speed));
 
     monitor->opposite = 0u;
-    monitor->led_speed += eighth(led - monitor->led_speed);
+    if (leads) { /* away from the angle at which the offset along d passed for a resistance */
+        monitor->held = 0u;
+        monitor->settled = NUM(0.0);
+    }
     if (monitor->held < params->settled_blocks) {
         monitor->held++;
         return SYNCHRONISM_SURE;

@@ -15,12 +15,11 @@
  * not known: a twentieth of it if it is calibrated before operation or a hold that adapts it has
  * settled, else three quarters.
  *
- * In motion and for the first tenth of a second of a hold. A rotor that a growing load draws out of
- * a settled hold, whose resistance is known by then, creeps past the quarter turn: there the mean
- * over eight blocks has the same bound with V_1 for V_0, a quarter of it, and without r. A rotor
- * that a hold leads lags behind its frame by a load that is not known, 0.4 electrical rad by one
- * that is just no step to the estimator: so there half of the mean of |w_hat| over eight blocks
- * stands for the quarter.
+ * In motion and in every hold. A rotor that a growing load draws out of a settled hold, whose
+ * resistance is known by then, creeps past the quarter turn: there the mean over eight blocks has
+ * the same bound with V_1 for V_0, a quarter of it, and without r. Not in one that leads its rotor,
+ * nor for a tenth of a second behind that: what passed for an offset or a resistance lies along
+ * another axis of the rotor by then, and the rotor lags by a load that is not known.
  *
  * On the opposite half-turn the estimate has a second equilibrium: it turns against the rotor,
  * and what is left in d, 0.4 Km |w_hat|, draws its angle along. Of a sound estimate nothing is left
@@ -95,8 +94,7 @@ struct synchronism_monitor {
     num_t past_mean;            /* e_d of the last block, per-unit voltage */
     num_t disturbance;          /* magnitude of its mean over the last two */
     num_t settled;              /* mean of e_d over eight blocks of a hold */
-    num_t led_speed;            /* likewise of |w_hat|, 0 in periods in which the hold leads none */
-    uint32_t held;              /* blocks of the hold; in a row, as those below */
+    uint32_t held;              /* blocks at rest in a hold; in a row, as those below */
     uint32_t opposite;
     bool full; /* all current is in use */
     uint32_t standing;

@@ -604,20 +604,29 @@ static void test_behind_a_new_target_a_move_may_wait(void)
     TEST_ASSERT_EQUAL_UINT32(0, drive.commands.dropped);
 }
 
+/* Of a stop, half a second at most. */
+static uint32_t periods_to_rest(void)
+{
+    uint32_t periods = 0;
+
+    while (periods < 5000u && (drive.planner.stop_due || signals().reference_moving)) {
+        run(1);
+        periods++;
+    }
+    return periods;
+}
+
 /* Its own jerk is harder than a tenth of a second's. */
 static void test_a_fast_sine_stops_as_softly_as_it_swings(void)
 {
     struct drive_command command = sine(0.0, 0.0);
     const double w = TWO_PI * 20.0;
-    uint32_t periods = 0;
+    uint32_t periods;
 
     must_post(command);
     run(3 + LEAD_PERIODS);
     stop_now();
-    while (drive.planner.stop_due || signals().reference_moving) {
-        run(1);
-        periods++;
-    }
+    periods = periods_to_rest();
     /* speed over acceleration, acceleration over jerk */
     TEST_ASSERT_UINT32_WITHIN(60, (uint32_t)(2.0 / w / 1e-4), periods);
 }
@@ -626,17 +635,14 @@ static void test_a_fast_sine_stops_as_softly_as_it_swings(void)
 static void test_a_slow_sine_stops_sooner_than_it_swings(void)
 {
     struct drive_command command = sine(0.0, 0.0);
-    uint32_t periods = 0;
+    uint32_t periods;
 
     command.frequency_Hz = 0.5;
     must_post(command);
     run(3 + LEAD_PERIODS); /* at its peak speed */
     the_speed_is(0.02 * TWO_PI * 0.5);
     stop_now();
-    while (drive.planner.stop_due || signals().reference_moving) {
-        run(1);
-        periods++;
-    }
+    periods = periods_to_rest();
     TEST_ASSERT_UINT32_WITHIN(10, 2000 + LEAD_PERIODS, periods);
 }
 

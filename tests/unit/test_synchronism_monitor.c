@@ -242,15 +242,31 @@ static void test_a_settled_hold_sees_a_rotor_creep_away_in_20_ms(void)
     expect(SYNCHRONISM_SURE, creeps, 1.0);
 }
 
-/* A load of a tenth of the rated torque that is not known: 0.2 rad electrical behind the frame. */
-static void test_a_hold_that_leads_a_rotor_bears_that_it_lags(void)
+/* An offset of the voltage that has turned with the rotor's d axis, also where it turns round; a
+   load of a tenth of the rated torque that is not known: 0.2 rad electrical behind the frame. */
+static void test_a_hold_that_leads_a_rotor_bears_that_offsets_turn_and_that_it_lags(void)
 {
-    struct course lags = {.i_d_A = 1.5, .holding = true, .leads = true, .speed_rad_s = 2.0};
+    struct course led = {.i_d_A = 1.5, .holding = true, .leads = true, .disturbance_V = 0.12};
 
-    lags.disturbance_V = 0.4 * bench_params.torque_constant_Nm_A * lags.speed_rad_s;
-    TEST_ASSERT_NOT_EQUAL(SYNCHRONISM_LOST, after(&lags, 1.0));
-    lags.disturbance_V = 0.8 * bench_params.torque_constant_Nm_A * lags.speed_rad_s;
-    TEST_ASSERT_EQUAL_INT(SYNCHRONISM_LOST, after(&lags, 20e-3));
+    TEST_ASSERT_NOT_EQUAL(SYNCHRONISM_LOST, after(&led, 1.0));
+    led.speed_rad_s = 2.0;
+    led.disturbance_V = 0.4 * bench_params.torque_constant_Nm_A * led.speed_rad_s;
+    TEST_ASSERT_NOT_EQUAL(SYNCHRONISM_LOST, after(&led, 1.0));
+    led.disturbance_V = 0.5;
+    TEST_ASSERT_EQUAL_INT(SYNCHRONISM_LOST, after(&led, 10e-3));
+}
+
+/* The resistance has a tenth of a second to be found anew. */
+static void test_a_hold_settles_anew_behind_leading(void)
+{
+    const struct course held = {.i_d_A = 1.5, .holding = true};
+    struct course led = {.i_d_A = 1.5, .holding = true, .leads = true, .disturbance_V = 0.12};
+
+    TEST_ASSERT_EQUAL_INT(SYNCHRONISM_SURE, after(&held, 0.15));
+    TEST_ASSERT_NOT_EQUAL(SYNCHRONISM_LOST, after(&led, 0.2));
+    led.leads = false;
+    TEST_ASSERT_NOT_EQUAL(SYNCHRONISM_LOST, after(&led, 0.1));
+    TEST_ASSERT_EQUAL_INT(SYNCHRONISM_LOST, after(&led, 35e-3));
 }
 
 /* Motion in between makes it another hold, which has to settle again. */
@@ -434,7 +450,8 @@ int main(void)
     RUN_TEST(test_an_unknown_resistance_is_allowed_its_voltage);
     RUN_TEST(test_a_hold_that_adapts_the_resistance_makes_it_known);
     RUN_TEST(test_a_settled_hold_sees_a_rotor_creep_away_in_20_ms);
-    RUN_TEST(test_a_hold_that_leads_a_rotor_bears_that_it_lags);
+    RUN_TEST(test_a_hold_that_leads_a_rotor_bears_that_offsets_turn_and_that_it_lags);
+    RUN_TEST(test_a_hold_settles_anew_behind_leading);
     RUN_TEST(test_a_hold_settles_anew_behind_motion);
     RUN_TEST(test_a_rotor_that_stands_under_full_current_is_stalled_in_15_ms);
     RUN_TEST(test_a_speed_that_an_unknown_resistance_feigns_is_standing);
