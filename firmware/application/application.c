@@ -211,6 +211,7 @@ CALLED_FROM_OUTSIDE void application_background(struct application *application)
     drive_background(&application->drive);
     phase_watch_background(&application->drive);
     idle_current_background(&application->drive);
+    standing_rotor_background(&application->drive);
     thermal_watch_background(&application->drive);
     rotor_watch_background(&application->drive);
     belt_watch_background(&application->drive);

@@ -37,14 +37,22 @@ void standstill_hold_reset(struct standstill_hold *hold,
     hold->active = false;
     hold->current = params->current;
     hold->i_d = NUM(0.0);
+    hold->place = 0;
+}
+
+void standstill_hold_follow(struct standstill_hold *hold, angle_t reference, num_t speed,
+                            bool goes_on)
+{
+    hold->frame = sincos_of(reference);
+    hold->speed = speed;
+    hold->leads = goes_on;
 }
 
 void standstill_hold_enter(struct standstill_hold *hold, angle_t reference)
 {
     hold->active = true;
-    hold->frame = sincos_of(reference);
-    hold->speed = NUM(0.0);
-    hold->leads = false;
+    hold->offset = 0;
+    standstill_hold_follow(hold, reference, NUM(0.0), false);
 }
 
 void standstill_hold_align(struct standstill_hold *hold, angle_t angle, num_t speed, num_t current)
@@ -66,12 +74,9 @@ void standstill_hold_preset(struct standstill_hold *hold, num_t i_d)
     hold->i_d = i_d;
 }
 
-void standstill_hold_follow(struct standstill_hold *hold, angle_t reference, num_t speed,
-                            bool goes_on)
+void standstill_hold_lead_back(struct standstill_hold *hold, int32_t angle)
 {
-    hold->frame = sincos_of(reference);
-    hold->speed = speed;
-    hold->leads = goes_on;
+    hold->offset -= hold->offset > angle ? angle : hold->offset < -angle ? -angle : hold->offset;
 }
 
 void standstill_hold_leave(struct standstill_hold *hold, uint32_t slow_periods, bool moving)
@@ -87,8 +92,13 @@ void standstill_hold_consider(struct standstill_hold *hold,
                               const struct standstill_hold_params *params, angle_t reference,
                               num_t position_error, num_t speed)
 {
-    if (num_abs(position_error) < params->error_limit && num_abs(speed) < params->speed_limit) {
-        standstill_hold_enter(hold, reference);
+    const int32_t place = hold->place;
+
+    if (num_abs(position_error + turns_from_angle(place)) < params->error_limit &&
+        num_abs(speed) < params->speed_limit) {
+        hold->active = true;
+        hold->offset = place;
+        standstill_hold_follow(hold, reference + (angle_t)place, NUM(0.0), place != 0);
     }
 }
 

@@ -36,9 +36,11 @@ COEFFICIENTS(standstill_hold_params, STANDSTILL_HOLD_PARAMS_COEFFICIENTS)
 
 struct standstill_hold {
     bool active;
+    bool leads;          /* the frame moves, or has not come to rest yet */
     struct sincos frame; /* of the reference; of the middle of a period where it creeps */
     num_t speed;         /* of the frame: 0 at rest */
-    bool leads;          /* the frame moves, or has not come to rest yet */
+    int32_t place;       /* while it waits: where it may begin, off the reference, 2^-32 turn */
+    int32_t offset;      /* where the frame is */
     num_t current;       /* the design's, but while enabling: to which i_d* ramps in */
     num_t i_d;
 };
@@ -77,6 +79,15 @@ static inline void standstill_hold_put_current(struct standstill_hold *hold, num
     hold->current = current;
 }
 
+/* Background: where, off the reference, a hold that waits may begin; 2^-32 turn. One word. */
+static inline void standstill_hold_put_place(struct standstill_hold *hold, int32_t place)
+{
+    hold->place = place;
+}
+
+/* Background, of a hold that is active: a frame off its reference comes nearer by at most this. */
+void standstill_hold_lead_back(struct standstill_hold *hold, int32_t angle);
+
 /* Bumpless transfer: the ramp of i_d* begins here. */
 void standstill_hold_preset(struct standstill_hold *hold, num_t i_d);
 
@@ -84,8 +95,8 @@ void standstill_hold_preset(struct standstill_hold *hold, num_t i_d);
  * The frame of a reference that creeps, and its speed; `goes_on`: it will move again. It turns by a
  * few degrees electrical at most from one call to the next, and counts as at rest for as long.
  */
-void standstill_hold_follow(struct standstill_hold *hold, angle_t reference, num_t speed,
-                            bool goes_on);
+__attribute__((noinline)) void standstill_hold_follow(struct standstill_hold *hold,
+                                                      angle_t reference, num_t speed, bool goes_on);
 
 /* Every fourth period of a hold is for its slow work: where it leads its rotor the frame turns,
    where it rests the resistance is adapted. What else takes its time and can wait leaves it alone.
@@ -133,13 +144,12 @@ static inline bool standstill_hold_waits(const struct standstill_hold_params *pa
 }
 
 /*
- * Enters a hold that waits for it if the rotor has come near the reference, from the next period
- * on. `position_error` in electrical turns.
+ * Enters a hold that waits for it if the rotor has come near the reference, or is where the hold
+ * may begin, from the next period on. `position_error` in electrical turns.
  */
-__attribute__((noinline)) void standstill_hold_consider(struct standstill_hold *hold,
-                                                        const struct standstill_hold_params *params,
-                                                        angle_t reference, num_t position_error,
-                                                        num_t speed);
+void standstill_hold_consider(struct standstill_hold *hold,
+                              const struct standstill_hold_params *params, angle_t reference,
+                              num_t position_error, num_t speed);
 
 /* The q current of the hold; `speed`: by how much the rotor is faster than the reference. */
 num_t standstill_hold_torque_current(const struct standstill_hold_params *params, num_t speed,

@@ -239,8 +239,11 @@ static void lead_rotor(struct drive *drive)
     const int32_t half_turn =
         angle_from_turns(half_period_turns(&drive->params.model, reference->speed));
 
-    standstill_hold_follow(&drive->hold, reference->position.fraction + 6u * (angle_t)half_turn,
-                           reference->speed, reference->moving);
+    const int32_t offset = drive->hold.offset;
+
+    standstill_hold_follow(&drive->hold,
+                           reference->position.fraction + 6u * (angle_t)half_turn + (angle_t)offset,
+                           reference->speed, reference->moving || offset != 0);
 }
 
 /* Whether a hold may do its slow work. */
@@ -283,7 +286,8 @@ __attribute__((noinline)) static void enter_hold(struct drive *drive)
     if (drive->hold.active) {
         state_machine_claim_period(drive);
         estimator_begin_hold(&drive->estimator, &drive->params.estimator);
-        leave_or_lead_hold(drive);
+        standstill_hold_leave(&drive->hold, drive->reference.slow_periods,
+                              drive->reference.next.moving);
     }
 }
 

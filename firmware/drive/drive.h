@@ -28,6 +28,7 @@
 #include "firmware/drive/planner.h"
 #include "firmware/drive/protection.h"
 #include "firmware/drive/rotor_watch.h"
+#include "firmware/drive/standing_rotor.h"
 #include "firmware/drive/thermal_watch.h"
 #include "firmware/drive/torque_constant.h"
 #include "firmware/drive/torque_mode.h"
@@ -115,12 +116,12 @@ struct supervision {
 struct synchronism_supervision {
     uint32_t due; /* first period for the monitor's next step */
     enum drive_synchronism shown;
-    uint8_t step;         /* the monitor's next */
+    uint8_t step; /* the monitor's next */
+    enum drive_synchronism_policy policy;
+    bool monitored;
     uint32_t block_began; /* period */
     struct synchronism_monitor monitor;
     struct synchronism_monitor_params params;
-    enum drive_synchronism_policy policy;
-    bool monitored;
 };
 
 /* What the estimator gets instead of samples: prepared_input.h. */
@@ -162,8 +163,8 @@ struct enabling {
 };
 
 /*
- * In the order of nearness, for the core's sake: first what every interrupt uses. The members of
- * each are written by its own functions alone.
+ * In the order of nearness, for the core's sake: first what every interrupt uses. In the background
+ * in an order that leaves no gaps. The members of each are written by its own functions alone.
  */
 struct drive {
     /* blocks, in the order of the block diagram */
@@ -203,22 +204,23 @@ struct drive {
     struct phase_watch phase_watch;
     struct phase_watch_params phase_watch_params;
     struct belt_watch belt_watch;
+    const struct hal *board;
     struct torque_constant torque_constant;
     struct idle_current idle;
     struct idle_current_params idle_params;
     struct thermal_watch thermal;
     struct rotor_watch rotor_watch;
-    const struct hal *board;
+    struct standing_rotor standing;
     uint32_t fed_in; /* period in which the watchdog was fed */
     struct drive_settings settings;
     struct per_unit base;
     struct planned_end planned_end;
+    struct brake brake;
     struct planner planner;
 
     /* behind all that an interrupt in operation uses */
     struct standstill standstill;
     struct enabling enabling;
-    struct brake brake;
 };
 
 /*

@@ -83,6 +83,18 @@ static inline uint32_t interrupt_view_epoch(const struct drive *drive)
     return INTERRUPT_VIEW(uint32_t, drive->reference.epoch);
 }
 
+/* Whether the hold has the rotor. */
+static inline bool interrupt_view_holds(const struct drive *drive)
+{
+    return INTERRUPT_VIEW(bool, drive->hold.active);
+}
+
+/* For how many periods the reference has been slow. */
+static inline uint32_t interrupt_view_slow_periods(const struct drive *drive)
+{
+    return INTERRUPT_VIEW(uint32_t, drive->reference.slow_periods);
+}
+
 /* Whether the hold has the rotor, and its frame rests. */
 static inline bool interrupt_view_rests(const struct drive *drive)
 {

@@ -132,10 +132,12 @@ static enum synchronism judge_following(struct drive *drive, const struct rotor 
 
 static enum synchronism judge_pull_out(struct drive *drive, const struct rotor *rotor)
 {
-    return drive->hold.active ? synchronism_monitor_judge_pull_out(&drive->synchronism.monitor,
-                                                                   &drive->synchronism.params,
-                                                                   error_of(drive, rotor))
-                              : SYNCHRONISM_SURE;
+    if (!drive->hold.active) {
+        return SYNCHRONISM_SURE;
+    }
+    return synchronism_monitor_judge_pull_out(
+        &drive->synchronism.monitor, &drive->synchronism.params,
+        error_of(drive, rotor) + turns_from_angle(drive->hold.offset));
 }
 
 /* A hold whose rotor has pulled out drives it on: the position law catches it, if it may. */

@@ -9,6 +9,7 @@
 #include "firmware/drive/idle_current.h"
 #include "firmware/drive/phase_watch.h"
 #include "firmware/drive/rotor_watch.h"
+#include "firmware/drive/standing_rotor.h"
 #include "firmware/drive/thermal_watch.h"
 #include "tests/unit/fake_board.h"
 #include "tests/unit/num_assert.h"
@@ -125,6 +126,7 @@ static inline void period(void)
         drive_background(&drive);
         phase_watch_background(&drive);
         idle_current_background(&drive);
+        standing_rotor_background(&drive);
         thermal_watch_background(&drive);
         rotor_watch_background(&drive);
         torque_constant_background(&drive);

@@ -123,10 +123,10 @@ static void test_the_blocks_of_the_control(void)
     BEGINS_ANEW(struct synchronism_monitor,
                 synchronism_monitor_reset(block, &drive.synchronism.params), NOTHING);
     /* a hold that is not active has no frame */
-    BEGINS_ANEW(struct standstill_hold, standstill_hold_reset(block, &p->hold),
-                PADDING(struct standstill_hold, active, frame),
-                LEAVES_UP_TO(struct standstill_hold, frame, leads),
-                PADDING(struct standstill_hold, leads, current));
+    BEGINS_ANEW(
+        struct standstill_hold, standstill_hold_reset(block, &p->hold),
+        LEAVES(struct standstill_hold, leads), PADDING(struct standstill_hold, leads, frame),
+        LEAVES_UP_TO(struct standstill_hold, frame, place), LEAVES(struct standstill_hold, offset));
     /* what was learned stays */
     BEGINS_ANEW(struct detent_compensation, detent_compensation_reset(block),
                 LEAVES(struct detent_compensation, coefficient),

@@ -92,7 +92,7 @@ static void test_a_begin_lists_those_that_begin_so(void)
 
 static void periods_of_enabling(void)
 {
-    bench_periods(60000);
+    bench_periods(10000);
     TEST_ASSERT_EQUAL_INT(DRIVE_OPERATION_ENABLED, drive->supervision.state);
     (void)bench_heard();
 }

@@ -25,6 +25,8 @@ static struct standstill_hold_params params;
 static struct standstill_hold hold;
 static angle_t reference;
 
+static const int32_t degree = (int32_t)(4294967296.0 / 360.0);
+
 void setUp(void)
 {
     base = per_unit_base(&bench_params, PERIOD_S);
@@ -88,6 +90,58 @@ static void test_the_hold_waits_until_the_rotor_is_near(void)
     }
     step(UINT32_MAX, -17.0, 0.0);
     TEST_ASSERT_TRUE(hold.active);
+}
+
+/* In the frame of that place: from there it is led to its reference. */
+static void test_a_rotor_that_stands_off_its_reference_is_held_where_it_is(void)
+{
+    reference = 0x40000000u; /* 90 degrees */
+    for (int side = -1; side <= 1; side += 2) {
+        const double rotor = (90.0 + side * 60.0) / 180.0 * acos(-1.0);
+
+        standstill_hold_reset(&hold, &params);
+        standstill_hold_put_place(&hold, side * 60 * degree);
+        step(UINT32_MAX, -side * 79.0, 0.0);
+        TEST_ASSERT_FALSE(hold.active);
+        step(UINT32_MAX, -side * 60.0, 0.80);
+        TEST_ASSERT_FALSE(hold.active);
+        step(UINT32_MAX, -side * 65.0, 0.0);
+        TEST_ASSERT_TRUE(hold.active);
+        TEST_ASSERT_TRUE(hold.leads);
+        TEST_ASSERT_EQUAL_INT32(side * 60 * degree, hold.offset);
+        TEST_ASSERT_NUM_WITHIN(SINE_ERROR, cos(rotor), num_from_unit(hold.frame.cos));
+        TEST_ASSERT_NUM_WITHIN(SINE_ERROR, sin(rotor), num_from_unit(hold.frame.sin));
+    }
+}
+
+/* A later hold begins at the reference again. */
+static void test_each_hold_has_a_place_of_its_own(void)
+{
+    standstill_hold_put_place(&hold, 60 * degree);
+    step(UINT32_MAX, -60.0, 0.0);
+    standstill_hold_put_place(&hold, 0);
+    step(0u, 0.0, 0.0);
+    TEST_ASSERT_FALSE(hold.active);
+    step(UINT32_MAX, 0.0, 0.0);
+    TEST_ASSERT_TRUE(hold.active);
+    TEST_ASSERT_FALSE(hold.leads);
+    TEST_ASSERT_EQUAL_INT32(0, hold.offset);
+    standstill_hold_put_place(&hold, 60 * degree);
+    standstill_hold_align(&hold, 0u, NUM(0.0), params.current);
+    TEST_ASSERT_EQUAL_INT32(0, hold.offset);
+}
+
+static void test_its_frame_comes_back_to_the_reference(void)
+{
+    for (int side = -1; side <= 1; side += 2) {
+        hold.offset = side * 60 * degree;
+        for (int k = 1; k <= 8; k++) {
+            standstill_hold_lead_back(&hold, 7 * degree);
+            TEST_ASSERT_EQUAL_INT32(side * (60 - 7 * k) * degree, hold.offset);
+        }
+        standstill_hold_lead_back(&hold, 7 * degree);
+        TEST_ASSERT_EQUAL_INT32(0, hold.offset);
+    }
 }
 
 /* Not faster than 1/16 electrical turn within the 10 ms ramp: 0.785 rad/s. */
@@ -178,6 +232,9 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_hold_begins_when_the_reference_has_rested_for_its_delay);
     RUN_TEST(test_the_hold_waits_until_the_rotor_is_near);
+    RUN_TEST(test_a_rotor_that_stands_off_its_reference_is_held_where_it_is);
+    RUN_TEST(test_each_hold_has_a_place_of_its_own);
+    RUN_TEST(test_its_frame_comes_back_to_the_reference);
     RUN_TEST(test_the_hold_waits_until_the_rotor_is_slow);
     RUN_TEST(test_a_hold_once_begun_lasts_whatever_the_rotor_does);
     RUN_TEST(test_the_current_frame_is_that_of_the_reference);
