@@ -1,5 +1,7 @@
 #include "firmware/estimator/synchronism_monitor.h"
 
+#include "firmware/design/elementary.h"
+
 static num_t quarter(num_t x)
 {
     return num_half(num_half(x));
@@ -35,6 +37,11 @@ static uint32_t count(uint32_t blocks_in_row, bool goes_on)
  */
 static const double voltage_floor = 0.25 / 24.0; /* of the supply */
 static const double settled_floor = 0.06 / 24.0;
+
+/* Share of the magnet's flux Km/N by which the flux along d may change within a mean over eight
+   blocks. Where the load grows by the rated torque in a tenth of a second, a rotor on its way to
+   0.9 of what its hold bears leaves 0.17. */
+static const double displaced_flux = 0.24;
 
 /* What motion has left unknown of the resistance is found in a hold within five times 22 ms. */
 static const double settled_s = 0.11;
@@ -97,6 +104,8 @@ synchronism_monitor_design(const struct synchronism_monitor_task *task)
         task->resistance_calibrated ? resistance_error_known : resistance_error_unknown;
     const double standing_rad_s =
         standing_torque * rated_torque_Nm / motor->inertia_kgm2 * standing_s;
+    const double displaced_V =
+        displaced_flux * motor->torque_constant_Nm_A / motor->rotor_teeth / (8.0 * block_s);
     /* A rotor that stands at full current is taken to turn so fast. */
     const double feigned_rad_s =
         task->resistance_calibrated ? 0.0
@@ -113,7 +122,8 @@ synchronism_monitor_design(const struct synchronism_monitor_task *task)
                                                                     : resistance_error_unknown)),
         .voltage_per_current_at_first = coef_from_double(resistance * resistance_error),
         .voltage_floor = num_from_double(voltage_floor * motor->supply_V / base->voltage_V),
-        .settled_floor = num_from_double(settled_floor * motor->supply_V / base->voltage_V),
+        .settled_floor =
+            num_from_double(larger(settled_floor * motor->supply_V, displaced_V) / base->voltage_V),
         .standing_speed_at_first =
             num_from_double((standing_rad_s + feigned_rad_s) / base->speed_rad_s),
         .standing_speed = num_from_double(standing_rad_s / base->speed_rad_s),
@@ -191,6 +201,7 @@ enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *moni
     if (leads) { /* away from the angle at which the offset along d passed for a resistance */
         monitor->held = 0u;
         monitor->settled = NUM(0.0);
+        return SYNCHRONISM_SURE;
     }
     if (monitor->held < params->settled_blocks) {
         monitor->held++;
@@ -205,14 +216,22 @@ enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *moni
     return num_abs(monitor->settled) < allowed ? SYNCHRONISM_SURE : SYNCHRONISM_LOST;
 }
 
+/* A rotor that rests in its hold does what it is to do. */
+static bool stands(const struct synchronism_monitor *monitor,
+                   const struct synchronism_monitor_params *params, num_t speed)
+{
+    const bool rests = monitor->held > 0u && speed <= quarter(params->settled_floor);
+
+    return speed < monitor->standing_speed && !rests;
+}
+
 enum synchronism synchronism_monitor_judge_torque(struct synchronism_monitor *monitor,
                                                   const struct synchronism_monitor_params *params,
                                                   num_t wanted, num_t speed)
 {
-    const bool slow = num_abs(speed) < monitor->standing_speed;
-
     monitor->full = num_abs(wanted) > params->full_current;
-    monitor->standing = count(monitor->standing, monitor->full && slow);
+    monitor->standing =
+        count(monitor->standing, RARE(monitor->full) && stands(monitor, params, num_abs(speed)));
     return stalled_after(monitor, params, monitor->standing, params->standing_blocks);
 }
 

@@ -17,9 +17,11 @@
  *
  * In motion and in every hold. A rotor that a growing load draws out of a settled hold, whose
  * resistance is known by then, creeps past the quarter turn: there the mean over eight blocks has
- * the same bound with V_1 for V_0, a quarter of it, and without r. Not in one that leads its rotor,
- * nor for a tenth of a second behind that: what passed for an offset or a resistance lies along
- * another axis of the rotor by then, and the rotor lags by a load that is not known.
+ * the same bound with V_1 for V_0 and without r. V_1 is a quarter of V_0, or what a load leaves
+ * that the hold bears: it displaces the rotor, and with it a part of the flux Km/N. Not in a hold
+ * that leads its rotor, nor for a tenth of a second behind that: what passed for an offset or a
+ * resistance lies along another axis of the rotor by then, and the rotor lags by a load that is not
+ * known.
  *
  * On the opposite half-turn the estimate has a second equilibrium: it turns against the rotor,
  * and what is left in d, 0.4 Km |w_hat|, draws its angle along. Of a sound estimate nothing is left
@@ -29,10 +31,11 @@
  *
  * Stalled: the estimate is sound and says that the rotor does not follow:
  *   standing    all current is in use and yet the rotor stands, or seems to turn no faster than an
- *               error of the resistance that is not known yet feigns: at full current r i / Km
- *   behind      all current is in use and yet the rotor falls further behind
- *   pull-out    a load of 1.6 times the rated torque, or, holding, a load angle of a quarter of an
- *               electrical turn, beyond which the current that holds the rotor yields
+ *               error of the resistance that is not known yet feigns: at full current r i / Km. In
+ * a hold that rests, standing is no stall, but turning by V_1 / 4 Km and more behind      all
+ * current is in use and yet the rotor falls further behind pull-out    a load of 1.6 times the
+ * rated torque, or, holding, a load angle of a quarter of an electrical turn, beyond which the
+ * current that holds the rotor yields
  *
  * Doubtful: half of what makes a loss, half of the load angle of pull-out, or no torque left.
  *

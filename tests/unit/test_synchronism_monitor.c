@@ -290,6 +290,21 @@ static void test_a_rotor_that_stands_under_full_current_is_stalled_in_15_ms(void
     expect(SYNCHRONISM_STALLED, stands, 14.4e-3);
 }
 
+/* A hold whose q current bears a load that it takes for more than it is: 0.1 rad/s is what V_1 / 4
+   is the back-EMF of. */
+static void test_a_rotor_that_rests_in_its_hold_under_full_current_is_held(void)
+{
+    struct course rests = {
+        .wanted_A = -LIMIT_A, .i_d_A = LIMIT_A, .speed_rad_s = -0.08, .holding = true};
+
+    expect(SYNCHRONISM_SURE, rests, 1.0);
+    rests.speed_rad_s = 0.12;
+    expect(SYNCHRONISM_STALLED, rests, 14.4e-3);
+    rests.speed_rad_s = 0.0;
+    rests.leads = true;
+    expect(SYNCHRONISM_STALLED, rests, 14.4e-3);
+}
+
 /* 3 A through 0.2 ohm that nobody knows of look like 4 rad/s. */
 static void test_a_speed_that_an_unknown_resistance_feigns_is_standing(void)
 {
@@ -420,6 +435,22 @@ static void test_the_design_in_figures(void)
                            params.standing_speed_at_first);
 }
 
+/* 0.24 Km/N in 12.8 ms, where that is more than a four hundredth of the supply. */
+static void test_a_settled_hold_allows_for_the_flux_of_a_rotor_that_a_load_displaces(void)
+{
+    struct motor_params strong = bench_params;
+
+    task.motor = &strong;
+    strong.torque_constant_Nm_A *= 3.0;
+    design();
+    TEST_ASSERT_NUM_WITHIN(1e-5, 0.24 * 3.0 * 0.157 / 50.0 / 12.8e-3 / base.voltage_V,
+                           params.settled_floor);
+    strong.torque_constant_Nm_A /= 3.0;
+    strong.supply_V *= 2.0;
+    design();
+    TEST_ASSERT_NUM_WITHIN(1e-5, 0.12 / base.voltage_V, params.settled_floor);
+}
+
 /* A block is a time and no number of periods, so its number in a time stays what it is; at long
    periods it has a period for each of its steps. */
 static void test_the_times_follow_the_control_period(void)
@@ -454,6 +485,7 @@ int main(void)
     RUN_TEST(test_a_hold_settles_anew_behind_leading);
     RUN_TEST(test_a_hold_settles_anew_behind_motion);
     RUN_TEST(test_a_rotor_that_stands_under_full_current_is_stalled_in_15_ms);
+    RUN_TEST(test_a_rotor_that_rests_in_its_hold_under_full_current_is_held);
     RUN_TEST(test_a_speed_that_an_unknown_resistance_feigns_is_standing);
     RUN_TEST(test_a_rotor_that_starts_under_a_heavy_load_is_not);
     RUN_TEST(test_a_rotor_that_falls_behind_for_a_tenth_of_a_second_is_stalled);
@@ -466,6 +498,7 @@ int main(void)
     RUN_TEST(test_a_disturbance_that_is_no_number_is_a_loss);
 #endif
     RUN_TEST(test_the_design_in_figures);
+    RUN_TEST(test_a_settled_hold_allows_for_the_flux_of_a_rotor_that_a_load_displaces);
     RUN_TEST(test_the_times_follow_the_control_period);
     return UNITY_END();
 }
