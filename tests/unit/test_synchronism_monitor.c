@@ -290,12 +290,15 @@ static void test_a_rotor_that_stands_under_full_current_is_stalled_in_15_ms(void
     expect(SYNCHRONISM_STALLED, stands, 14.4e-3);
 }
 
-/* A hold whose q current bears a load that it takes for more than it is: 0.1 rad/s is what V_1 / 4
-   is the back-EMF of. */
+/* A hold whose q current bears a load that it takes for more than it is. 0.1 rad/s is what V_1 / 4
+   is the back-EMF of, 0.53 N m what an estimate overshoots to. */
 static void test_a_rotor_that_rests_in_its_hold_under_full_current_is_held(void)
 {
-    struct course rests = {
-        .wanted_A = -LIMIT_A, .i_d_A = LIMIT_A, .speed_rad_s = -0.08, .holding = true};
+    struct course rests = {.wanted_A = -LIMIT_A,
+                           .i_d_A = LIMIT_A,
+                           .speed_rad_s = -0.08,
+                           .load_Nm = -0.52,
+                           .holding = true};
 
     expect(SYNCHRONISM_SURE, rests, 1.0);
     rests.speed_rad_s = 0.12;
@@ -303,6 +306,15 @@ static void test_a_rotor_that_rests_in_its_hold_under_full_current_is_held(void)
     rests.speed_rad_s = 0.0;
     rests.leads = true;
     expect(SYNCHRONISM_STALLED, rests, 14.4e-3);
+}
+
+/* One block later than that: the load is looked at behind the torque. */
+static void test_a_hold_that_all_current_does_not_bear_is_stalled(void)
+{
+    const struct course rests = {
+        .wanted_A = LIMIT_A, .i_d_A = LIMIT_A, .load_Nm = 0.54, .holding = true};
+
+    expect(SYNCHRONISM_STALLED, rests, 16e-3);
 }
 
 /* 3 A through 0.2 ohm that nobody knows of look like 4 rad/s. */
@@ -486,6 +498,7 @@ int main(void)
     RUN_TEST(test_a_hold_settles_anew_behind_motion);
     RUN_TEST(test_a_rotor_that_stands_under_full_current_is_stalled_in_15_ms);
     RUN_TEST(test_a_rotor_that_rests_in_its_hold_under_full_current_is_held);
+    RUN_TEST(test_a_hold_that_all_current_does_not_bear_is_stalled);
     RUN_TEST(test_a_speed_that_an_unknown_resistance_feigns_is_standing);
     RUN_TEST(test_a_rotor_that_starts_under_a_heavy_load_is_not);
     RUN_TEST(test_a_rotor_that_falls_behind_for_a_tenth_of_a_second_is_stalled);
