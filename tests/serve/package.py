@@ -200,6 +200,29 @@ def a_response_that_comes_late_is_not_the_next_one_s(drive, process):
     CHECKS.that(found == "" and drive.settings["current_limit_A"] == before, f"it is the next one's: {found}")
 
 
+def an_interrupt_in_what_is_written_remains_one(drive):
+    """In segments: 2205h has eight bytes."""
+    sdo, before = drive.objects.node.sdo, drive.objects.read(0x2205)
+    read, send, went_on = sdo.read_response, sdo.send_request, True
+
+    def interrupted():
+        sdo.read_response = read
+        read()
+        raise KeyboardInterrupt
+
+    def at_a_segment(request):
+        if request[0] & 0xE0 == 0x00:
+            sdo.send_request, sdo.read_response = send, interrupted
+        send(request)
+
+    sdo.send_request = at_a_segment
+    try:
+        found = refusal(lambda: drive.objects.write(0x2205, before))
+    except KeyboardInterrupt:
+        found, went_on = "", False
+    CHECKS.that(not went_on and drive.objects.read(0x2205) == before, f"it is an interrupt: {found}")
+
+
 def a_lost_link_is_said(drive, knobs):
     knobs.turn('command = "power-cycle"')
     time.sleep(0.1)
@@ -250,6 +273,7 @@ with tempfile.TemporaryDirectory() as scratch, Simulated(program=SIL) as simulat
         what_the_drive_records_itself(DRIVE)
         a_fault_is_in_words(DRIVE, simulated.knobs)
         a_response_that_comes_late_is_not_the_next_one_s(DRIVE, simulated.process)
+        an_interrupt_in_what_is_written_remains_one(DRIVE)
         a_lost_link_is_said(DRIVE, simulated.knobs)
 a_terminal_serves_as_well()
 CHECKS.end()

@@ -9,7 +9,7 @@ from typing import Any, Callable, Iterator
 
 import canopen
 from canopen.objectdictionary import ODVariable
-from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError, SdoError
+from canopen.sdo.exceptions import SdoAbortedError, SdoError
 
 from .byte_line import ByteLine
 from .dictionary import EDS
@@ -33,6 +33,12 @@ class NoAnswer(LostLink):
 
 class OutOfRange(Refused):
     """The value of an object."""
+
+
+def _hides_an_interrupt(error: BaseException) -> bool:
+    """What is written in segments is closed by one more, which the drive refuses behind an interrupt."""
+    cause = error.__context__
+    return cause is not None and (isinstance(cause, KeyboardInterrupt) or _hides_an_interrupt(cause))
 
 
 class Objects:
@@ -94,13 +100,16 @@ class Objects:
         with self._lock:
             try:
                 yield
-            except SdoAbortedError as error:
-                raise self._refusal(error) from None
-            except (SdoCommunicationError, SdoError) as error:
-                raise self._loss(str(error)) from None
             except KeyboardInterrupt:
                 self._give_up()
                 raise
+            except SdoError as error:
+                if _hides_an_interrupt(error):
+                    self._give_up()
+                    raise KeyboardInterrupt from None
+                if isinstance(error, SdoAbortedError):
+                    raise self._refusal(error) from None
+                raise self._loss(str(error)) from None
 
     def _give_up(self) -> None:
         """What was asked is answered yet, perhaps, and would pass for the response to the next request. So a request of its own
