@@ -236,10 +236,9 @@ IN_PLACE void compensate_detent(struct drive *drive, const struct estimate *esti
 static void lead_rotor(struct drive *drive)
 {
     const struct reference_sample *reference = &drive->reference.next;
+    const int32_t offset = drive->hold.offset;
     const int32_t half_turn =
         angle_from_turns(half_period_turns(&drive->params.model, reference->speed));
-
-    const int32_t offset = drive->hold.offset;
 
     standstill_hold_follow(&drive->hold,
                            reference->position.fraction + 6u * (angle_t)half_turn + (angle_t)offset,
