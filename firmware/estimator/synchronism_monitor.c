@@ -64,8 +64,6 @@ static const double opposite_s = 6.4e-3;
 
 static const double pull_out_load = 1.6; /* of the rated torque */
 static const double pull_out_s = 3.2e-3;
-/* Of what all current bears: by so much the estimate of a load that grows overshoots. */
-static const double bearable_load = 1.125;
 static const double warning_s = 5e-3;
 static const double doubtful_s = 20e-3;
 
@@ -131,7 +129,6 @@ synchronism_monitor_design(const struct synchronism_monitor_task *task)
         .standing_speed = num_from_double(standing_rad_s / base->speed_rad_s),
         .full_current = num_from_double(FULL_CURRENT * task->current_limit_A / base->current_A),
         .load_limit = num_from_double(pull_out_load * rated_torque_Nm / base->torque_Nm),
-        .bearable = num_from_double(bearable_load * task->current_limit_A / base->current_A),
         .standing_blocks = blocks(standing_s, block_s),
         .behind_blocks = blocks(behind_s, block_s),
         .pull_out_blocks = blocks(pull_out_s, block_s),
@@ -245,7 +242,7 @@ enum synchronism synchronism_monitor_judge_load(struct synchronism_monitor *moni
 {
     const num_t load = num_abs(load_torque);
 
-    monitor->beyond = load > params->bearable;
+    monitor->beyond = load - eighth(load) > params->full_current;
     monitor->pull_out = count(monitor->pull_out, load > params->load_limit);
     return stalled_after(monitor, params, monitor->pull_out, params->pull_out_blocks);
 }

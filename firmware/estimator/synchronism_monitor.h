@@ -33,7 +33,7 @@
  *   standing    all current is in use and yet the rotor stands, or seems to turn no faster than an
  *               error of the resistance that is not known yet feigns: at full current r i / Km
  *   unheld      all current is in use in a hold that rests, and yet the rotor turns, by V_1 / 4 Km
- *               and more, or the load is 1.125 times what all current bears
+ *               and more, or seven eighths of the load are more than that current bears
  *   behind      all current is in use and yet the rotor falls further behind
  *   pull-out    a load of 1.6 times the rated torque, or, holding, a load angle of a quarter of an
  *               electrical turn, beyond which the current that holds the rotor yields
@@ -81,7 +81,6 @@ struct synchronism_monitor_params {
     num_t standing_speed;          /* from then on */
     num_t full_current;
     num_t load_limit;
-    num_t bearable;           /* what a load seems to be at most that all current bears */
     uint32_t standing_blocks; /* in a row, to be called so */
     uint32_t behind_blocks;   /* in a row, falling behind, to be stalled */
     uint32_t pull_out_blocks; /* likewise, of a load beyond the limit */

@@ -883,7 +883,7 @@ MUTANTS = [
            "        return SYNCHRONISM_SURE;\n    }\n    if (monitor->held <", "    }\n    if (monitor->held <"),
     Mutant(ESTIMATOR + "synchronism_monitor.c", "synchronism_monitor",
            "a_hold_that_all_current_does_not_bear_is_stalled",
-           "monitor->beyond = load > params->bearable;", ""),
+           "monitor->beyond = load - eighth(load) > params->full_current;", ""),
     Mutant(ESTIMATOR + "synchronism_monitor.c", "synchronism_monitor",
            "a_settled_hold_allows_for_the_flux_of_a_rotor_that_a_load_displaces",
            "larger(settled_floor * motor->supply_V, displaced_V)", "settled_floor * motor->supply_V"),

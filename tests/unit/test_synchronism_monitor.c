@@ -317,6 +317,18 @@ static void test_a_hold_that_all_current_does_not_bear_is_stalled(void)
     expect(SYNCHRONISM_STALLED, rests, 16e-3);
 }
 
+/* Heat has halved the limit: half of that load is as much too much. */
+static void test_a_hold_bears_no_more_than_the_current_that_heat_leaves(void)
+{
+    struct course rests = {
+        .wanted_A = LIMIT_A / 2.0, .i_d_A = LIMIT_A, .load_Nm = 0.26, .holding = true};
+
+    params.full_current = num_half(params.full_current);
+    expect(SYNCHRONISM_SURE, rests, 1.0);
+    rests.load_Nm = 0.27;
+    expect(SYNCHRONISM_STALLED, rests, 16e-3);
+}
+
 /* 3 A through 0.2 ohm that nobody knows of look like 4 rad/s. */
 static void test_a_speed_that_an_unknown_resistance_feigns_is_standing(void)
 {
@@ -499,6 +511,7 @@ int main(void)
     RUN_TEST(test_a_rotor_that_stands_under_full_current_is_stalled_in_15_ms);
     RUN_TEST(test_a_rotor_that_rests_in_its_hold_under_full_current_is_held);
     RUN_TEST(test_a_hold_that_all_current_does_not_bear_is_stalled);
+    RUN_TEST(test_a_hold_bears_no_more_than_the_current_that_heat_leaves);
     RUN_TEST(test_a_speed_that_an_unknown_resistance_feigns_is_standing);
     RUN_TEST(test_a_rotor_that_starts_under_a_heavy_load_is_not);
     RUN_TEST(test_a_rotor_that_falls_behind_for_a_tenth_of_a_second_is_stalled);

@@ -107,7 +107,7 @@ static void add_every_law(enum drive_feedback feedback)
 static void test_without_an_encoder_every_law_has_these_gains(void)
 {
     add_every_law(DRIVE_FEEDBACK_SENSORLESS);
-    is(UINT64_C(0x5e5be5ca3d6886d2), UINT64_C(0x81af6e8256a41486));
+    is(UINT64_C(0xb9e1b4be730273c2), UINT64_C(0x9d203829f7f1afb4));
 }
 
 static void test_with_an_encoder_every_law_has_these_gains(void)
@@ -152,7 +152,7 @@ static void test_another_motor_on_another_board_has_these_gains(void)
         settings.motion_current_A = 0.2;
         add_design();
     }
-    is(UINT64_C(0x552dc096653c0ce4), UINT64_C(0x7c4c49e5a73b7758));
+    is(UINT64_C(0x23d70d39c0ba0310), UINT64_C(0xde81102c939ada82));
 }
 
 int main(void)
