@@ -1,9 +1,10 @@
 """firmware/README.md: at rest, slow, without voltage sensing, where the rotor stands."""
 import math
 import re
+import statistics
 
 from comparison.simulator import ROOT
-from readme_figures.reading import mrad, p95, spelled, up
+from readme_figures.reading import mrad, p95, spelled, up, value_of
 from readme_figures.registry import Cost, entry, table
 
 TEETH = 50  # of bendjedia-2012
@@ -54,6 +55,18 @@ def from_rest_and_back(sources):
     return up(max(1e3 * p95(sources.run(scenario), "position_error_max_rad", window)
                   for scenario in ("hold-transition", "hold-transition-loaded")
                   for window in RESTS), 1)
+
+
+@entry("transition-rates", "steadystep-sil run hold-transition hold-transition-20kHz --seeds 1-32")
+def at_twice_the_rate(sources):
+    """Of each run its worst phase."""
+    def typical(scenario):
+        runs = sources.run(scenario)
+        return spelled(1e3 * statistics.median(
+            max(value_of(one, "position_error_max_rad", window) for window in RESTS)
+            for one in runs), 2)
+
+    return {"slow": typical("hold-transition"), "fast": typical("hold-transition-20kHz")}
 
 
 @entry("transition-real", "steadystep-sil run hold-transition --seeds 1-32 --set plant.model=real")
