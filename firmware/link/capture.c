@@ -151,7 +151,9 @@ static double base_of(const struct drive *drive, const struct capture_source *so
 static void put_level(struct capture *capture, const struct drive *drive, double level)
 {
     if (capture->trigger->base == CAPTURE_COUNT) {
-        capture->level.count = level > 0.0 ? (uint32_t)level : 0u;
+        capture->level.count = level >= UINT32_MAX ? UINT32_MAX
+                               : level > 0.0       ? (uint32_t)level
+                                                   : 0u;
     } else if (capture->trigger->base == CAPTURE_ANGLE) {
         capture->level.position = position_minus(
             position_from_rad(level, drive->settings.motor.rotor_teeth), drive->axis.offset);

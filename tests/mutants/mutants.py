@@ -1021,6 +1021,12 @@ MUTANTS = [
            "loop.at[INTEGRAL][SPEED] = -integral * damping_As_rad;", ""),
     # ---- link ----
     Mutant(LINK + "slcan.c", "slcan", "what_is_no_frame_is_refused", "id > 0x7ffu", "false"),
+    Mutant(LINK + "capture.c", "capture", "a_level_beyond_a_count_is_not_crossed",
+           "level >= UINT32_MAX ? UINT32_MAX : level > 0.0", "level > 0.0"),
+    Mutant(LINK + "capture.c", "canopen", "whatever_comes_the_node_goes_on", "asked > room || ", ""),
+    Mutant(LINK + "pdo.c", "can_bus", "whatever_comes_the_node_goes_on", "id >= 0x80u && ", ""),
+    Mutant(LINK + "link.c", "modbus", "whatever_comes_the_node_goes_on",
+           "console->line_length < MODBUS_REQUEST_BYTES", "true"),
     Mutant(LINK + "sdo.c", "canopen", "a_setting_is_written_in_segments",
            "    sdo->toggle ^= TOGGLE;\n    if ((request->data[0] & LAST)",
            "    if ((request->data[0] & LAST)"),

@@ -1,8 +1,9 @@
 /* The node on a CAN bus beside the console: which carrier it lives on, and what it says of the bus.
  */
-#include "tests/unit/link_bench.h"
+#include <stdlib.h>
 
 #include "firmware/link/axis_motion.h"
+#include "tests/unit/link_fuzz.h"
 
 enum { FRAMES = 64 };
 
@@ -375,8 +376,100 @@ static void test_a_bus_that_takes_nothing_is_heard(void)
     TEST_ASSERT_EQUAL_HEX8(CIA402_QUICK_STOP_ACTIVE, bench_link.axis.state);
 }
 
-int main(void)
+/* ---- whatever comes ---- */
+
+static long inputs = 100000;
+
+/* What the node puts on the bus is what a slave may send. */
+static void look_at_what_was_sent(void)
 {
+    for (size_t i = 0; i < bus.sent_count; i++) {
+        TEST_ASSERT_TRUE(bus.sent[i].id >= 0x80u && bus.sent[i].id <= 0x7ffu);
+        TEST_ASSERT_TRUE(bus.sent[i].length <= 8u);
+    }
+    bus.sent_count = 0;
+}
+
+/* Errors of the bus, no room on it, and a line that takes the channel and closes it. */
+static void disturb(void)
+{
+    static const char *const lines[] = {"O\r", "L\r", "C\r", "C\r", "state\n", "modbus\n"};
+
+    switch (fuzz_draw(64)) {
+    case 0:
+        bus.state = fuzz_draw(8);
+        break;
+    case 1:
+    case 2:
+        bus.state = 0;
+        break;
+    case 3:
+        bus.room = fuzz_draw(9);
+        break;
+    case 4:
+    case 5:
+        bus.room = 8;
+        break;
+    case 6:
+        bench_type(lines[fuzz_draw(6)]);
+        break;
+    case 7:
+        bench_periods(60);
+        bench_type("C\r"); /* ends Modbus, between two silences */
+        bench_periods(60);
+        break;
+    default:
+        break;
+    }
+}
+
+static void start_on_the_bus(void)
+{
+    memset(&bus, 0, sizeof bus);
+    bus.room = 8;
+    fuzz_start();
+    link_put_can(&bench_link, &bench_can);
+    bench_periods(2);
+}
+
+/* What the board would not receive, too. */
+static void test_whatever_comes_the_node_goes_on(void)
+{
+    fuzz_find_objects();
+    for (long i = 0; i < inputs; i++) {
+        if (i % FUZZ_BETWEEN_STARTS == 0) {
+            start_on_the_bus();
+        }
+        disturb();
+        if (bus.taken == bus.coming_count) {
+            bus.taken = bus.coming_count = 0;
+        }
+        if (bus.coming_count < FRAMES) {
+            bus.coming[bus.coming_count++] = fuzz_frame();
+        }
+        bench_periods((int)fuzz_draw(4));
+        look_at_what_was_sent();
+        (void)bench_heard();
+        fuzz_look();
+    }
+    TEST_ASSERT_TRUE(fuzz.captures > inputs / 100);
+    TEST_ASSERT_TRUE(fuzz.enabled > inputs / 100);
+    bus.room = 8;
+    bus.state = 0;
+    bench_periods(100);
+    bench_type("C\r");
+    bench_periods(20000); /* a quick stop ends before the node is back */
+    look_at_what_was_sent();
+    come(0x000, "8200", 4);
+    expect_sent(0, (uint16_t)(0x700u + bench_link.node), "00");
+    come((uint16_t)bench_link.objects.sdo_request, "4000100000000000", 4);
+    expect_sent(1, (uint16_t)bench_link.objects.sdo_response, "4300100092010400");
+}
+
+/* An argument is how many inputs there are to be of any content. */
+int main(int count, char **arguments)
+{
+    inputs = count > 1 ? strtol(arguments[1], NULL, 10) : inputs;
     UNITY_BEGIN();
     RUN_TEST(test_the_node_says_that_it_lives_on_the_bus_and_the_console_goes_on);
     RUN_TEST(test_a_pass_takes_a_frame);
@@ -393,5 +486,6 @@ int main(void)
     RUN_TEST(test_bus_off_stops_the_drive_and_the_way_back_is_an_emergency);
     RUN_TEST(test_a_node_that_is_only_switched_on_is_off_at_once);
     RUN_TEST(test_a_bus_that_takes_nothing_is_heard);
+    RUN_TEST(test_whatever_comes_the_node_goes_on);
     return UNITY_END();
 }

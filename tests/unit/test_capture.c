@@ -1,4 +1,6 @@
 /* Capture: what the drive has shown in each period, around a trigger, from memory. */
+#include <math.h>
+
 #include <unity.h>
 
 #include "firmware/interface/dictionary.h"
@@ -136,6 +138,24 @@ static void test_what_does_not_cross_the_level_does_not_trigger(void)
     assert_shown();
 }
 
+/* A level beyond all numbers that a count may be; a smaller one is crossed by the motion. */
+static void test_a_level_beyond_a_count_is_not_crossed(void)
+{
+    static const double levels[] = {1e300, (double)INFINITY, 4294967296.0};
+
+    command(DRIVE_COMMAND_ENABLE, 0.0);
+    for (size_t i = 0; i < 3; i++) {
+        choose_signals();
+        objects()->capture_trigger = 0x2302;
+        objects()->capture_samples = 10;
+        objects()->capture_level = levels[i];
+        arm();
+        command(DRIVE_COMMAND_MOVE_TRAPEZOID, (double)(i + 1u));
+        periods(1000);
+        TEST_ASSERT_EQUAL(CAPTURE_WAITS, state());
+    }
+}
+
 static void test_without_a_trigger_it_begins_at_once_and_takes_all_memory(void)
 {
     choose_signals();
@@ -242,6 +262,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_captured_move_is_what_the_drive_has_shown);
     RUN_TEST(test_what_does_not_cross_the_level_does_not_trigger);
+    RUN_TEST(test_a_level_beyond_a_count_is_not_crossed);
     RUN_TEST(test_without_a_trigger_it_begins_at_once_and_takes_all_memory);
     RUN_TEST(test_positions_are_those_of_the_axis);
     RUN_TEST(test_what_cannot_be_captured_is_refused);

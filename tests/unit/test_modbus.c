@@ -1,6 +1,8 @@
 /* Modbus RTU: objects as registers, what is refused, and where a request begins and ends. */
+#include <stdlib.h>
+
 #include "firmware/link/modbus.h"
-#include "tests/unit/link_bench.h"
+#include "tests/unit/link_fuzz.h"
 
 enum { SILENCE = 60 /* periods */ };
 
@@ -237,46 +239,137 @@ static void test_a_setting_makes_it_so_from_power_up(void)
     TEST_ASSERT_FALSE(bench_link.open);
 }
 
-static uint32_t draw(uint32_t below)
-{
-    static uint32_t state = 1;
+static long inputs = 100000;
 
-    state = state * 1664525u + 1013904223u;
-    return (state >> 8) % below;
+static void type_bytes(const uint8_t *bytes, size_t count)
+{
+    bench_type_bytes((const char *)bytes, count);
+    for (int i = 0; i < 4 || bench.typed_read < bench.typed_count; i++) {
+        TEST_ASSERT_TRUE(i < 10000);
+        bench_periods(1);
+        (void)bench_heard();
+    }
 }
 
-/* Requests with a valid checksum, of any content. */
+/* The values of an object from its first on, the highest register first, as they are written. */
+static size_t registers_for(const struct object *first, uint32_t most, uint8_t *registers)
+{
+    struct object object = *first;
+    size_t count = 0;
+
+    for (uint32_t i = 0; i < most; i++) {
+        uint8_t value[OBJECT_BYTES_MAX];
+        const size_t bytes = fuzz_value(&object, value);
+        const size_t words = (bytes + 1u) / 2u;
+
+        for (size_t word = words; word > 0u; word--) {
+            registers[count++] = value[2u * word - 1u];
+            registers[count++] = value[2u * word - 2u];
+        }
+        object.sub++;
+        if (objects_find(object.index, object.sub, &object) != OBJECT_DONE) {
+            break;
+        }
+    }
+    return count;
+}
+
+/* The next of the controlwords that enable the drive. */
+static size_t request_to_enable(uint8_t *frame)
+{
+    static const uint8_t words[] = {0x06, 0x07, 0x0f};
+    static size_t next;
+
+    frame[0] = bench_link.node;
+    frame[1] = 6;
+    frame[2] = 0x60;
+    frame[3] = 0x40;
+    frame[5] = words[next++ % 3u];
+    return 6;
+}
+
+/* A request without its checksum, which fits. */
+static size_t any_request(uint8_t *frame)
+{
+    static const uint8_t functions[] = {3, 4, 6, 8, 16, 16, 16, 16};
+    struct object object = fuzz_object();
+
+    (void)objects_find(object.index, object.sub > 0u ? 1 : 0, &object);
+    frame[0] = (uint8_t)(fuzz_once_in(16) ? fuzz_draw(3) : bench_link.node);
+    frame[1] = (uint8_t)(fuzz_once_in(16) ? fuzz_draw(256) : functions[fuzz_draw(8)]);
+    frame[2] = (uint8_t)(object.index >> 8);
+    frame[3] = (uint8_t)object.index;
+
+    const size_t bytes = registers_for(&object, 1u + fuzz_draw(4), &frame[7]);
+
+    if (frame[1] != 16u) {
+        frame[4] = frame[7];
+        frame[5] = (uint8_t)(frame[1] == 6u ? frame[8] : 1u + fuzz_draw(12));
+        return 6;
+    }
+    frame[4] = 0;
+    frame[5] = (uint8_t)(fuzz_once_in(32) ? fuzz_draw(256) : bytes / 2u);
+    frame[6] = (uint8_t)(fuzz_once_in(32) ? fuzz_draw(256) : bytes);
+    return 7u + bytes;
+}
+
+/* Whole requests with a valid checksum, spoilt ones, pieces of them, and bytes of any kind. */
+static void type_any_request(void)
+{
+    uint8_t frame[MODBUS_REQUEST_BYTES] = {0};
+    size_t count = fuzz_once_in(16) ? request_to_enable(frame) : any_request(frame);
+
+    if (fuzz_once_in(64)) {
+        count = 1u + fuzz_draw(MODBUS_REQUEST_BYTES - 2);
+        for (size_t n = 0; n < count; n++) {
+            frame[n] = (uint8_t)fuzz_draw(256);
+        }
+    }
+    const uint16_t crc = modbus_crc(frame, count);
+
+    frame[count++] = (uint8_t)crc;
+    frame[count++] = (uint8_t)(crc >> 8);
+    if (fuzz_once_in(32)) {
+        frame[fuzz_draw((uint32_t)count)] = (uint8_t)fuzz_draw(256);
+    }
+    type_bytes(frame, fuzz_once_in(64) ? fuzz_draw((uint32_t)count) : count);
+    bench_periods(fuzz_once_in(8) ? SILENCE : 0);
+}
+
+static void open_modbus(void)
+{
+    fuzz_start();
+    (void)link_bench_say("modbus", 1);
+    bench_periods(SILENCE);
+}
+
 static void test_whatever_comes_the_node_goes_on(void)
 {
-    static const uint8_t functions[] = {3, 4, 6, 8, 16, 16};
-    static const uint8_t indexes[] = {0x10, 0x14, 0x16, 0x18, 0x1a, 0x20,
-                                      0x21, 0x22, 0x23, 0x24, 0x60};
-
-    for (int i = 0; i < 5000; i++) {
-        uint8_t frame[MODBUS_REQUEST_BYTES] = {
-            1, functions[draw(6)], indexes[draw(11)], (uint8_t)draw(256), 0, (uint8_t)draw(12)};
-        const size_t more = frame[1] == 16u ? 1u + 2u * frame[5] : 0u;
-
-        if (draw(8) == 0u) {
-            frame[1] = (uint8_t)draw(256);
+    fuzz_find_objects();
+    for (long i = 0; i < inputs; i++) {
+        if (i % FUZZ_BETWEEN_STARTS == 0 || !bench_link.open) {
+            open_modbus();
         }
-        for (size_t n = 0; n < more; n++) {
-            frame[6u + n] = (uint8_t)draw(256);
-        }
-        frame[6] = (uint8_t)(more > 0u ? more - 1u : 0u);
-
-        const uint16_t crc = modbus_crc(frame, 6u + more);
-
-        frame[6u + more] = (uint8_t)crc;
-        frame[7u + more] = (uint8_t)(crc >> 8);
-        send(frame, 8u + more);
+        type_any_request();
+        fuzz_look();
     }
+    TEST_ASSERT_TRUE(fuzz.captures > inputs / 1000);
+    TEST_ASSERT_TRUE(fuzz.enabled > inputs / 100);
     bench_periods(SILENCE);
-    asked("01 03 1000 0002", "01030400040192");
+
+    uint8_t frame[8] = {bench_link.node, 3, 0x10, 0, 0, 2};
+    const uint16_t crc = modbus_crc(frame, 6);
+
+    frame[6] = (uint8_t)crc;
+    frame[7] = (uint8_t)(crc >> 8);
+    send(frame, sizeof frame);
+    TEST_ASSERT_EQUAL_STRING("030400040192", &heard()[2]);
 }
 
-int main(void)
+/* An argument is how many inputs there are to be of any content. */
+int main(int count, char **arguments)
 {
+    inputs = count > 1 ? strtol(arguments[1], NULL, 10) : inputs;
     UNITY_BEGIN();
     RUN_TEST(test_the_checksum_is_that_of_the_standard);
     RUN_TEST(test_an_object_is_read_as_registers_highest_first);
