@@ -6,6 +6,7 @@ usage: package.py SIL
 import csv
 import math
 import pathlib
+import re
 import signal
 import sys
 import tempfile
@@ -17,6 +18,7 @@ from operated import PACKAGE, Simulated, refusal, steadystep
 from served import Checks, Served
 from steadystep import capture_in_drive
 from steadystep.capture import record
+from steadystep.capture_files import TOPIC
 
 CHECKS = Checks()
 SIL = sys.argv[1]
@@ -118,6 +120,41 @@ def it_moves(drive, knobs):
     drive.enable()
 
 
+def parquet_has_what_csv_has(made, path, rows):
+    import pyarrow.parquet
+
+    made.save(path)
+    table = pyarrow.parquet.read_table(path)
+    CHECKS.that(table.column_names == list(rows[0]), f"the columns of the CSV: {table.column_names}")
+    units = {"time_s": "s", **{signal.name: signal.unit for signal in made.signals}}
+    for name in table.column_names:
+        CHECKS.that([f"{value:.9g}" for value in table[name].to_pylist()] == [row[name] for row in rows],
+                    f"the values of {name}")
+        CHECKS.that(table.field(name).metadata[b"unit"].decode() == units[name], f"and its unit, {units[name]}")
+
+
+def without_its_package_a_format_says_so(made, folder):
+    for package, suffix in (("pyarrow", ".parquet"), ("mcap.writer", ".mcap")):
+        there, sys.modules[package] = sys.modules.pop(package, None), None
+        found = refusal(lambda suffix=suffix: made.save(folder / f"none{suffix}"))
+        del sys.modules[package]
+        if there:
+            sys.modules[package] = there
+        needed = package.split(".", maxsplit=1)[0]
+        CHECKS.that(found.startswith(f"{suffix} needs the package {needed}: pip install {needed} ("), found)
+        CHECKS.that(not (folder / f"none{suffix}").exists(), "and leaves no file")
+
+
+def layouts_name_signals_of_the_drive():
+    """By name, and on the topic that captures have."""
+    known = {signal.name for signal in steadystep.dictionary().signals.values()}
+    for file, separator in (("foxglove.json", "."), ("plotjuggler.xml", "/")):
+        text = (PACKAGE / "layouts" / file).read_text(encoding="utf-8")
+        shown = re.findall(rf'"{TOPIC}{re.escape(separator)}(\w+)"', text)
+        CHECKS.that(len(shown) == 7 and shown == [name for name in shown if name in known], f"{file}: {shown}")
+        CHECKS.that(len(shown) == text.count(TOPIC), f"{file} has nothing else of {TOPIC}")
+
+
 def it_captures(drive, folder):
     names = ["theta_est_rad", "load_torque_est_Nm", "i_q_A", "bus_V", "synchronism"]
     for count, least_Hz in ((3, 50), (5, 5)):  # the fourth real number comes by SDO
@@ -132,11 +169,13 @@ def it_captures(drive, folder):
     with (folder / "move.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     CHECKS.that(len(rows) == len(made) and set(rows[0]) == {"time_s", *names}, "written as CSV")
+    parquet_has_what_csv_has(made, folder / "move.parquet", rows)
     made.save(folder / "move.mcap")
     from mcap.reader import make_reader
     with (folder / "move.mcap").open("rb") as file:
         messages = list(make_reader(file).iter_messages())
     CHECKS.that(len(messages) == len(made) and messages[0][1].topic == "/drive", "and as MCAP")
+    without_its_package_a_format_says_so(made, folder)
     CHECKS.that("expected a name that ends with .csv" in refusal(lambda: made.save(folder / "a.xls")), "else")
     CHECKS.that("is it" in refusal(lambda: drive.capture(["theta_est"], 1)), "an unknown signal")
 
@@ -261,6 +300,7 @@ def its_version_is_that_of_the_drive():
 
 
 its_version_is_that_of_the_drive()
+layouts_name_signals_of_the_drive()
 with tempfile.TemporaryDirectory() as scratch, Simulated(program=SIL) as simulated:
     FOLDER = pathlib.Path(scratch)
     what_is_no_drive_is_said(simulated.place, FOLDER)

@@ -34,6 +34,10 @@ class Client:
             is_json = said.content_type == "application/json"
             return said.status, await said.json() if is_json else await said.text()
 
+    async def bytes_of(self, path):
+        async with self.session.get(self.page.url + path, headers={"Authorization": f"Bearer {self.page.token}"}) as said:
+            return await said.read()
+
     async def act(self, action, **values):
         status, said = await self.ask("POST", f"/api/act/{action}", values)
         CHECKS.that(status == 200, f"{action}: {status} {said}")
@@ -175,8 +179,9 @@ async def traces_come(client):
         shown = [message.get("capturing") for message in [await live.receive_json(timeout=5) for _ in range(8)]]
     CHECKS.that(1.0 in shown, f"how far it is is shown: {shown}")
     CHECKS.that(status == 200 and len(made["columns"]["i_q_A"]) == len(made["time_s"]) > 5, f"captured: {made}")
-    _, text = await client.ask("GET", "/api/capture.csv")
-    CHECKS.that(text.startswith("time_s,bus_V,i_q_A"), text[:60])
+    for suffix, begin in (("csv", b"time_s,bus_V,i_q_A"), ("parquet", b"PAR1"), ("mcap", b"\x89MCAP")):
+        saved = await client.bytes_of(f"/api/capture.{suffix}")
+        CHECKS.that(saved.startswith(begin), f"saved as .{suffix}: {saved[:60]}")
 
 
 async def what_breaks_is_said(client):

@@ -16,7 +16,7 @@ ROWS = 1000  # between two looks at the progress
 
 
 def _needs(package: str, suffix: str, error: ImportError) -> SteadystepError:
-    return SteadystepError(f"{suffix} needs the package {package}, `pip install steadystep[{suffix[1:]}]`: {error}")
+    return SteadystepError(f"{suffix} needs the package {package}: pip install {package} ({error})")
 
 
 def _cells(capture: "Capture", row: int) -> list[float]:

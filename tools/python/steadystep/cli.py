@@ -256,7 +256,7 @@ def page(arguments: Arguments) -> int:
     try:
         from .page import serve
     except ImportError as error:
-        raise SteadystepError(f"the page needs the package {error.name}: pip install 'steadystep[page]'") from None
+        raise SteadystepError(f"the page needs the package {error.name}: pip install {error.name}") from None
     if not arguments.simulate:
         arguments.port = arguments.port or default_port()
     return serve(arguments)

@@ -39,7 +39,8 @@ async def _serve(operation: Operation, arguments: argparse.Namespace) -> None:
 def serve(arguments: argparse.Namespace) -> int:
     """Until it is interrupted."""
     if not (PAGE / "vendor" / "uPlot.iife.min.js").exists():
-        raise SteadystepError("uPlot is missing, which draws the traces: tools/setup page fetches it")
+        raise SteadystepError("uPlot is missing, which draws the traces: tools/setup page fetches it into the source tree, "
+                              "from where pip install takes it along")
     simulated = Simulated(motor=arguments.motor, program=arguments.simulator) if arguments.simulate else None
     operation = None
     try:
