@@ -148,12 +148,19 @@ static double base_of(const struct drive *drive, const struct capture_source *so
     return base;
 }
 
+/* The nearest to a level that a count may be. */
+static uint32_t count_of(double level)
+{
+    if (level >= UINT32_MAX) {
+        return UINT32_MAX;
+    }
+    return level > 0.0 ? (uint32_t)level : 0u;
+}
+
 static void put_level(struct capture *capture, const struct drive *drive, double level)
 {
     if (capture->trigger->base == CAPTURE_COUNT) {
-        capture->level.count = level >= UINT32_MAX ? UINT32_MAX
-                               : level > 0.0       ? (uint32_t)level
-                                                   : 0u;
+        capture->level.count = count_of(level);
     } else if (capture->trigger->base == CAPTURE_ANGLE) {
         capture->level.position = position_minus(
             position_from_rad(level, drive->settings.motor.rotor_teeth), drive->axis.offset);

@@ -1022,7 +1022,7 @@ MUTANTS = [
     # ---- link ----
     Mutant(LINK + "slcan.c", "slcan", "what_is_no_frame_is_refused", "id > 0x7ffu", "false"),
     Mutant(LINK + "capture.c", "capture", "a_level_beyond_a_count_is_not_crossed",
-           "level >= UINT32_MAX ? UINT32_MAX : level > 0.0", "level > 0.0"),
+           "    if (level >= UINT32_MAX) {\n        return UINT32_MAX;\n    }\n", ""),
     Mutant(LINK + "capture.c", "canopen", "whatever_comes_the_node_goes_on", "asked > room || ", ""),
     Mutant(LINK + "pdo.c", "can_bus", "whatever_comes_the_node_goes_on", "id >= 0x80u && ", ""),
     Mutant(LINK + "link.c", "modbus", "whatever_comes_the_node_goes_on",
