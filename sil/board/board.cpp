@@ -84,9 +84,9 @@ Board::Board(const plant::Config &plant, const firmware_image &image,
 }
 
 std::unique_ptr<Board> Board::flashed(const plant::Config &plant, const firmware_image &image,
-                                      const drive_settings &settings)
+                                      const drive_settings &settings, double hardware_trip_A)
 {
-    auto board = std::make_unique<Board>(plant, image, settings);
+    auto board = std::make_unique<Board>(plant, image, settings, hardware_trip_A);
     std::uint8_t record[SETTINGS_RECORD_BYTES];
     settings_record_encode(&settings, 1, record);
     std::copy(std::begin(record), std::end(record),

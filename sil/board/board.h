@@ -37,7 +37,7 @@ class Board : public DriveBoard
     /* As a board starts: the settings lie in its parameter store, and those that its drive has
        stored since are in force after a power cycle. */
     static std::unique_ptr<Board> flashed(const plant::Config &plant, const firmware_image &image,
-                                          const drive_settings &settings);
+                                          const drive_settings &settings, double hardware_trip_A);
     ~Board() override;
     Board(const Board &) = delete;
     Board &operator=(const Board &) = delete;

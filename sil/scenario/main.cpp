@@ -409,7 +409,8 @@ int serve_command(Options options)
         }
         const plant::Config plant = plant_of(scenario, seed + static_cast<unsigned>(node) - 1);
         if (options.given.image.empty()) {
-            boards.push_back(sil::Board::flashed(plant, firmware, scenario.drive));
+            boards.push_back(
+                sil::Board::flashed(plant, firmware, scenario.drive, scenario.comparator_trip_A));
         } else {
             boards.push_back(std::make_unique<virtual_board::VirtualBoard>(
                 plant, options.given.image, firmware.numeric, scenario.drive));
