@@ -86,14 +86,14 @@ def sizes(path):
     return sum(len(data) for _, data in memory.loaded(path)), ccm
 
 
-def kilobytes(size_B):
-    return spelled(size_B / 1000, 1)
+def kibibytes(size_B):
+    return spelled(size_B / 1024, 1)
 
 
 @entry("image", "tests/board/image_limits.py build/board-stm32g474/steadystep.elf")
 def g474_sizes(sources):
     flash_B, ccm_B = sizes(image(sources, G474))
-    return {"flash": kilobytes(flash_B), "ccm": kilobytes(ccm_B),
+    return {"flash": kibibytes(flash_B), "ccm": kibibytes(ccm_B),
             "share": spelled(100 * ccm_B / 32768, 0)}
 
 
@@ -113,7 +113,7 @@ def variant(sources, name, *options):
                  *(f"-D{option}" for option in options), accepted=(0,))
     sources.text("cmake", "--build", folder, "--target", "steadystep", accepted=(0,))
     flash_B, ccm_B = sizes(folder / "steadystep.elf")
-    return {"flash": kilobytes(flash_B), "ccm": kilobytes(ccm_B)}
+    return {"flash": kibibytes(flash_B), "ccm": kibibytes(ccm_B)}
 
 
 @entry("image-fewer-laws", f'cmake --preset {G474} -B build/figures-fewer-laws -D"{FEWER_LAWS}"',
@@ -235,7 +235,7 @@ def cycles(sources):
         found |= {name: f"{row['worst_cycles']:,}", f"{name}-mean": f"{row['mean_cycles']:,}",
                   f"{name}-bound": f"{row['must_cycles']:,}"}
     found["one-motor-m0plus-us"] = f"{rows['m0plus', 'one_motor', default]['worst_us']:.1f}"
-    found |= {"ram": spelled(float_row["ram_B"] / 1000, 1),
+    found |= {"ram": kibibytes(float_row["ram_B"]),
               "start-up": spelled(float_row["start_up_ms"], 0),
               "start-up-m0plus": spelled(small["start_up_ms"], 0)}
     return found
