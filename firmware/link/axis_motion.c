@@ -145,6 +145,7 @@ void axis_motion_start(struct application *application)
     };
     link->axis.stream.last_rad = motion_of(application)->target_rad;
     link->axis.stream.before_rad = motion_of(application)->target_rad;
+    link->axis.stream.by_sync = false;
 }
 
 /* ---- profile position ---- */
@@ -460,7 +461,7 @@ uint16_t axis_motion_status(struct application *application)
         of_mode = motion->homed && rests;
         off = motion->not_homed;
     } else if (axis->mode == CIA402_CYCLIC_POSITION) {
-        of_mode = !motion->halted && axis->stream.owed == 0u; /* follows what is asked for */
+        of_mode = !motion->halted && axis_stream_follows(&axis->stream);
     } else if (axis->mode == CIA402_CYCLIC_TORQUE) {
         reached = motion->halted && rests;
         of_mode = interrupt_view_torque(&application->drive);

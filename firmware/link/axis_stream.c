@@ -2,15 +2,21 @@
 
 #include "firmware/application/application.h"
 #include "firmware/design/elementary.h"
+#include "firmware/drive/interrupt_view.h"
 #include "firmware/link/axis_motion.h"
 #include "firmware/link/link.h"
 
 enum { OWED_MAX = 3, IN_HAND = 2, MOST_IN_HAND = 6 };
 
-/* In intervals: behind the last target one is overdue; behind the time of one whose place was taken
-   what comes is not that one any more. */
-#define OVERDUE 1.5f
-#define LATE    0.75f
+/* In intervals of being late: the place of one that is overdue is taken; by how much what comes
+   then must be early to be that one. */
+#define OVERDUE         0.5f
+#define OVERDUE_BY_SYNC 1.5f
+#define NOT_LATE        (-0.25f)
+
+/* In intervals: what of SYNC's arrival is jitter, and the most that a SYNC moves the phase. */
+#define JITTER     0.25f
+#define PHASE_GAIN (1.0f / 64.0f)
 
 /* A set-point's acceleration is checked by differences that are rounded. */
 static const float acceleration_share = 0.99f;
@@ -38,12 +44,14 @@ static uint32_t waiting(const struct application *application)
     return set_points_waiting(&application->drive.planner.set_points);
 }
 
-/* The last target has come, or should have. */
-static float since_s(const struct application *application)
+/* Beyond the time, of the drive's clock, at which the next set-point should have come, intervals.
+ */
+static float late(const struct application *application)
 {
-    const struct link *link = application->link;
+    const struct axis_stream *stream = &application->link->axis.stream;
+    const int32_t periods = (int32_t)(interrupt_view_period(&application->drive) - stream->due);
 
-    return 1e-6f * (float)link_since(link, link->axis.stream.fed_us);
+    return (float)periods / (float)application->drive.planner.set_points.interval_periods;
 }
 
 static bool put(struct application *application, double position_rad)
@@ -61,6 +69,7 @@ static bool put(struct application *application, double position_rad)
     }
     stream->before_rad = stream->last_rad;
     stream->last_rad = position_rad;
+    stream->due += application->drive.planner.set_points.interval_periods;
     return true;
 }
 
@@ -70,9 +79,10 @@ static void begin(struct application *application)
 
     stream->owed = 0;
     stream->last_rad = drive_planned_end_rad(&application->drive);
-    for (int i = 0; i < IN_HAND; i++) {
+    for (int i = 0; i < (stream->by_sync ? IN_HAND + 1 : IN_HAND); i++) {
         (void)put(application, stream->last_rad);
     }
+    stream->due = interrupt_view_period(&application->drive);
 }
 
 /* As far towards the target as speed and acceleration allow. */
@@ -90,49 +100,146 @@ static double within_limits(struct application *application, double target_rad)
     return speed == asked ? target_rad : stream->last_rad + (double)(T * speed);
 }
 
-void axis_stream_take(struct application *application)
+/* Goes on to a position, or begins to; what stays needs no set-points. */
+static void follow(struct application *application, double position_rad)
 {
     struct axis_motion *motion = &application->link->axis.motion;
     struct axis_stream *stream = &application->link->axis.stream;
+    const bool moves = position_rad != stream->last_rad || stream->last_rad != stream->before_rad;
 
-    motion->limited = false;
-    motion->target_rad = axis_motion_target(application);
-
-    const double target_rad = motion->target_rad;
-    const bool moved = target_rad != stream->last_rad || stream->last_rad != stream->before_rad;
-
-    if (motion->halted || (!moved && (stream->stays || !is_open(application)))) {
+    if (!moves && (stream->stays || !is_open(application))) {
         return;
     }
-    stream->stays = !moved;
+    stream->stays = !moves;
     if (!is_open(application) && axis_motion_rests(application)) {
         begin(application);
     }
     if (!is_open(application)) {
         return;
     }
-    if (stream->owed > 0u && since_s(application) < LATE * interval_s(application)) {
+    if (waiting(application) < MOST_IN_HAND) { /* else in a heap: the next one stands for it, too */
+        motion->limited =
+            !put(application, within_limits(application, position_rad)) || motion->limited;
+    }
+}
+
+/* ---- with SYNC ---- */
+
+static float within(float value, float most)
+{
+    return value > most ? most : value < -most ? -most : value;
+}
+
+/* Up to the latest target; of a motion, as long as the next one is overdue, beyond. */
+static void advance(struct application *application)
+{
+    struct axis_stream *stream = &application->link->axis.stream;
+
+    while (stream->ahead + (float)stream->owed <= (float)OWED_MAX &&
+           (stream->ahead <= 0.0f ||
+            (stream->last_rad != stream->before_rad && late(application) > OVERDUE_BY_SYNC))) {
+        const float curve =
+            stream->ahead < 0.0f ? stream->step_rad - stream->step_before_rad : 0.0f;
+        const float step_rad = stream->step_rad + 0.5f * (stream->ahead + 1.0f) * curve;
+
+        follow(application, stream->target_rad + (double)(stream->ahead * step_rad));
+        stream->ahead += 1.0f;
+    }
+}
+
+void axis_stream_sync(struct application *application)
+{
+    struct axis_stream *stream = &application->link->axis.stream;
+
+    stream->at_sync = true;
+    stream->target_before_rad = stream->target_rad;
+    stream->step_before_rad = stream->step_rad;
+    stream->target_rad += (double)stream->step_rad;
+    stream->owed =
+        (uint8_t)(stream->owed + (stream->by_sync && stream->owed < UINT8_MAX ? 1u : 0u));
+    stream->ahead -= 1.0f;
+    if (is_open(application)) {
+        const float off = late(application) + stream->ahead;
+
+        stream->ahead -= PHASE_GAIN * within(off - within(off, JITTER), 1.0f);
+    }
+}
+
+static void take_with_sync(struct application *application)
+{
+    struct axis_stream *stream = &application->link->axis.stream;
+
+    if (!stream->by_sync || !is_open(application)) {
+        stream->by_sync = true;
+        stream->ahead = 0.0f;
+        stream->target_before_rad = stream->last_rad;
+        stream->step_before_rad = 0.0f;
+    }
+    stream->target_rad = application->link->axis.motion.target_rad;
+    stream->step_rad = (float)(stream->target_rad - stream->target_before_rad);
+    stream->owed = 0;
+    advance(application);
+}
+
+/* ---- on reception ---- */
+
+static void take_at_once(struct application *application)
+{
+    struct axis_stream *stream = &application->link->axis.stream;
+
+    stream->by_sync = false;
+    stream->ahead = 0.0f;
+    if (stream->owed > 0u && late(application) < NOT_LATE) {
         stream->owed--; /* the one whose place was taken */
         return;
     }
     stream->owed = 0;
-    stream->fed_us = application->link->now_us;
-    if (waiting(application) >= MOST_IN_HAND) {
-        return; /* came in a heap: the next one stands for it, too */
+    stream->due = interrupt_view_period(&application->drive);
+    follow(application, application->link->axis.motion.target_rad);
+}
+
+static void make_up(struct application *application)
+{
+    struct axis_stream *stream = &application->link->axis.stream;
+    const double step_rad = stream->last_rad - stream->before_rad;
+
+    if (step_rad != 0.0 && stream->owed < OWED_MAX && late(application) > OVERDUE &&
+        waiting(application) < MOST_IN_HAND && put(application, stream->last_rad + step_rad)) {
+        stream->owed++;
     }
-    motion->limited = !put(application, within_limits(application, target_rad)) || motion->limited;
+}
+
+/* ---- both ---- */
+
+void axis_stream_take(struct application *application)
+{
+    struct axis_motion *motion = &application->link->axis.motion;
+
+    motion->limited = false;
+    motion->target_rad = axis_motion_target(application);
+    if (motion->halted) {
+        return;
+    }
+    if (application->link->axis.stream.at_sync) {
+        take_with_sync(application);
+    } else {
+        take_at_once(application);
+    }
+}
+
+bool axis_stream_follows(const struct axis_stream *stream)
+{
+    return stream->owed == 0u && stream->ahead <= 1.0f;
 }
 
 void axis_stream_background(struct application *application)
 {
-    struct axis_stream *stream = &application->link->axis.stream;
-    const double step_rad = stream->last_rad - stream->before_rad;
-    const float interval = interval_s(application);
-
-    if (is_open(application) && step_rad != 0.0 && stream->owed < OWED_MAX &&
-        since_s(application) > OVERDUE * interval &&
-        put(application, stream->last_rad + step_rad)) {
-        stream->owed++;
-        stream->fed_us += (uint32_t)(1e6f * interval);
+    if (!is_open(application)) {
+        return;
+    }
+    if (application->link->axis.stream.by_sync) {
+        advance(application);
+    } else {
+        make_up(application);
     }
 }

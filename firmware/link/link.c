@@ -269,7 +269,9 @@ void link_receive(struct application *application, const struct can_frame *frame
             link->synced = true;
             link->synced_us = link->now_us;
             find_again(application);
+            axis_stream_sync(application);
             pdo_sync(application);
+            link->axis.stream.at_sync = false;
         } else {
             pdo_receive(application, frame);
         }

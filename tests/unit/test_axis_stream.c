@@ -272,6 +272,206 @@ static void test_other_modes_follow_no_stream(void)
     TEST_ASSERT_TRUE(rests());
 }
 
+/* ---- with SYNC ---- */
+
+static void by_sync(void)
+{
+    put(0x1401, 2, 1, 1);
+}
+
+/* From a SYNC to the passing of its target; the target itself takes a pass before. */
+static double lag_of_sync(int32_t step)
+{
+    return lag(step) - 1.0 / CYCLE;
+}
+
+/* The question takes a period. */
+static void shows(uint32_t bits, uint32_t asked)
+{
+    TEST_ASSERT_EQUAL_HEX32(bits, status(asked));
+}
+
+/* A target, and the SYNC with which it acts. */
+static void send_with_sync(int32_t position)
+{
+    send(position);
+    bench_type("t0800\r");
+}
+
+/* So many, each SYNC `periods` behind the last one. */
+static void sync_stream(int count, int32_t step, int periods)
+{
+    for (int i = 0; i < count; i++) {
+        send_with_sync(target + step);
+        pass(periods);
+    }
+}
+
+static void test_a_target_of_a_sync_is_passed_four_intervals_and_1_3_ms_behind_it(void)
+{
+    by_sync();
+    sync_stream(50, 400, CYCLE);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 4.325, lag_of_sync(400));
+    TEST_ASSERT_DOUBLE_WITHIN(0.001, 400 * unit_rad / 4e-3, speed_rad_s());
+    TEST_ASSERT_EQUAL_HEX32(OF_MODE, status(OF_MODE | LIMITED));
+    sync_stream(10, 0, CYCLE);
+    TEST_ASSERT_DOUBLE_WITHIN(1.0, target, reference_units());
+    pass(500);
+    TEST_ASSERT_TRUE(rests());
+    TEST_ASSERT_EQUAL_UINT32(0, underruns());
+}
+
+static void test_a_target_waits_for_its_sync(void)
+{
+    by_sync();
+    send(400);
+    pass(10 * CYCLE);
+    TEST_ASSERT_TRUE(rests());
+    TEST_ASSERT_FALSE(bench.application.drive.planner.set_points_open);
+}
+
+/* Late by up to a quarter of an interval and early by as much: the course knows nothing of it. */
+static void test_jitter_of_sync_is_none_of_the_reference(void)
+{
+    static const int late[8] = {0, 9, -10, 19, -3, -18, 12, -20};
+
+    by_sync();
+    sync_stream(50, 400, CYCLE);
+    for (int i = 0; i < 400; i++) {
+        sync_stream(1, 400, CYCLE + late[(i + 1) % 8] / 2 - late[i % 8] / 2);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 400 * unit_rad / 4e-3, speed_rad_s());
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 4.325, lag_of_sync(400));
+    TEST_ASSERT_EQUAL_UINT32(0, underruns());
+}
+
+/* A master whose interval is 2.5 thousandths longer, or shorter: 100 periods in 1,000 cycles. */
+static void follows_a_clock_that_is_off(int by)
+{
+    const double speed = 400 * unit_rad / 4e-3;
+
+    by_sync();
+    sync_stream(50, 400, CYCLE);
+    for (int i = 0; i < 2000; i++) {
+        sync_stream(1, 400, CYCLE + (i % 10 == 0 ? by : 0));
+        TEST_ASSERT_DOUBLE_WITHIN(6e-3 * speed, speed, speed_rad_s());
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1.0, 4.325, lag_of_sync(400));
+    TEST_ASSERT_EQUAL_UINT32(0, underruns());
+    TEST_ASSERT_EQUAL_HEX32(OF_MODE, status(OF_MODE | LIMITED));
+}
+
+static void test_the_clock_is_the_sync_of_a_master_that_is_slow(void)
+{
+    follows_a_clock_that_is_off(1);
+}
+
+static void test_the_clock_is_the_sync_of_a_master_that_is_fast(void)
+{
+    follows_a_clock_that_is_off(-1);
+}
+
+/* Where the phase is off, set-points are between targets: on the parabola through these. */
+static void test_a_course_is_passed_between_its_targets(void)
+{
+    int32_t begin;
+
+    by_sync();
+    for (int i = 0; i < 1500; i++) {
+        sync_stream(1, 400, CYCLE + (i % 10 == 0 ? 1 : 0));
+    }
+    begin = target;
+    for (int i = 1; i <= 20; i++) { /* decelerates: 400 i - 10 i^2 */
+        sync_stream(1, 400 - 10 * (2 * i - 1), CYCLE);
+        const double at = i + (double)bench_link.axis.stream.ahead - 1.0;
+
+        TEST_ASSERT_DOUBLE_WITHIN(0.4, 0.5, at - floor(at)); /* truly between */
+        if (i >= 3) {
+            TEST_ASSERT_DOUBLE_WITHIN(0.01, begin + 400 * at - 10 * at * at,
+                                      bench_link.axis.stream.last_rad / unit_rad);
+        }
+    }
+}
+
+/* It is the interval that the count goes by: the next one is where it would have been. */
+static void test_a_sync_without_a_target_is_an_interval_too(void)
+{
+    by_sync();
+    sync_stream(50, 400, CYCLE);
+    for (int missing = 1; missing <= 3; missing++) {
+        for (int i = 0; i < missing; i++) {
+            pass(1); /* where a target would be */
+            bench_type("t0800\r");
+            pass(CYCLE - 1);
+        }
+        target += 400 * missing;
+        sync_stream(1, 400, CYCLE);
+        TEST_ASSERT_DOUBLE_WITHIN(0.01, 4.325, lag_of_sync(400));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 400 * unit_rad / 4e-3, speed_rad_s());
+        sync_stream(5, 400, CYCLE);
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, underruns());
+    bench_type("t0800\r");
+    pass(CYCLE);
+    shows(0, OF_MODE);
+    for (int i = 1; i < 12; i++) {
+        bench_type("t0800\r");
+        pass(CYCLE);
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, underruns());
+    pass(500);
+    TEST_ASSERT_TRUE(rests());
+    TEST_ASSERT_DOUBLE_WITHIN(1.5 * 400, target + 3 * 400, reference_units());
+}
+
+/* As of a master that was away: what has come meanwhile is counted, and the delay is the old one.
+ */
+static void test_syncs_that_come_late_and_in_a_heap_are_counted(void)
+{
+    by_sync();
+    sync_stream(50, 400, CYCLE);
+    pass(3 * CYCLE - 1);
+    shows(0, OF_MODE);
+    sync_stream(4, 400, 1);
+    pass(CYCLE - 4);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 400 * unit_rad / 4e-3, speed_rad_s());
+    sync_stream(20, 400, CYCLE);
+    TEST_ASSERT_DOUBLE_WITHIN(0.06, 4.325, lag_of_sync(400));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * speed_rad_s(), 400 * unit_rad / 4e-3, speed_rad_s());
+    TEST_ASSERT_EQUAL_HEX32(OF_MODE, status(OF_MODE));
+    TEST_ASSERT_EQUAL_UINT32(0, underruns());
+}
+
+static void test_the_fourth_sync_in_a_row_that_is_missing_ends_the_motion(void)
+{
+    by_sync();
+    sync_stream(50, 400, CYCLE);
+    pass(CYCLE * 14);
+    TEST_ASSERT_EQUAL_UINT32(1, underruns());
+    pass(500);
+    TEST_ASSERT_TRUE(rests());
+    TEST_ASSERT_DOUBLE_WITHIN(1.5 * 400, target + 3 * 400, reference_units());
+    sync_stream(100, 400, CYCLE); /* and begins anew */
+    TEST_ASSERT_DOUBLE_WITHIN(0.02, 4.325, lag_of_sync(400));
+    TEST_ASSERT_EQUAL_UINT32(1, underruns());
+}
+
+/* The delay, shorter by those that are lost, is made up for by and by. */
+static void test_lost_syncs_are_made_up_for_slowly(void)
+{
+    by_sync();
+    sync_stream(50, 400, CYCLE);
+    pass(CYCLE);
+    sync_stream(1, 400, CYCLE);
+    TEST_ASSERT_DOUBLE_WITHIN(0.05, 3.325, lag_of_sync(400));
+    for (int i = 0; i < 1000; i++) {
+        sync_stream(1, 400, CYCLE);
+        TEST_ASSERT_DOUBLE_WITHIN(0.02 * speed_rad_s(), 400 * unit_rad / 4e-3, speed_rad_s());
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(0.3, 4.325, lag_of_sync(400));
+    TEST_ASSERT_EQUAL_UINT32(0, underruns());
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -287,5 +487,15 @@ int main(void)
     RUN_TEST(test_a_halt_takes_no_target_and_is_no_following);
     RUN_TEST(test_a_target_beyond_a_software_limit_is_cut);
     RUN_TEST(test_other_modes_follow_no_stream);
+    RUN_TEST(test_a_target_of_a_sync_is_passed_four_intervals_and_1_3_ms_behind_it);
+    RUN_TEST(test_a_target_waits_for_its_sync);
+    RUN_TEST(test_jitter_of_sync_is_none_of_the_reference);
+    RUN_TEST(test_the_clock_is_the_sync_of_a_master_that_is_slow);
+    RUN_TEST(test_the_clock_is_the_sync_of_a_master_that_is_fast);
+    RUN_TEST(test_a_course_is_passed_between_its_targets);
+    RUN_TEST(test_a_sync_without_a_target_is_an_interval_too);
+    RUN_TEST(test_syncs_that_come_late_and_in_a_heap_are_counted);
+    RUN_TEST(test_the_fourth_sync_in_a_row_that_is_missing_ends_the_motion);
+    RUN_TEST(test_lost_syncs_are_made_up_for_slowly);
     return UNITY_END();
 }
