@@ -1,7 +1,10 @@
-"""How much code carries the drive on a fieldbus."""
+"""firmware/link/README.md: what a client waits for, and how much code carries it."""
+import math
 import re
+import sys
 
 from comparison.simulator import ROOT
+from readme_figures.reading import spelled, up
 from readme_figures.registry import entry, table
 
 FOLDER = ROOT / "firmware/link"
@@ -30,3 +33,28 @@ def lines_of_link(_):
     assert not counted, f"in no group: {counted}"
     return {"canopen": f"{sum(count for _, count in groups[:3]):,}",
             "table": table(["code of", "lines"], [[what, f"{count:,}"] for what, count in groups])}
+
+
+MODES = {"pp": "profile position", "pv": "profile velocity", "csp": "cyclic position", "sync": "cyclic position with SYNC",
+         "cst": "cyclic torque"}
+
+
+@entry("motion-delay", "build/sil/tests/unit/unit_motion_delay_float")
+def motion_delay(sources):
+    said = sources.text(sources.built("sil/tests/unit/unit_motion_delay_float", "sil"))
+    found = {part: re.search(rf"^{mode}: ([\d.]+) ms$", said, re.M)[1] for part, mode in MODES.items()}
+    found["rms"], found["most"] = re.search(r"off by (\d+) us rms, (\d+) us at most", said).groups()
+    return found
+
+
+@entry("enabling", "tests/serve/enabling_times.py build/sil/steadystep-sil")
+def enabling(sources):
+    said = sources.text(sys.executable, ROOT / "tests/serve/enabling_times.py", sources.program)
+
+    def times(what):
+        return [float(time) for time in re.search(rf"^{what}: ([\d.]+) s.* to ([\d.]+) s", said, re.M).groups()]
+
+    least, most = times("in all")
+    return {"motors": re.search(r"^(\d+) motors enabled", said, re.M)[1],
+            "first": up(times("to SWITCHED ON")[1], 2), "second": up(times("on to OPERATION ENABLED")[1], 2),
+            "least": spelled(math.floor(100 * least) / 100, 2), "most": up(most, 2)}
