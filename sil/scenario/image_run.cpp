@@ -79,10 +79,11 @@ std::string interrupt_table(const virtual_board::BoardReport &board, double cpu_
     const virtual_board::Figures &latency = interrupt.latency;
     const double worst_us = us(static_cast<double>(latency.worst));
     const double least_us = us(static_cast<double>(latency.least));
-    text += format("  of %llu interrupts; budget %llu from S(k); %llu instructions outside "
-                   "CCM\n",
-                   count(interrupt.interrupts), count(board.budget_cycles),
-                   count(interrupt.outside_fast_code));
+    text +=
+        format("  of %llu interrupts, means of the %llu in which the drive controls; budget %llu "
+               "from S(k); %llu instructions outside CCM\n",
+               count(interrupt.interrupts), count(interrupt.in_control), count(board.budget_cycles),
+               count(interrupt.outside_fast_code));
     text += format("  start after S(k): least %llu, mean %.1f, worst %llu cycles (%.3f, %.3f, %.3f "
                    "us); jitter %.3f us\n",
                    count(latency.least), latency.mean, count(latency.worst), least_us,

@@ -151,6 +151,7 @@ Json interrupt_json(const Result &result)
     Json json;
     json["image"] = result.scenario->given.image;
     json["interrupts"] = interrupt.interrupts;
+    json["interrupts_in_control"] = interrupt.in_control;
     json["budget_cycles"] = result.board->budget_cycles;
     json["total_cycles"] = figures_json(interrupt.total);
     for (std::size_t i = 0; i < interrupt.stages.size(); ++i) {

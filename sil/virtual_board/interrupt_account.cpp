@@ -1,7 +1,17 @@
 #include "sil/virtual_board/interrupt_account.h"
 
+#include <algorithm>
+
 namespace virtual_board
 {
+
+namespace
+{
+
+/* Of tools/arm_image/stages.py: it runs with the bridge on, and not in its calibration. */
+const char *const control_stage = "position law";
+
+} // namespace
 
 void Distribution::add(std::uint64_t value)
 {
@@ -37,11 +47,27 @@ Figures Distribution::figures() const
     return figures;
 }
 
-void InterruptAccount::Column::add(const Cycles &cycles)
+void DistributionInControl::add(std::uint64_t value, bool controls)
 {
-    nominal.add(cycles.nominal);
-    worst.add(cycles.worst);
-    flash.add(cycles.flash);
+    all_.add(value);
+    if (controls) {
+        sum_ += value;
+        ++values_;
+    }
+}
+
+Figures DistributionInControl::figures() const
+{
+    Figures figures = all_.figures();
+    figures.mean = values_ == 0 ? 0.0 : static_cast<double>(sum_) / static_cast<double>(values_);
+    return figures;
+}
+
+void InterruptAccount::Column::add(const Cycles &cycles, bool controls)
+{
+    nominal.add(cycles.nominal, controls);
+    worst.add(cycles.worst, controls);
+    flash.add(cycles.flash, controls);
 }
 
 CycleFigures InterruptAccount::Column::figures() const
@@ -52,6 +78,8 @@ CycleFigures InterruptAccount::Column::figures() const
 void InterruptAccount::set_stages(const std::vector<std::string> &names)
 {
     names_ = names;
+    control_ = static_cast<std::size_t>(std::find(names.begin(), names.end(), control_stage) -
+                                        names.begin());
     present_.assign(names.size(), Cycles());
     stages_.assign(names.size(), Column());
 }
@@ -63,22 +91,30 @@ void InterruptAccount::begin()
     excused_ = false;
 }
 
+bool InterruptAccount::controls() const
+{
+    return control_ == present_.size() || present_[control_].nominal > 0;
+}
+
 void InterruptAccount::end()
 {
+    const bool in_control = controls();
     Cycles total;
     for (std::size_t i = 0; i < present_.size(); ++i) {
-        stages_[i].add(present_[i]);
+        stages_[i].add(present_[i], in_control);
         total += present_[i];
     }
-    total_.add(total);
+    total_.add(total, in_control);
     outside_fast_code_ += excused_ ? 0 : outside_now_;
     ++interrupts_;
+    in_control_ += in_control ? 1 : 0;
 }
 
 InterruptAccount::Summary InterruptAccount::summary() const
 {
     Summary summary;
     summary.interrupts = interrupts_;
+    summary.in_control = in_control_;
     summary.total = total_.figures();
     summary.stage_names = names_;
     for (const Column &stage : stages_) {

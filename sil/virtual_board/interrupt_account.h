@@ -1,4 +1,7 @@
-/* What the control interrupt costs: cycles of every one, by column and stage. */
+/*
+ * What the control interrupt costs: cycles by column and stage. Largest and least are of every
+ * interrupt, means of those in which the drive controls: periods without a voltage cost a tenth.
+ */
 #ifndef STEADYSTEP_VIRTUAL_BOARD_INTERRUPT_ACCOUNT_H
 #define STEADYSTEP_VIRTUAL_BOARD_INTERRUPT_ACCOUNT_H
 
@@ -27,6 +30,18 @@ class Distribution
   private:
     std::vector<std::uint32_t> counts_;
     std::uint64_t values_ = 0;
+};
+
+/* The same, with the mean of some of the values: 0 if there is none. */
+class DistributionInControl
+{
+  public:
+    void add(std::uint64_t value, bool controls);
+    Figures figures() const;
+
+  private:
+    Distribution all_;
+    std::uint64_t sum_ = 0, values_ = 0; /* of the periods in which the drive controls */
 };
 
 /* The same in each column of cycles. */
@@ -72,6 +87,7 @@ class InterruptAccount
 
     struct Summary {
         std::uint64_t interrupts = 0;
+        std::uint64_t in_control = 0; /* of them; those that the means are of */
         CycleFigures total;
         std::vector<std::string> stage_names;
         std::vector<CycleFigures> stages;
@@ -83,18 +99,22 @@ class InterruptAccount
 
   private:
     struct Column {
-        Distribution nominal, worst, flash;
+        DistributionInControl nominal, worst, flash;
 
-        void add(const Cycles &cycles);
+        void add(const Cycles &cycles, bool controls);
         CycleFigures figures() const;
     };
 
+    /* Whether the present one has run the position law or the hold. */
+    bool controls() const;
+
     std::vector<std::string> names_;
+    std::size_t control_ = 0; /* that stage; beyond the last: the image does not name it */
     std::vector<Cycles> present_;
     Column total_;
     std::vector<Column> stages_;
     Distribution latency_;
-    std::uint64_t interrupts_ = 0, preemptions_ = 0, preempting_cycles_ = 0;
+    std::uint64_t interrupts_ = 0, in_control_ = 0, preemptions_ = 0, preempting_cycles_ = 0;
     std::uint64_t outside_fast_code_ = 0, outside_now_ = 0;
     bool excused_ = false;
 };

@@ -260,7 +260,9 @@ int run(const std::string &file)
                 static_cast<double>(board.watchdog().counters.longest) / 5440.0 / 1000.0);
 
     const InterruptAccount::Summary summary = machine.account().summary();
-    std::printf("control interrupt, %" PRIu64 " times, cycles at 64 MHz\n", summary.interrupts);
+    std::printf("control interrupt, %" PRIu64 " times, cycles at 64 MHz; means of the %" PRIu64
+                " in which the drive controls\n",
+                summary.interrupts, summary.in_control);
     print("whole", summary.total);
     for (std::size_t i = 0; i < summary.stages.size(); i++) {
         if (summary.stages[i].nominal.worst > 0) {
