@@ -6,6 +6,8 @@ usage: budget.py ROOT IMAGE FOLDER [OPTION]...
 FOLDER: summaries of same_as_simulator.py. OPTION: of tools/interrupt_budget, to which the runs and
 what tools/longest_path finds in IMAGE are handed; --update-baseline writes baseline.json. Neither
 the serial line, nor DMA, nor the flash may shift the start of the interrupt by more than 1 us.
+The sensorless default, with the bridge on, is held to what the board, and all of it, may take in the
+mean.
 """
 
 import json
@@ -17,6 +19,10 @@ from pathlib import Path
 JITTER_CYCLES = 170  # 1 us
 # Their events hold the interrupt up: they say nothing of what it takes.
 HELD_UP = {"board-overrun", "board-short-stall"}
+# Mean cycles of the sensorless default with the bridge on, nominal: of stages, and of the interrupt.
+SENSORLESS = "bendjedia-fig12"
+STAGE_CYCLES = {"sampling": 220, "cycle counts": 30}
+WHOLE_CYCLES = {"float": 1200}  # by number format: that of a drive with an FPU
 
 
 def shifted(files):
@@ -34,6 +40,20 @@ def shifted(files):
         )
         if interrupt["start_jitter_cycles"] > JITTER_CYCLES:
             yield f"{file.stem}: the start varies by {interrupt['start_jitter_cycles']} cycles"
+
+
+def exceeded(summary):
+    """Yields what of the sensorless default takes more than it may."""
+    interrupt = summary["interrupt"]
+    means = {name: columns["nominal"]["mean"] for name, columns in interrupt["stage_cycles"].items()}
+    limits = dict(STAGE_CYCLES)
+    if summary["numeric"] in WHOLE_CYCLES:
+        means["whole interrupt"] = interrupt["total_cycles"]["nominal"]["mean"]
+        limits["whole interrupt"] = WHOLE_CYCLES[summary["numeric"]]
+    for name, most in limits.items():
+        print(f"  {SENSORLESS}: {name} {means[name]:.1f} of {most} cycles in the mean")
+        if means[name] > most:
+            yield f"{SENSORLESS}: {name} takes {means[name]:.1f} cycles, must be at most {most}"
 
 
 def main():
@@ -54,6 +74,10 @@ def main():
     bound.write_text(found.stdout, encoding="utf-8")
     judged = [tools / "interrupt_budget", *runs, "--longest-path", bound, *sys.argv[4:]]
     wrong = [f"{text}, must be at most {JITTER_CYCLES}" for text in shifted(runs)]
+    default = next((file for file in runs if file.stem == SENSORLESS), None)
+    if default is None:
+        sys.exit(f"{folder}: no {SENSORLESS}.json; run the test board.run.{SENSORLESS} first")
+    wrong += exceeded(json.loads(default.read_text(encoding="utf-8"))[0])
     sys.stdout.flush()
     for text in wrong:
         print(text, file=sys.stderr)
