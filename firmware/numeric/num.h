@@ -15,9 +15,20 @@
  * round towards minus infinity and are the same, bit for bit, on every core and compiler. Right
  * shifts of negative numbers are arithmetic (implementation-defined in C11; so in gcc and clang).
  * In an image for one motor the compiler knows the shifts of most (coefficients.h).
- * A number that left -32...32 would be undefined. Factors are limited before their product
- * (num_headroom), with limits that follow from the gains at start-up; a gain that leaves none is
- * refused there. Shown by tests/unit/test_headroom.c under the sanitizer.
+ *
+ * A number must never leave -32...32. Factors are limited before their product (num_headroom), with
+ * limits that follow from the gains at start-up; a gain that leaves none is refused there.
+ * How that is shown: in preset sil-sanitize each sum, product, shift and conversion is checked, and
+ * the first result that does not fit ends the program. The sanitizer checks plain operators. What
+ * converts a long product to 32 bits it cannot see: that states its own condition, NUM_HEADROOM.
+ * Under these checks run tests/unit/test_headroom.c, every law in motion, with a load and with
+ * samples at their ends, and the experiments of the test headroom. So it is a proof by test:
+ * of the values that occur there, not of every value.
+ * Not checked are angles and num_add_around, which are meant to go round.
+ * One condition belongs to the Cortex-M0+: of the second factor of num_mul 16 bits count there,
+ * -2...2. With a larger one its product may be 2^-8 off the other cores' (num_mul_wide is not). A
+ * current stays below as long as the overcurrent trip is at most twice the rated current, by
+ * default 1.8 times; with a wider trip the decoupling of the current control may see a larger one.
  */
 #ifndef STEADYSTEP_NUM_H
 #define STEADYSTEP_NUM_H
@@ -61,6 +72,19 @@ typedef struct {
 #define NUM(x)  ((num_t)((x)*67108864.0 + ((x) < 0 ? -0.5 : 0.5)))
 #define UNIT(x) ((unit_t)((x)*32768.0 + ((x) < 0 ? -0.5 : 0.5)))
 
+/*
+ * What must hold of factors and product. Where it does not, STEADYSTEP_CHECK_HEADROOM is evaluated:
+ * preset sil-sanitize defines it as a trap, test_num.c counts. In any other build it is nothing.
+ */
+#ifdef STEADYSTEP_CHECK_HEADROOM
+#define NUM_HEADROOM(holds) ((holds) ? (void)0 : (void)(STEADYSTEP_CHECK_HEADROOM))
+#else
+#define NUM_HEADROOM(holds) ((void)0)
+#endif
+#define NUM_IS_32_BITS(x) ((x) >= INT32_MIN && (x) <= INT32_MAX)
+#define NUM_IS_17_BITS(x) ((x) >= -65536 && (x) <= 65535)
+#define NUM_IS_16_BITS(x) ((x) >= INT16_MIN && (x) <= INT16_MAX)
+
 /* floor(a m / 2^16) */
 static inline int32_t num_mul_high16(int32_t a, int16_t m)
 {
@@ -78,12 +102,14 @@ static inline int32_t num_mul_high16(int32_t a, int16_t m)
 
 static inline int32_t num_shift_left(int32_t a, unsigned bits)
 {
+    NUM_HEADROOM(NUM_IS_32_BITS((int64_t)a * ((int64_t)1 << bits)));
     return (int32_t)((uint32_t)a << bits);
 }
 
 /* floor(a u / 2^15); a u just above one, as rounding leaves it in a sum of angles, is welcome. */
 static inline num_t num_mul_unit(num_t a, unit_t u)
 {
+    NUM_HEADROOM(NUM_IS_32_BITS(((int64_t)a * u) >> 15) && NUM_IS_17_BITS(u));
 #if defined(__ARM_ARCH_6M__)
     return (num_t)((uint32_t)(a >> 15) * (uint32_t)u + (uint32_t)(((a & 0x7fff) * u) >> 15));
 #else
@@ -94,6 +120,7 @@ static inline num_t num_mul_unit(num_t a, unit_t u)
 /* ..._nearest rounds to nearest: a sum of steps that little calls back would walk away by floor. */
 static inline num_t num_mul_unit_nearest(num_t a, unit_t u)
 {
+    NUM_HEADROOM(NUM_IS_32_BITS(((int64_t)a * u + 0x4000) >> 15) && NUM_IS_17_BITS(u));
 #if defined(__ARM_ARCH_6M__)
     return (num_t)((uint32_t)(a >> 15) * (uint32_t)u +
                    (uint32_t)(((a & 0x7fff) * u + 0x4000) >> 15));
@@ -183,6 +210,7 @@ static inline num_t num_mul(num_t a, num_t b)
 {
     const int32_t factor = b >> (NUM_FRACTION_BITS - 14);
 
+    NUM_HEADROOM(NUM_IS_32_BITS(((int64_t)a * factor) >> 14) && NUM_IS_16_BITS(factor));
 #if defined(__ARM_ARCH_6M__)
     return num_shift_left((a >> 16) * factor, 2) +
            ((int32_t)(((uint32_t)a & 0xffffu) * (uint32_t)factor) >> 14);
@@ -196,12 +224,27 @@ static inline num_t num_mul_nearest(num_t a, num_t b)
 {
     const int32_t factor = b >> (NUM_FRACTION_BITS - 14);
 
+    NUM_HEADROOM(NUM_IS_32_BITS(((int64_t)a * factor + 0x2000) >> 14) && NUM_IS_16_BITS(factor));
 #if defined(__ARM_ARCH_6M__)
     return num_shift_left((a >> 16) * factor, 2) +
            ((int32_t)(((uint32_t)a & 0xffffu) * (uint32_t)factor + 0x2000u) >> 14);
 #else
     return (num_t)(((int64_t)a * factor + 0x2000) >> 14);
 #endif
+}
+
+/* num_mul of any second factor: beyond -2...2 a Cortex-M0+ takes a long product. */
+static inline num_t num_mul_wide(num_t a, num_t b)
+{
+    const int32_t factor = b >> (NUM_FRACTION_BITS - 14);
+
+    NUM_HEADROOM(NUM_IS_32_BITS(((int64_t)a * factor) >> 14));
+#if defined(__ARM_ARCH_6M__)
+    if (!RARE(!NUM_IS_16_BITS(factor))) {
+        return num_mul(a, b);
+    }
+#endif
+    return (num_t)(((int64_t)a * factor) >> 14);
 }
 
 static inline unit_t unit_mul(unit_t a, unit_t b)
@@ -322,6 +365,11 @@ static inline num_t num_mul(num_t a, num_t b)
 }
 
 static inline num_t num_mul_nearest(num_t a, num_t b)
+{
+    return a * b;
+}
+
+static inline num_t num_mul_wide(num_t a, num_t b)
 {
     return a * b;
 }

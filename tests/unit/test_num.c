@@ -4,15 +4,23 @@
  */
 #include <unity.h>
 
+/* Here an overflow that the casts of fixed point hide is counted. */
+static int overflows;
+#undef STEADYSTEP_CHECK_HEADROOM
+#define STEADYSTEP_CHECK_HEADROOM overflows++
+
 #include "firmware/design/elementary.h"
 #include "firmware/numeric/num.h"
 
 void setUp(void)
 {
+    overflows = 0;
 }
 
 void tearDown(void)
 {
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, overflows,
+                                  "a product that fits is taken for one that does not");
 }
 
 /* Pseudo-random bits (xorshift, Marsaglia 2003), the same on every machine. */
@@ -161,6 +169,58 @@ static void test_a_ratio_is_the_floor_of_the_exact_one(void)
     TEST_ASSERT_EQUAL_INT32(NUM(31.5), num_mul_unit(NUM(31.5), UNIT(1.0)));
 }
 
+/* The number of overflows since the last time. */
+static int new_overflows(void)
+{
+    const int counted = overflows;
+
+    overflows = 0;
+    return counted;
+}
+
+static void test_a_product_that_does_not_fit_is_seen(void)
+{
+    const coef_t two = {.mantissa = INT16_MAX, .left = 2u};
+
+    (void)num_mul(NUM(20.0), NUM(-1.8));
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+    (void)num_mul_nearest(NUM(20.0), NUM(1.8));
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+    (void)num_mul_unit(INT32_MIN, UNIT(-1.0));
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+    (void)num_mul_unit_nearest(NUM(31.99), UNIT(1.001));
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+    (void)num_mul_coef(NUM(16.1), two);
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+    (void)num_mul_coef_nearest(NUM(-16.1), two);
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+    (void)num_from_unit(UNIT(32.0));
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+    (void)num_from_code(1 << 21, two);
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+    (void)counts_from_num(NUM(-16.1), two);
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+}
+
+/* The product fits, but the short multiplications of a Cortex-M0+ do not. */
+static void test_a_second_factor_of_more_than_16_bits_is_seen(void)
+{
+    (void)num_mul(NUM(1.0), NUM(2.0));
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+    (void)num_mul_nearest(NUM(1.0), NUM(-2.1));
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+    (void)num_mul_unit(NUM(1.0), UNIT(2.0));
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+    (void)num_mul_unit_nearest(NUM(1.0), UNIT(-2.1));
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+}
+
+static void test_what_is_meant_to_go_round_is_none(void)
+{
+    TEST_ASSERT_EQUAL_INT32(INT32_MIN + 4, num_add_around(INT32_MAX, 5));
+    TEST_ASSERT_EQUAL_INT32(INT32_MAX - 4, num_add_around(INT32_MIN, -5));
+}
+
 static void test_a_product_of_ratios_is_the_floor_of_the_exact_one(void)
 {
     random_state = 11;
@@ -179,8 +239,6 @@ static void test_halves_and_ratios_are_floors(void)
     TEST_ASSERT_EQUAL_INT32(-1, num_half(-1));
     TEST_ASSERT_EQUAL_INT32(0, num_half(1));
     TEST_ASSERT_EQUAL_INT32(INT32_MIN / 2, num_half(INT32_MIN));
-    TEST_ASSERT_EQUAL_INT32(INT32_MIN + 4, num_add_around(INT32_MAX, 5));
-    TEST_ASSERT_EQUAL_INT32(INT32_MAX - 4, num_add_around(INT32_MIN, -5));
     TEST_ASSERT_EQUAL_INT32(-1, unit_from_num(-1));
     TEST_ASSERT_EQUAL_INT32(UNIT(1.0), unit_from_num(NUM(1.0)));
 }
@@ -541,6 +599,9 @@ int main(void)
     RUN_TEST(test_the_upper_half_of_a_16_bit_product_is_its_floor);
     RUN_TEST(test_a_gain_is_rounded_down_once_and_shifted);
     RUN_TEST(test_a_ratio_is_the_floor_of_the_exact_one);
+    RUN_TEST(test_a_product_that_does_not_fit_is_seen);
+    RUN_TEST(test_a_second_factor_of_more_than_16_bits_is_seen);
+    RUN_TEST(test_what_is_meant_to_go_round_is_none);
     RUN_TEST(test_a_product_of_ratios_is_the_floor_of_the_exact_one);
     RUN_TEST(test_halves_and_ratios_are_floors);
     RUN_TEST(test_literals_are_rounded_to_the_nearest);
