@@ -57,6 +57,7 @@ struct MotorIntegrals {
     /* Of a real motor, its supply and its belt. */
     double arc_J = 0.0, coulomb_J = 0.0, source_J = 0.0, brake_J = 0.0;
     double iron_J = 0.0, damping_J = 0.0;
+    double stop_J = 0.0; /* work done on stops */
 };
 
 class Motor

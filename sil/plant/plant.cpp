@@ -8,6 +8,7 @@
 #include "sil/plant/require.h"
 #include "sil/plant/sensors.h"
 #include "sil/plant/shaft_load.h"
+#include "sil/plant/stops.h"
 
 namespace plant
 {
@@ -27,7 +28,8 @@ bool any(const ImperfectionConfig &x)
 
 bool is_real(const Config &config)
 {
-    return any(config.imperfections) || config.supply.bus_source_ohm != 0.0;
+    return any(config.imperfections) || config.supply.bus_source_ohm != 0.0 ||
+           stops_of(config.stops).present();
 }
 
 std::variant<Motor, RealMotor> motor_of(const Config &config)
@@ -90,7 +92,17 @@ double spring_of(const Motor &)
 
 double spring_of(const RealMotor &motor)
 {
-    return motor.spring_J();
+    return motor.spring_J() + motor.stop_J();
+}
+
+double stop_loss_of(const Motor &)
+{
+    return 0.0;
+}
+
+double stop_loss_of(const RealMotor &motor)
+{
+    return motor.stop_loss_J();
 }
 
 /* Of a phase's legs: means of their commanded shares of the bus, and whether they differ. */
@@ -124,6 +136,7 @@ struct Plant::Parts {
         magnetic_reference_J = machine.magnetic_J();
         kinetic_reference_J = machine.kinetic_J();
         capacitor_reference_J = capacitor_of(machine);
+        spring_reference_J = spring_of(machine);
     }
 
     Config config; /* motor and bus as they are by now */
@@ -137,6 +150,7 @@ struct Plant::Parts {
     double magnetic_reference_J = 0.0;
     double kinetic_reference_J = 0.0;
     double capacitor_reference_J = 0.0;
+    double spring_reference_J = 0.0;
     Phases measured_V = {0.0, 0.0}; /* phase voltages as they reach the converters */
     bool bridge_on = false;         /* in the period that ends at the present S(k) */
     bool asked = false;             /* for a voltage, since the bridge came on */
@@ -228,8 +242,8 @@ template <typename AnyMotor> void Plant::observe(const AnyMotor &motor)
         energy_.brake = integrals.brake_J;
         energy_.capacitor = capacitor_of(motor) - plant.capacitor_reference_J;
         energy_.iron = integrals.iron_J;
-        energy_.damping = integrals.damping_J;
-        energy_.spring = spring_of(motor);
+        energy_.damping = integrals.damping_J + stop_loss_of(motor);
+        energy_.spring = spring_of(motor) - plant.spring_reference_J;
     }
 }
 
@@ -332,6 +346,19 @@ void Plant::set_bridge_temperature(double bridge_C)
 void Plant::jam(double torque_Nm)
 {
     change_real_motor([torque_Nm](RealMotor &motor) { motor.jam(torque_Nm); });
+}
+
+/* As with a motor's parameters. */
+void Plant::set_stops(const StopConfig &stops)
+{
+    Parts &plant = *parts_;
+    stops_of(stops);
+    change_real_motor([&](RealMotor &motor) {
+        plant.spring_reference_J -= spring_of(motor);
+        motor.set_stops(stops);
+        plant.spring_reference_J += spring_of(motor);
+    });
+    plant.config.stops = stops;
 }
 
 void Plant::open_phase(int phase, bool open)

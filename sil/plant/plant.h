@@ -8,6 +8,7 @@
 #define STEADYSTEP_PLANT_H
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 
 namespace plant
@@ -61,6 +62,14 @@ struct ImperfectionConfig {
     double inductance_a_scale = 1.0, inductance_b_scale = 1.0;
     double magnet_rise_K = 0;            /* above the temperature of the torque constant */
     double magnet_flux_per_K = -0.11e-2; /* what its flux changes by, relative */
+};
+
+/* Where the machine ends; equations: stops.h. */
+struct StopConfig {
+    double low_rad = -std::numeric_limits<double>::infinity(); /* mechanical; none */
+    double high_rad = std::numeric_limits<double>::infinity();
+    double stiffness_Nm_rad = 100.0;
+    double damping = 0.1; /* ratio, of the inertia that strikes it */
 };
 
 /* The bus: a source that cannot take current back, a capacitor, a brake resistor. */
@@ -124,6 +133,7 @@ struct Config {
     SupplyConfig supply;
     BridgeConfig bridge;
     SensorConfig sensors;
+    StopConfig stops;
     std::uint64_t seed = 1;
     double initial_theta_rad = 0.0;
     double initial_omega_rad_s = 0.0;
@@ -185,7 +195,7 @@ struct Energy {
     double arc = 0;     /* of a lead that breaks while current flows */
     double source = 0, brake = 0, capacitor = 0; /* the bus: two losses, and what is stored */
     double iron = 0;                /* hysteresis, of which a little is stored, and eddies */
-    double spring = 0, damping = 0; /* of the belt; its mass is in kinetic, too */
+    double spring = 0, damping = 0; /* of the belt, whose mass is in kinetic, too, and of stops */
 };
 
 class Plant
@@ -228,6 +238,7 @@ class Plant
     /* Friction beside the motor's own; 0 frees the rotor, held_Nm stops it within this S(k). */
     static constexpr double held_Nm = 1e9;
     void jam(double torque_Nm);
+    void set_stops(const StopConfig &stops);     /* from here on; they may be within what turns */
     void open_phase(int phase, bool open);       /* 0 a, 1 b: a lead of the winding is broken */
     void stick(Channel channel);                 /* at the code of the present samples */
     void stick(Channel channel, int code);       /* at this one */

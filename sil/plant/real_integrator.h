@@ -39,19 +39,20 @@ constexpr double no_current_A = 1e-12;     /* what rounding leaves of a current 
  * The unknowns as power series in the time since the start of the step. Functions of the rotor
  * angle are series of psi, the angle turned since: F(psi(t)) = sum F_j psi(t)^j, and psi^j starts
  * with t^j, so that the sum is finite for every coefficient. What is no vector stands in both
- * lanes, so that it multiplies vectors as it is.
+ * lanes, so that it multiplies vectors as it is. elastic: the shaft has a belt or stops.
  */
-template <int order, bool belted> struct Series {
+template <int order, bool elastic> struct Series {
     Phases flux[order + 1]; /* x */
     Phases flux_squared[order + 1];
     Phases current[order + 1];
     Phases omega[order + 1];
     Phases acceleration[order]; /* without Coulomb friction */
     Phases bus[order + 1];
-    Phases load_omega[belted ? order + 1 : 1]; /* behind a belt, if there is one, */
-    Phases twist[belted ? order + 1 : 1];      /* and by how much it is ahead */
-    Phases slope[order];                       /* f */
-    Phases turned[order + 1][order + 1];       /* [j][n]: coefficient j + n of psi^j, j > 0 */
+    Phases load_omega[elastic ? order + 1 : 1]; /* behind a belt, if there is one, */
+    Phases twist[elastic ? order + 1 : 1];      /* and by how much it is ahead */
+    Phases beyond[elastic ? order + 1 : 1];     /* the nearer stop, what strikes it */
+    Phases slope[order];                        /* f */
+    Phases turned[order + 1][order + 1];        /* [j][n]: coefficient j + n of psi^j, j > 0 */
 
     Phases iron_A;           /* part of the current, constant */
     Phases current_per_flux; /* their changes, at the start of the step */
@@ -71,6 +72,7 @@ struct Mode {
     bool floating;     /* some phase floats */
     bool stuck;        /* Coulomb friction holds the rotor */
     double sliding;    /* sign of the speed against which it acts; 0: none or stuck */
+    bool touching;     /* the nearer stop pushes */
     bool source_conducts;
     bool relaxing;      /* no phase draws from the bus: its exponential is taken, no series */
     double source_rate; /* 1/s, as far as they act in the series */
@@ -103,7 +105,7 @@ template <int k, typename X, typename Turned> IN_PLACE X composed(const X *at, c
 }
 
 /* Coefficient k of psi and its powers from the speed's coefficients before it. */
-template <int k, int j, int order, bool belted> IN_PLACE void raise(Series<order, belted> &x)
+template <int k, int j, int order, bool elastic> IN_PLACE void raise(Series<order, elastic> &x)
 {
     if constexpr (j <= k) {
         x.turned[j][k - j] = cauchy_product<k - j>(x.turned[1], x.turned[j - 1]);
@@ -111,8 +113,8 @@ template <int k, int j, int order, bool belted> IN_PLACE void raise(Series<order
     }
 }
 
-template <int k, int order, bool belted>
-IN_PLACE void turn(Series<order, belted> &x, const RealCoefficients &motor)
+template <int k, int order, bool elastic>
+IN_PLACE void turn(Series<order, elastic> &x, const RealCoefficients &motor)
 {
     if constexpr (k > 0) {
         x.turned[1][k - 1] = motor.share[k - 1].teeth * x.omega[k - 1];
@@ -124,8 +126,8 @@ IN_PLACE void turn(Series<order, belted> &x, const RealCoefficients &motor)
  * Coefficient k of the current, the flux's being known: what the cube of the flux has of earlier
  * coefficients apart, because the flux's latest is what the next one waits for.
  */
-template <bool turning, int k, int order, bool belted>
-IN_PLACE void magnetise(Series<order, belted> &x, const Magnetics &magnetics)
+template <bool turning, int k, int order, bool elastic>
+IN_PLACE void magnetise(Series<order, elastic> &x, const Magnetics &magnetics)
 {
     const Phases saturation = magnetics.phase_saturation;
     if constexpr (k == 0) {
@@ -151,8 +153,8 @@ IN_PLACE void magnetise(Series<order, belted> &x, const Magnetics &magnetics)
 }
 
 /* Coefficient k of the belt's pull at the rotor, over its inertia; k + 1 of what is behind it. */
-template <int k, int order, bool belted>
-IN_PLACE Phases pull_of_belt(Series<order, belted> &x, const RealCoefficients &motor)
+template <int k, int order, bool elastic>
+IN_PLACE Phases pull_of_belt(Series<order, elastic> &x, const RealCoefficients &motor)
 {
     constexpr double part = 1.0 / (k + 1);
     const Phases ahead = x.load_omega[k] - x.omega[k];
@@ -166,9 +168,43 @@ IN_PLACE Phases pull_of_belt(Series<order, belted> &x, const RealCoefficients &m
     return pull;
 }
 
+/* The nearer stop's push, over the inertia that strikes it, from its depth and that one's change.
+ */
+IN_PLACE Phases push_of_stop(const RealCoefficients &motor, Phases beyond, Phases deeper)
+{
+    return motor.stop_spring * beyond + motor.stop_damper * deeper;
+}
+
+/* Coefficient k of that, in the angle's direction and over the inertia that strikes; k + 1 of how
+   deep it is. */
+template <int k, int order, bool elastic>
+IN_PLACE Phases push_back(Series<order, elastic> &x, const RealCoefficients &motor,
+                          const Mode &mode)
+{
+    const Phases side = motor.stop_side;
+    const Phases deeper = side * (motor.belted ? x.load_omega[k] : x.omega[k]);
+    x.beyond[k + 1] = (1.0 / (k + 1)) * deeper;
+    return mode.touching ? -side * push_of_stop(motor, x.beyond[k], deeper) : Phases{0.0, 0.0};
+}
+
+/* Coefficient k of what belt and stop do to the rotor, over its inertia; k + 1 of theirs. */
+template <int k, int order, bool elastic>
+IN_PLACE Phases pull_of_shaft(Series<order, elastic> &x, const RealCoefficients &motor,
+                              const Mode &mode)
+{
+    const Phases push = push_back<k>(x, motor, mode);
+    Phases pull = pull_of_belt<k>(x, motor);
+    if (motor.belted) {
+        x.load_omega[k + 1] += (1.0 / (k + 1)) * push;
+    } else {
+        pull += push;
+    }
+    return pull;
+}
+
 /* Coefficients k + 1 and later from those before; the equations are in real_motor.h. */
-template <bool floating, bool turning, int k, int order, bool belted>
-IN_PLACE void expand(Series<order, belted> &x, const RealCoefficients &motor, const Mode &mode)
+template <bool floating, bool turning, int k, int order, bool elastic>
+IN_PLACE void expand(Series<order, elastic> &x, const RealCoefficients &motor, const Mode &mode)
 {
     const RealCoefficients::Share &share = motor.share[k];
     const Magnetics &magnetics = motor.magnetics;
@@ -196,8 +232,8 @@ IN_PLACE void expand(Series<order, belted> &x, const RealCoefficients &motor, co
             opposed = x.detent_at[0];
         }
     }
-    if constexpr (belted) {
-        opposed -= pull_of_belt<k>(x, motor);
+    if constexpr (elastic) {
+        opposed -= pull_of_shaft<k>(x, motor, mode);
     }
     Phases voltage_V = mode.share * x.bus[k];
     Phases bus = -(mode.source_rate + mode.brake_rate) * x.bus[k];
@@ -234,8 +270,8 @@ IN_PLACE void expand(Series<order, belted> &x, const RealCoefficients &motor, co
 }
 
 /* Taylor coefficients j and later in psi, of f and of the detent torque. */
-template <int j, int order, bool belted>
-IN_PLACE void differentiate(Series<order, belted> &x, const RealCoefficients &motor,
+template <int j, int order, bool elastic>
+IN_PLACE void differentiate(Series<order, elastic> &x, const RealCoefficients &motor,
                             const Axes &axes)
 {
     if constexpr (j < order) {
@@ -253,8 +289,8 @@ IN_PLACE void differentiate(Series<order, belted> &x, const RealCoefficients &mo
 }
 
 /* Coefficients 0, and those in psi. */
-template <int order, bool belted>
-IN_PLACE void start(Series<order, belted> &x, const RealCoefficients &motor,
+template <int order, bool elastic>
+IN_PLACE void start(Series<order, elastic> &x, const RealCoefficients &motor,
                     const RealMotorState &state)
 {
     const Magnetics &magnetics = motor.magnetics;
@@ -262,9 +298,10 @@ IN_PLACE void start(Series<order, belted> &x, const RealCoefficients &motor,
     x.flux[0] = state.flux;
     x.omega[0] = in_both_lanes(state.omega_rad_s);
     x.bus[0] = in_both_lanes(state.bus_V);
-    if constexpr (belted) {
+    if constexpr (elastic) {
         x.load_omega[0] = in_both_lanes(state.load_omega_rad_s);
         x.twist[0] = in_both_lanes(state.twist_rad);
+        x.beyond[0] = in_both_lanes(state.beyond_rad);
     }
     x.iron_A = state.iron_A;
 
@@ -274,8 +311,8 @@ IN_PLACE void start(Series<order, belted> &x, const RealCoefficients &motor,
 }
 
 /* Back-EMF of an open phase: L0 dx/dt with no current. */
-template <int order, bool belted>
-double open_circuit_V(const Series<order, belted> &x, const Magnetics &magnetics, int phase)
+template <int order, bool elastic>
+double open_circuit_V(const Series<order, elastic> &x, const Magnetics &magnetics, int phase)
 {
     return magnetics.torque * x.omega[0][0] * x.slope_at[0][phase] /
            (1.0 + 3.0 * magnetics.phase_saturation[phase] * x.flux_squared[0][phase]);
@@ -287,8 +324,8 @@ struct Terminal {
 };
 
 /* Of a phase, with a leg in dead time or not: see integrator::Terminal. */
-template <int order, bool belted>
-IN_PLACE Terminal terminal(int phase, const BridgeOutput &output, const Series<order, belted> &x,
+template <int order, bool elastic>
+IN_PLACE Terminal terminal(int phase, const BridgeOutput &output, const Series<order, elastic> &x,
                            const RealCoefficients &motor, const RealMotorState &state)
 {
     const double legs = output.diode_V[phase];
@@ -315,8 +352,8 @@ IN_PLACE Terminal terminal(int phase, const BridgeOutput &output, const Series<o
 }
 
 /* What the bridge offers both phases with a leg in dead time: mostly their currents say it. */
-template <int order, bool belted>
-IN_PLACE void set_terminals(Mode &mode, const Series<order, belted> &x, const BridgeOutput &output,
+template <int order, bool elastic>
+IN_PLACE void set_terminals(Mode &mode, const Series<order, elastic> &x, const BridgeOutput &output,
                             const RealCoefficients &motor, const RealMotorState &state)
 {
     const Phases none = {0.0, 0.0};
@@ -342,9 +379,22 @@ IN_PLACE void set_terminals(Mode &mode, const Series<order, belted> &x, const Br
     mode.floating = a.conducting * b.conducting == 0.0;
 }
 
+/* A stop pushes where it has been entered, unless the way out is quicker than its damper lets go.
+ */
+template <int order, bool elastic>
+IN_PLACE void set_stop(Mode &mode, const Series<order, elastic> &x, const RealCoefficients &motor)
+{
+    mode.touching = false;
+    if constexpr (elastic) {
+        const Phases speed = motor.belted ? x.load_omega[0] : x.omega[0];
+        mode.touching = x.beyond[0][0] > 0.0 &&
+                        push_of_stop(motor, x.beyond[0], motor.stop_side * speed)[0] > 0.0;
+    }
+}
+
 /* At rest the rotor sticks as long as friction can hold it. */
-template <int order, bool belted>
-IN_PLACE void set_friction(Mode &mode, const Series<order, belted> &x,
+template <int order, bool elastic>
+IN_PLACE void set_friction(Mode &mode, const Series<order, elastic> &x,
                            const RealCoefficients &motor, const RealMotorState &state)
 {
     mode.stuck = false;
@@ -353,8 +403,11 @@ IN_PLACE void set_friction(Mode &mode, const Series<order, belted> &x,
     } else if (x.omega[0][0] == 0.0) {
         double acceleration =
             motor.torque[0] * dot(x.slope_at[0], x.flux[0]) - x.detent_at[0][0] - motor.load[0];
-        if constexpr (belted) {
+        if constexpr (elastic) {
             acceleration += motor.spring[0] * x.twist[0][0] + motor.damper[0] * x.load_omega[0][0];
+            if (mode.touching && !motor.belted) {
+                acceleration -= motor.stop_side[0] * motor.stop_spring[0] * x.beyond[0][0];
+            }
         }
         mode.stuck = !state.released && magnitude(acceleration) <= motor.coulomb;
         mode.sliding = mode.stuck ? 0.0 : (acceleration > 0.0 ? 1.0 : -1.0);
@@ -363,8 +416,8 @@ IN_PLACE void set_friction(Mode &mode, const Series<order, belted> &x,
     }
 }
 
-template <int order, bool belted>
-IN_PLACE void set_bus(Mode &mode, const Series<order, belted> &x, const RealCoefficients &motor,
+template <int order, bool elastic>
+IN_PLACE void set_bus(Mode &mode, const Series<order, elastic> &x, const RealCoefficients &motor,
                       const RealMotorState &state)
 {
     const Supply &supply = motor.supply;
@@ -402,8 +455,8 @@ inline void break_open(Mode &mode, const RealMotorState &state)
 }
 
 /* Every member by itself: clearing the structure first takes a sixth of a step's time. */
-template <int order, bool belted>
-IN_PLACE Mode mode_of(const Series<order, belted> &x, const BridgeOutput &output,
+template <int order, bool elastic>
+IN_PLACE Mode mode_of(const Series<order, elastic> &x, const BridgeOutput &output,
                       const RealCoefficients &motor, const RealMotorState &state)
 {
     Mode mode;
@@ -419,13 +472,14 @@ IN_PLACE Mode mode_of(const Series<order, belted> &x, const BridgeOutput &output
     if (state.open[0] || state.open[1]) {
         break_open(mode, state);
     }
+    set_stop(mode, x, motor);
     set_friction(mode, x, motor, state);
     set_bus(mode, x, motor, state);
     return mode;
 }
 
-template <int order, bool belted>
-void add_energies_of_belt(const Course &course, const Series<order, belted> &x, double h)
+template <int order, bool elastic>
+void add_energies_of_belt(const Course &course, const Series<order, elastic> &x, double h)
 {
     const RealCoefficients &motor = course.motor;
     const double inertia = 1.0 / motor.inverse_inertia;
@@ -440,8 +494,28 @@ void add_energies_of_belt(const Course &course, const Series<order, belted> &x, 
         motor.far_load[0] * far_inertia * integral<order>(x.load_omega, in_both_lanes(h))[0];
 }
 
-template <int order, bool belted>
-[[gnu::noinline]] void add_energies(const Course &course, const Series<order, belted> &x,
+/* Work that is done on the stop: what it stores apart, it is lost. */
+template <int order, bool elastic>
+void add_energies_of_stop(const Course &course, const Series<order, elastic> &x, const Mode &mode,
+                          double h)
+{
+    const RealCoefficients &motor = course.motor;
+    if (!mode.touching) {
+        return;
+    }
+    Phases deeper[order + 1];
+    for (int k = 0; k <= order; k++) {
+        deeper[k] = motor.stop_side * (motor.belted ? x.load_omega[k] : x.omega[k]);
+    }
+    const double from = x.beyond[0][0];
+    const double to = value<order>(x.beyond, in_both_lanes(h))[0];
+    course.integrals.stop_J +=
+        motor.struck_kgm2 * (0.5 * motor.stop_spring[0] * (to * to - from * from) +
+                             motor.stop_damper[0] * integral_of_square<order>(deeper, h)[0]);
+}
+
+template <int order, bool elastic>
+[[gnu::noinline]] void add_energies(const Course &course, const Series<order, elastic> &x,
                                     const BridgeOutput &output, const Mode &mode, double h)
 {
     const RealCoefficients &motor = course.motor;
@@ -457,8 +531,11 @@ template <int order, bool belted>
     integrals.copper_J += dot(motor.resistance, current_squared);
     integrals.friction_J += motor.friction[0] * inertia * integral_of_square<order>(x.omega, h)[0];
     integrals.load_J += motor.load[0] * inertia * way;
-    if constexpr (belted) {
-        add_energies_of_belt(course, x, h);
+    if constexpr (elastic) {
+        if (motor.belted) {
+            add_energies_of_belt(course, x, h);
+        }
+        add_energies_of_stop(course, x, mode, h);
     }
     integrals.coulomb_J += mode.sliding * motor.coulomb * inertia * way;
     if (supply.stiff()) {
@@ -502,8 +579,8 @@ inline double between_legs(const BridgeOutput &output, int phase)
 }
 
 /* Back-EMF of the phases at t = h as if open, L0 dx/dt. */
-template <int order, bool belted>
-Phases induced_V(const Series<order, belted> &x, const Magnetics &magnetics, double h)
+template <int order, bool elastic>
+Phases induced_V(const Series<order, elastic> &x, const Magnetics &magnetics, double h)
 {
     Phases rate = x.flux[1];
     double power = h;
@@ -515,8 +592,8 @@ Phases induced_V(const Series<order, belted> &x, const Magnetics &magnetics, dou
 }
 
 /* Voltage at the bridge of the phases at t = h, where the bus has bus_V. */
-template <int order, bool belted>
-IN_PLACE Phases terminal_V(const Course &course, const Series<order, belted> &x,
+template <int order, bool elastic>
+IN_PLACE Phases terminal_V(const Course &course, const Series<order, elastic> &x,
                            const BridgeOutput &output, const Mode &mode, double h, Phases bus_V)
 {
     Phases voltage_V = mode.share * bus_V + mode.drop_V;
@@ -532,8 +609,8 @@ IN_PLACE Phases terminal_V(const Course &course, const Series<order, belted> &x,
 }
 
 /* Behind the filter at t = h, of a voltage that is taken as a straight line within the step. */
-template <int order, bool belted>
-IN_PLACE void filter(const Course &course, const Series<order, belted> &x,
+template <int order, bool elastic>
+IN_PLACE void filter(const Course &course, const Series<order, elastic> &x,
                      const BridgeOutput &output, const Mode &mode, double h, Phases bus_V)
 {
     const Phases first_V = terminal_V(course, x, output, mode, 0.0, x.bus[0]);
@@ -545,8 +622,8 @@ IN_PLACE void filter(const Course &course, const Series<order, belted> &x,
 }
 
 /* The state at the end of the step. */
-template <bool track_energy, bool turning, int order, bool belted>
-IN_PLACE void accept(const Course &course, const Series<order, belted> &x,
+template <bool track_energy, bool turning, int order, bool elastic>
+IN_PLACE void accept(const Course &course, const Series<order, elastic> &x,
                      const BridgeOutput &output, const Mode &mode, double h)
 {
     RealMotorState &state = course.state;
@@ -572,9 +649,10 @@ IN_PLACE void accept(const Course &course, const Series<order, belted> &x,
             turned_by_little<2>(turned_by_little<order>(state.axis, at_speed_rad), more_rad);
     }
     state.bus_V = bus_V[0];
-    if constexpr (belted) {
+    if constexpr (elastic) {
         state.load_omega_rad_s = value<order>(x.load_omega, span_s)[0];
         state.twist_rad = value<order>(x.twist, span_s)[0];
+        state.beyond_rad = value<order>(x.beyond, span_s)[0];
     }
     if (mode.relaxing) {
         relax<track_energy>(course, h);
@@ -591,8 +669,8 @@ template <int order> struct Margin {
     double coefficient[order + 1];
 };
 
-template <int order, bool belted>
-Margin<order> margin_of_phase(int phase, const Series<order, belted> &x,
+template <int order, bool elastic>
+Margin<order> margin_of_phase(int phase, const Series<order, elastic> &x,
                               const RealCoefficients &motor, const BridgeOutput &output,
                               const Mode &mode, double h)
 {
@@ -620,8 +698,8 @@ Margin<order> margin_of_phase(int phase, const Series<order, belted> &x,
 }
 
 /* ... the speed while the rotor slides, what friction holds while it sticks, ... */
-template <int order, bool belted>
-Margin<order> margin_of_friction(const Series<order, belted> &x, const RealCoefficients &motor,
+template <int order, bool elastic>
+Margin<order> margin_of_friction(const Series<order, elastic> &x, const RealCoefficients &motor,
                                  const Mode &mode, double h)
 {
     Margin<order> margin = {};
@@ -639,9 +717,25 @@ Margin<order> margin_of_friction(const Series<order, belted> &x, const RealCoeff
     return margin;
 }
 
+/* ... the push of a stop that is touched; of one that is not what is left of the way to it, or
+   how far its damper stays behind, ... */
+template <int order, bool elastic>
+Margin<order> margin_of_stop(const Series<order, elastic> &x, const RealCoefficients &motor,
+                             const Mode &mode)
+{
+    Margin<order> margin = {};
+    const bool outside = !mode.touching && x.beyond[0][0] <= 0.0;
+    for (int k = 0; k <= order; k++) {
+        const Phases deeper = motor.stop_side * (motor.belted ? x.load_omega[k] : x.omega[k]);
+        const double push = push_of_stop(motor, x.beyond[k], deeper)[0];
+        margin.coefficient[k] = outside ? -x.beyond[k][0] : mode.touching ? push : -push;
+    }
+    return margin;
+}
+
 /* ... and the bus below or above a threshold. */
-template <int order, bool belted>
-Margin<order> margin_of_bus(const Series<order, belted> &x, double threshold_V, bool below)
+template <int order, bool elastic>
+Margin<order> margin_of_bus(const Series<order, elastic> &x, double threshold_V, bool below)
 {
     Margin<order> margin = {};
     const double sign = below ? -1.0 : 1.0;
@@ -667,6 +761,7 @@ enum class End {
     of_floating,
     of_motion,
     of_rest,
+    of_touch,
     of_source,
     of_brake
 };
@@ -692,8 +787,8 @@ template <int order> void consider(Event &first, End end, const Margin<order> &m
     }
 }
 
-template <int order, bool belted>
-Event first_event(const Series<order, belted> &x, const RealCoefficients &motor,
+template <int order, bool elastic>
+Event first_event(const Series<order, elastic> &x, const RealCoefficients &motor,
                   const RealMotorState &state, const BridgeOutput &output, const Mode &mode,
                   double h)
 {
@@ -711,6 +806,11 @@ Event first_event(const Series<order, belted> &x, const RealCoefficients &motor,
     if (motor.coulomb > 0.0) {
         consider(first, !mode.stuck ? End::of_motion : End::of_rest,
                  margin_of_friction(x, motor, mode, h), h);
+    }
+    if constexpr (elastic) {
+        if (motor.stop_side[0] != 0.0) {
+            consider(first, End::of_touch, margin_of_stop(x, motor, mode), h);
+        }
     }
     const Supply &supply = motor.supply;
     const double bus_V = value<order>(x.bus, span_s)[0];
@@ -736,16 +836,16 @@ inline void hold_open(RealMotorState &state, const Magnetics &magnetics, int pha
 
 /* What the last term of the current is less than: five times what the reach of each order allows.
  */
-template <int order, bool belted>
-IN_PLACE Phases last_term_A(const Series<order, belted> &x, const RealCoefficients &motor)
+template <int order, bool elastic>
+IN_PLACE Phases last_term_A(const Series<order, elastic> &x, const RealCoefficients &motor)
 {
     const Phases flux = x.flux[0] < 0.0 ? -x.flux[0] : x.flux[0];
     return 1e-4 * (motor.magnetics.phase_magnet_A + flux);
 }
 
 /* Whether a mode may end within a step, which is the exception. */
-template <bool turning, bool dead_time, int order, bool belted>
-IN_PLACE bool mode_ends(const Series<order, belted> &x, const RealCoefficients &motor,
+template <bool turning, bool dead_time, int order, bool elastic>
+IN_PLACE bool mode_ends(const Series<order, elastic> &x, const RealCoefficients &motor,
                         const RealMotorState &state, const Mode &mode, double h)
 {
     const Supply &supply = motor.supply;
@@ -753,6 +853,12 @@ IN_PLACE bool mode_ends(const Series<order, belted> &x, const RealCoefficients &
     if (turning ? mode.sliding * value<order>(x.omega, span_s)[0] < 0.0
                 : magnitude(value<order - 1>(x.acceleration, span_s)[0]) > motor.coulomb) {
         return true;
+    }
+    if constexpr (elastic) {
+        if (motor.stop_side[0] != 0.0 &&
+            value<order>(margin_of_stop(x, motor, mode).coefficient, h) < 0.0) {
+            return true;
+        }
     }
     if constexpr (dead_time) {
         const Phases along = mode.direction * value<order - 1>(x.current, span_s);
@@ -773,8 +879,8 @@ IN_PLACE bool mode_ends(const Series<order, belted> &x, const RealCoefficients &
 }
 
 /* All series; the current's last coefficient where somebody wants it. */
-template <bool floating, bool turning, bool whole_current, int order, bool belted>
-IN_PLACE void expand_all(Series<order, belted> &x, const RealCoefficients &motor, const Mode &mode)
+template <bool floating, bool turning, bool whole_current, int order, bool elastic>
+IN_PLACE void expand_all(Series<order, elastic> &x, const RealCoefficients &motor, const Mode &mode)
 {
     expand<floating, turning, 0>(x, motor, mode);
     if constexpr (whole_current) {
@@ -789,8 +895,8 @@ IN_PLACE void expand_all(Series<order, belted> &x, const RealCoefficients &motor
 }
 
 /* As far as the first event; what ends there. */
-template <bool turning, bool track_energy, int order, bool belted>
-Event accept_to_event(const Course &course, Series<order, belted> &x, const BridgeOutput &output,
+template <bool turning, bool track_energy, int order, bool elastic>
+Event accept_to_event(const Course &course, Series<order, elastic> &x, const BridgeOutput &output,
                       const Mode &mode, double h)
 {
     if (mode.floating) {
@@ -807,12 +913,12 @@ Event accept_to_event(const Course &course, Series<order, belted> &x, const Brid
  * A step in which a phase floats or a mode ends: goes as far as the first event. It starts anew, so
  * that the series of all other steps stay in registers.
  */
-template <int order, bool belted, bool track_energy>
+template <int order, bool elastic, bool track_energy>
 [[gnu::noinline]] double step_to_event(const Course &course, const BridgeOutput &output, double h)
 {
     const Magnetics &magnetics = course.motor.magnetics;
     RealMotorState &state = course.state;
-    Series<order, belted> x;
+    Series<order, elastic> x;
     start(x, course.motor, state);
     const Mode mode = mode_of(x, output, course.motor, state);
     const Phases before = state.flux;
@@ -847,42 +953,42 @@ template <int order, bool belted, bool track_energy>
 }
 
 /* A step in which no phase floats; returns the time that passed. */
-template <bool turning, bool dead_time, bool track_energy, int order, bool belted>
-IN_PLACE double step_through(const Course &course, Series<order, belted> &x,
+template <bool turning, bool dead_time, bool track_energy, int order, bool elastic>
+IN_PLACE double step_through(const Course &course, Series<order, elastic> &x,
                              const BridgeOutput &output, const Mode &mode, double h)
 {
     expand_all<false, turning, track_energy>(x, course.motor, mode);
     if (mode_ends<turning, dead_time>(x, course.motor, course.state, mode, h)) {
-        return step_to_event<order, belted, track_energy>(course, output, h);
+        return step_to_event<order, elastic, track_energy>(course, output, h);
     }
     accept<track_energy, turning>(course, x, output, mode, h);
     return h;
 }
 
 /* Advances by h or to the first event before; returns the time that passed. */
-template <int order, bool belted, bool track_energy, bool dead_time>
+template <int order, bool elastic, bool track_energy, bool dead_time>
 IN_PLACE double step(const Course &course, const BridgeOutput &output, double h)
 {
-    Series<order, belted> x;
+    Series<order, elastic> x;
     start(x, course.motor, course.state);
     const Mode mode = mode_of(x, output, course.motor, course.state);
     if (mode.floating) {
-        return step_to_event<order, belted, track_energy>(course, output, h);
+        return step_to_event<order, elastic, track_energy>(course, output, h);
     }
     return mode.stuck ? step_through<false, dead_time, track_energy>(course, x, output, mode, h)
                       : step_through<true, dead_time, track_energy>(course, x, output, mode, h);
 }
 
 /* Through a stretch of constant switches, in steps of step_s as long as no mode ends. */
-template <int order, bool belted, bool track_energy>
+template <int order, bool elastic, bool track_energy>
 IN_PLACE void cross(const Course &course, const BridgeOutput &output, double duration_s,
                     double step_s)
 {
     double left_s = duration_s;
     while (left_s > 0.0) { /* what rounding leaves is no step of its own */
         const double h = left_s < 1.000001 * step_s ? left_s : step_s;
-        left_s -= output.dead_time ? step<order, belted, track_energy, true>(course, output, h)
-                                   : step<order, belted, track_energy, false>(course, output, h);
+        left_s -= output.dead_time ? step<order, elastic, track_energy, true>(course, output, h)
+                                   : step<order, elastic, track_energy, false>(course, output, h);
     }
 }
 
@@ -895,7 +1001,7 @@ IN_PLACE double equal_part(double duration_s, double longest_s)
 }
 
 /* Through a timetable; rate: how fast the solution can change, 1/s. */
-template <bool belted, bool track_energy>
+template <bool elastic, bool track_energy>
 IN_PLACE void follow(const Course &course, const Timetable &timetable, double rate)
 {
     const Supply &supply = course.motor.supply;
@@ -904,15 +1010,15 @@ IN_PLACE void follow(const Course &course, const Timetable &timetable, double ra
         const double duration_s = segment.duration_s;
         const double bus_rate = supply.brake_rate + (output.draws ? supply.source_rate : 0.0);
         if (rate * duration_s < reach_2.motor && bus_rate * duration_s < reach_2.bus) {
-            cross<2, belted, track_energy>(course, output, duration_s, duration_s);
+            cross<2, elastic, track_energy>(course, output, duration_s, duration_s);
         } else if (rate * duration_s < reach_3.motor && bus_rate * duration_s < reach_3.bus) {
-            cross<3, belted, track_energy>(course, output, duration_s, duration_s);
+            cross<3, elastic, track_energy>(course, output, duration_s, duration_s);
         } else {
             const double by_motor_s = reach_4.motor / rate;
             const double by_bus_s = reach_4.bus / bus_rate; /* infinite on a stiff bus */
             const double longest_s = by_motor_s < by_bus_s ? by_motor_s : by_bus_s;
-            cross<4, belted, track_energy>(course, output, duration_s,
-                                           equal_part(duration_s, longest_s));
+            cross<4, elastic, track_energy>(course, output, duration_s,
+                                            equal_part(duration_s, longest_s));
         }
     }
 }

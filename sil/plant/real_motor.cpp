@@ -52,6 +52,7 @@ RealMotor::RealMotor(const Config &config)
             "bridge_resistance_ohm", imperfections_.bridge_resistance_ohm, "0...1e4 ohm");
     require_phase_scale(imperfections_.resistance_a_scale, "resistance_a_scale");
     require_phase_scale(imperfections_.resistance_b_scale, "resistance_b_scale");
+    stops_ = stops_of(config.stops);
     coefficients_.supply = supply_of(config.supply, config.bridge.bus_V);
     source_ = Decay(coefficients_.supply.source_rate);
     coefficients_.diode_drop = config.bridge.diode_drop_V;
@@ -59,6 +60,7 @@ RealMotor::RealMotor(const Config &config)
     state_.electrical_rad = config.motor.rotor_teeth * config.initial_theta_rad;
     state_.bus_V = config.bridge.bus_V;
     set_parameters(config.motor);
+    stop_reference_J_ = stop_J();
 }
 
 RealMotor::RealMotor(const Config &config, const Motor &motor, double load_torque_Nm)
@@ -102,6 +104,7 @@ void RealMotor::set_parameters(const MotorConfig &config)
     motor.damper = in_both_lanes(belt_.damper_Nms_rad * per_J);
     motor.far_ratio =
         in_both_lanes(belt_.present() ? (1.0 - belt_.inertia_share) / belt_.inertia_share : 0.0);
+    put_stops();
     motor.torque = in_both_lanes(magnetics.torque * per_J);
     motor.friction = in_both_lanes(config.viscous_friction_Nms_rad * per_J);
     motor.coulomb =
@@ -168,6 +171,41 @@ void RealMotor::set_bus(const SupplyConfig &config, double source_V)
     }
 }
 
+/* Spring and damper as the inertia is by now. */
+void RealMotor::put_stops()
+{
+    RealCoefficients &motor = coefficients_;
+    const double share = motor.belted ? belt_.inertia_share : 1.0;
+    motor.struck_kgm2 = motor_.inertia_kgm2 * share;
+    const double rate = std::sqrt(stops_.stiffness_Nm_rad / motor.struck_kgm2);
+    motor.stop_spring = in_both_lanes(rate * rate);
+    motor.stop_damper = in_both_lanes(2.0 * stops_.damping * rate);
+}
+
+/* What a new stop that is within what it holds stores came from nowhere: it is not counted. */
+void RealMotor::set_stops(const StopConfig &config)
+{
+    const double before_J = stop_J();
+    stops_ = stops_of(config);
+    put_stops();
+    face_the_nearer_stop();
+    stop_reference_J_ += stop_J() - before_J;
+    state_.released = false;
+}
+
+double RealMotor::struck_rad() const
+{
+    return theta_rad() + (coefficients_.belted ? state_.twist_rad : 0.0);
+}
+
+void RealMotor::face_the_nearer_stop()
+{
+    const double angle_rad = struck_rad();
+    const double side = stops_.nearer(angle_rad);
+    coefficients_.stop_side = in_both_lanes(side);
+    state_.beyond_rad = stops_.beyond_rad(angle_rad, side);
+}
+
 void RealMotor::connect_brake(bool on)
 {
     const Supply &supply = coefficients_.supply;
@@ -212,6 +250,20 @@ void RealMotor::set_load_torque(double load_torque_Nm)
     motor.far_load = motor.far_ratio * load;
 }
 
+/* Of what strikes a stop, as long as it may be there within the period. */
+double RealMotor::rate_of_stop() const
+{
+    const RealCoefficients &motor = coefficients_;
+    const double near_rad = 1e-3; /* and what a period's acceleration adds */
+    const double speed = motor.belted ? state_.load_omega_rad_s : state_.omega_rad_s;
+    if (motor.stop_side[0] == 0.0 ||
+        state_.beyond_rad + near_rad + 2.0 * period_s_ * magnitude(speed) < 0.0) {
+        return 0.0;
+    }
+    /* Twice: all of the speed swings at it, where the winding's share is small. */
+    return 2.0 * (std::sqrt(motor.stop_spring[0]) + motor.stop_damper[0]);
+}
+
 void RealMotor::begin_period()
 {
     const RealCoefficients &motor = coefficients_;
@@ -221,6 +273,9 @@ void RealMotor::begin_period()
     integrals_.voltage_Vs = Phases{0.0, 0.0};
     filtered_at_begin_V_ = state_.filtered_V;
     flux_at_begin_ = state_.flux;
+    if (stops_.present()) {
+        face_the_nearer_stop();
+    }
 
     /* Rotation, L/R, the exchange of magnetic with kinetic energy, and with that of the bus. */
     const double most = magnitude(state_.flux[0]) + magnitude(state_.flux[1]);
@@ -230,7 +285,8 @@ void RealMotor::begin_period()
     const double resistance =
         motor.resistance[0] > motor.resistance[1] ? motor.resistance[0] : motor.resistance[1];
     const double rate = magnetics.teeth * magnitude(state_.omega_rad_s) + resistance * per_L +
-                        std::sqrt(stiffness + 2.0 * per_L * motor.supply.per_capacitance);
+                        std::sqrt(stiffness + 2.0 * per_L * motor.supply.per_capacitance) +
+                        rate_of_stop();
     rate_ = rate < fastest_rate ? rate : fastest_rate; /* also if not a number */
 }
 
@@ -245,7 +301,7 @@ void RealMotor::advance(const Timetable &timetable)
 {
     namespace with = real_integrator;
     const with::Course course = {coefficients_, state_, integrals_, filter_, source_};
-    if (coefficients_.belted) {
+    if (coefficients_.belted || stops_.present()) {
         track_energy_ ? with::follow<true, true>(course, timetable, rate_)
                       : with::follow<true, false>(course, timetable, rate_);
     } else if (track_energy_) {
@@ -326,6 +382,17 @@ double RealMotor::kinetic_J() const
 double RealMotor::spring_J() const
 {
     return 0.5 * belt_.spring_Nm_rad * state_.twist_rad * state_.twist_rad;
+}
+
+double RealMotor::stop_J() const
+{
+    const double entered_rad = state_.beyond_rad > 0.0 ? state_.beyond_rad : 0.0;
+    return 0.5 * stops_.stiffness_Nm_rad * entered_rad * entered_rad;
+}
+
+double RealMotor::stop_loss_J() const
+{
+    return integrals_.stop_J - (stop_J() - stop_reference_J_);
 }
 
 double RealMotor::capacitor_J() const

@@ -11,7 +11,8 @@
  * At rest the rotor sticks until the other torques exceed Tc, which a jam adds to. The current of a
  * phase with a broken lead is 0 and its voltage, which is measured at the bridge, that of the legs.
  * The measured voltage passes a filter, tf dv/dt = u - v. The iron adds to the current (iron.h),
- * and part of J may stand behind a belt, with T_L (belt.h).
+ * part of J may stand behind a belt, with T_L (belt.h), and what stands there, or the rotor,
+ * between stops (stops.h).
  * Taylor series in time as for the
  * plain motor (motor.h); what depends on the rotor angle is a Taylor series in the angle turned,
  * and so the sum of its powers.
@@ -27,6 +28,7 @@
 #include "sil/plant/motor.h"
 #include "sil/plant/phases.h"
 #include "sil/plant/plant.h"
+#include "sil/plant/stops.h"
 #include "sil/plant/supply.h"
 
 namespace plant
@@ -48,6 +50,7 @@ struct RealMotorState {
     IronState iron;
     double load_omega_rad_s = 0.0; /* behind the belt, */
     double twist_rad = 0.0;        /* by which it is ahead of the rotor */
+    double beyond_rad = 0.0;       /* the nearer stop; below 0: the way to it */
 };
 
 /* Configuration as the equations want it: torques over inertia, rad/s^2. */
@@ -68,6 +71,11 @@ struct RealCoefficients {
     bool belted = false;
     Phases spring = {0.0, 0.0}, damper = {0.0, 0.0}, far_ratio = {0.0, 0.0};
     Phases far_load = {0.0, 0.0}; /* T_L over the inertia behind the belt; load is 0 then */
+
+    /* Of the nearer stop, over the inertia that strikes it; both lanes. Its side: 1 the high one,
+       -1 the low one, 0: there is none. */
+    Phases stop_spring = {0.0, 0.0}, stop_damper = {0.0, 0.0}, stop_side = {0.0, 0.0};
+    double struck_kgm2 = 0.0;
 
     /* -R/L0, 1/L0 and N over k + 1: from Taylor coefficient k to k + 1. */
     struct Share {
@@ -96,6 +104,7 @@ class RealMotor
     void set_magnet_rise(double rise_K);
     void set_bus(const SupplyConfig &config, double source_V);
     void connect_brake(bool on); /* of SupplyConfig::brake_by_drive; else nothing */
+    void set_stops(const StopConfig &config);
     void jam(double torque_Nm);
     void open_phase(int phase, bool open);
 
@@ -124,10 +133,16 @@ class RealMotor
     double kinetic_J() const; /* the belt's load included */
     double capacitor_J() const;
     double spring_J() const;
+    double stop_J() const; /* stored in a stop */
+    double stop_loss_J() const;
 
   private:
     double rotor_J() const;
     void remagnetise();
+    void put_stops();
+    void face_the_nearer_stop();
+    double rate_of_stop() const;
+    double struck_rad() const; /* angle of what strikes the stops */
 
     ImperfectionConfig imperfections_;
     MotorConfig motor_;
@@ -135,6 +150,8 @@ class RealMotor
     RealMotorState state_;
     MotorIntegrals integrals_;
     Belt belt_;
+    Stops stops_;
+    double stop_reference_J_ = 0.0; /* what was stored when stops came */
     double period_s_;
     Phases flux_at_begin_ = {0.0, 0.0};
     Decay filter_, source_; /* of the voltage filter, and of the bus towards its source */

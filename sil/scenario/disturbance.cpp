@@ -1,5 +1,6 @@
 #include "sil/scenario/disturbance.h"
 
+#include <cmath>
 #include <cstdint>
 
 namespace scenario
@@ -143,6 +144,19 @@ PlantFault read_encoder(TableReader &event)
     return [given, rate](plant::Plant &plant) { plant.set_encoder(given, rate); };
 }
 
+/* Both anew: what is not given is none, or as by default. */
+PlantFault read_stops_anew(TableReader &event)
+{
+    bool present = true;
+    plant::StopConfig stops;
+    event.boolean("stops", present);
+    read_stops(event, stops);
+    if (present == (std::isinf(stops.low_rad) && std::isinf(stops.high_rad))) {
+        event.fail("stops", "expected true with stop_low_rad or stop_high_rad, or false without");
+    }
+    return [stops](plant::Plant &plant) { plant.set_stops(stops); };
+}
+
 struct FaultReader {
     const char *name;
     PlantFault (*read)(TableReader &event);
@@ -154,6 +168,7 @@ constexpr FaultReader fault_readers[] = {
     {"stuck_adc", read_stuck_adc},
     {"noisy_adc", read_noisy_adc},
     {"encoder", read_encoder},
+    {"stops", read_stops_anew},
 };
 
 } // namespace
@@ -186,6 +201,18 @@ std::vector<Drift> read_drifts(const Value &table, const std::string &path)
                          ".plant: expected a scale or another key that can change in a run");
     }
     return drifts;
+}
+
+void read_stops(TableReader &reader, plant::StopConfig &stops)
+{
+    constexpr double furthest_rad = 1e7;
+    const bool low = reader.number("stop_low_rad", stops.low_rad, -furthest_rad, furthest_rad);
+    if (reader.number("stop_high_rad", stops.high_rad, -furthest_rad, furthest_rad) && low &&
+        stops.high_rad <= stops.low_rad) {
+        reader.fail("stop_high_rad", "expected more than stop_low_rad");
+    }
+    reader.number("stop_stiffness_Nm_rad", stops.stiffness_Nm_rad, 0.1, 1e5);
+    reader.number("stop_damping", stops.damping, 0, 2);
 }
 
 const char *const load_torque_key = "load_torque_Nm";

@@ -75,6 +75,9 @@ extern const char *const load_vibration_key;
 LoadChange read_load_change(TableReader &event);
 void put_load(const LoadChange &change, plant::Plant &plant);
 
+/* The keys of the machine's stops; throws InputError. */
+void read_stops(TableReader &reader, plant::StopConfig &stops);
+
 /* The names of the faults, by which an event is recognised as one. */
 const std::vector<std::string> &plant_fault_names();
 

@@ -208,9 +208,27 @@ struct Reference {
         return spring_Nm_rad * y[6] + damper_Nms_rad * (y[5] - y[2]);
     }
 
+    /* By which stops drive what strikes them: a spring and a damper, that push and never pull. */
+    double stops_Nm(double angle_rad, double rad_s, double inertia_kgm2) const
+    {
+        const plant::StopConfig &stops = config.stops;
+        const double damper_Nms_rad =
+            2.0 * stops.damping * std::sqrt(stops.stiffness_Nm_rad * inertia_kgm2);
+        const double over_rad = angle_rad - stops.high_rad, under_rad = stops.low_rad - angle_rad;
+        double sum_Nm = 0.0;
+        if (over_rad > 0.0) {
+            sum_Nm -= std::fmax(stops.stiffness_Nm_rad * over_rad + damper_Nms_rad * rad_s, 0.0);
+        }
+        if (under_rad > 0.0) {
+            sum_Nm += std::fmax(stops.stiffness_Nm_rad * under_rad - damper_Nms_rad * rad_s, 0.0);
+        }
+        return sum_Nm;
+    }
+
     double at_the_shaft_Nm(const double *y) const
     {
-        return far_kgm2 > 0.0 ? belt_Nm(y) : -load_torque_Nm;
+        return far_kgm2 > 0.0 ? belt_Nm(y)
+                              : stops_Nm(y[3], y[2], config.motor.inertia_kgm2) - load_torque_Nm;
     }
 
     double coulomb_Nm() const
@@ -250,7 +268,10 @@ struct Reference {
         const double net_Nm =
             torque_Nm(y, at) - m.viscous_friction_Nms_rad * y[2] + at_the_shaft_Nm(y);
         dy[2] = t.stuck ? 0.0 : (net_Nm - t.slides * coulomb_Nm()) / near_kgm2;
-        dy[5] = far_kgm2 > 0.0 ? (-belt_Nm(y) - load_torque_Nm) / far_kgm2 : 0.0;
+        dy[5] =
+            far_kgm2 > 0.0
+                ? (stops_Nm(y[3] + y[6], y[5], far_kgm2) - belt_Nm(y) - load_torque_Nm) / far_kgm2
+                : 0.0;
         dy[6] = far_kgm2 > 0.0 ? y[5] - y[2] : 0.0;
         dy[3] = t.stuck ? 0.0 : y[2];
         const double source_A = std::fmax((config.bridge.bus_V - y[4]) / s.bus_source_ohm, 0.0);
@@ -340,7 +361,7 @@ struct Reference {
                              : t.share[p] * 0.5 * (bus_before_V + bus_V()) + t.drop_V[p]) /
                 (2.0 * config.bridge.half_period_counts);
         }
-        if (!t.stuck && omega() * t.slides < 0.0) {
+        if (!t.stuck && coulomb_Nm() > 0.0 && omega() * t.slides < 0.0) {
             omega() = 0.0;
         }
         const double brake_V = config.supply.brake_V;
@@ -456,6 +477,54 @@ void test_in_motion()
     plant::Config config = real();
     config.initial_omega_rad_s = 45.0;
     agrees(compare(config, {9.0}), 1e-6);
+}
+
+/* Without friction: the reference knows to a count when a speed turns round. */
+void test_a_stop_is_struck_and_left()
+{
+    plant::Config config = real();
+    config.initial_omega_rad_s = 30.0;
+    config.stops.high_rad = 0.05;
+    config.imperfections.coulomb_friction = 0.0;
+    config.stops.damping = 0.0;
+    const Difference worst = compare(config, {0.0, 0.0, 80, 0, 0.0});
+    agrees(worst, 3e-6);
+    TEST_ASSERT_TRUE(worst.last_rad_s < -1.0);
+}
+
+/* The damper takes hold at once, and the reference knows to a count when. */
+void test_a_soft_stop_below_that_damps_more_than_it_springs()
+{
+    plant::Config config = real();
+    config.initial_omega_rad_s = -30.0;
+    config.stops.low_rad = -0.03;
+    config.stops.stiffness_Nm_rad = 5.0;
+    config.stops.damping = 1.5;
+    agrees(compare(config, {0.0, 0.0, 120, 120, 0.0}), 3e-5);
+}
+
+void test_a_rotor_that_rests_on_a_stop_and_sticks()
+{
+    plant::Config config = real();
+    config.initial_omega_rad_s = 2.0;
+    config.stops.high_rad = 0.002;
+    config.stops.stiffness_Nm_rad = 20.0;
+    config.stops.damping = 0.5;
+    const Difference worst = compare(config, {0.0, 0.0, 700, 0, -0.1});
+    agrees(worst, 3e-6);
+    TEST_ASSERT_TRUE(worst.last_rad_s == 0.0);
+}
+
+void test_a_load_behind_a_belt_strikes_its_stop()
+{
+    plant::Config config = real();
+    config.initial_omega_rad_s = 30.0;
+    config.imperfections.belt = {0.5, 100.0, 0.02};
+    config.stops.high_rad = 0.05;
+    config.stops.stiffness_Nm_rad = 1000.0;
+    config.imperfections.coulomb_friction = 0.0;
+    config.stops.damping = 0.0;
+    agrees(compare(config, {0.0, 0.0, 120, 0, 0.0}), 3e-6);
 }
 
 void test_fast()
@@ -579,6 +648,10 @@ int main()
 {
     UNITY_BEGIN();
     RUN_TEST(test_in_motion);
+    RUN_TEST(test_a_stop_is_struck_and_left);
+    RUN_TEST(test_a_soft_stop_below_that_damps_more_than_it_springs);
+    RUN_TEST(test_a_rotor_that_rests_on_a_stop_and_sticks);
+    RUN_TEST(test_a_load_behind_a_belt_strikes_its_stop);
     RUN_TEST(test_fast);
     RUN_TEST(test_deep_saturation_and_a_large_harmonic);
     RUN_TEST(test_breaking_away);

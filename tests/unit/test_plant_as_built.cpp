@@ -284,6 +284,47 @@ void test_and_while_it_coasts_down_and_its_currents_end()
     balances(plant, plant.energy().supplied);
 }
 
+/* The current pushes it against the stop, and the bridge then lets go. */
+void bounces(plant::Config config)
+{
+    config.stops = {-0.2, 0.4, 200.0, 0.1};
+    plant::Plant plant(config);
+    for (int k = 0; k < 1500; k++) {
+        plant.step(bench::rotor_voltages(plant, 0.0, 3.0));
+    }
+    const double held_J = plant.energy().spring;
+    TEST_ASSERT_TRUE(plant.state().theta_rad > 0.4);
+    TEST_ASSERT_TRUE(held_J > 0.0);
+    balances(plant, 2.0 * plant.energy().supplied); /* at rest: all is dead time */
+    bench::run(plant, bench::off(), 1500);
+    TEST_ASSERT_TRUE(plant.energy().spring < held_J);
+    balances(plant, 2.0 * plant.energy().supplied);
+}
+
+void test_and_in_stops_of_the_machine_and_of_a_plain_motor()
+{
+    bounces(as_built());
+    plant::Config rigid = as_built();
+    rigid.imperfections.belt = {};
+    bounces(rigid);
+    bounces(bench::config());
+}
+
+void test_stops_that_come_where_the_rotor_is_bring_no_energy()
+{
+    plant::Config config = bench::config();
+    config.initial_theta_rad = 0.1;
+    plant::Plant plant(config);
+    plant.set_stops({-1.0, 0.05, 5.0, 0.1});
+    bench::run(plant, bench::off(), 1);
+    TEST_ASSERT_TRUE(plant.state().omega_rad_s < 0.0);
+    const plant::Energy &energy = plant.energy();
+    TEST_ASSERT_TRUE(energy.spring < 0.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6 * energy.kinetic, -energy.spring,
+                              energy.kinetic + energy.friction + energy.damping + energy.magnetic +
+                                  energy.copper + energy.diode - energy.supplied);
+}
+
 /* ---- sensing ---- */
 
 plant::Config sensed()
@@ -366,6 +407,17 @@ void test_what_no_motor_has_is_refused_by_name()
     config = as_built();
     config.sensors.divider_mismatch_a = 0.2;
     refuses(config, "divider_mismatch_a");
+    config = as_built();
+    config.stops = {0.1, 0.1, 100.0, 0.1};
+    refuses(config, "stop_low_rad");
+    config.stops = {-1e8, 0.1, 100.0, 0.1};
+    refuses(config, "stop_low_rad");
+    config.stops = {-0.1, 1e8, 100.0, 0.1};
+    refuses(config, "stop_high_rad");
+    config.stops = {-0.1, 0.1, 0.0, 0.1};
+    refuses(config, "stop_stiffness_Nm_rad");
+    config.stops = {-0.1, 0.1, 100.0, 3.0};
+    refuses(config, "stop_damping");
 }
 
 } // namespace
@@ -385,6 +437,8 @@ int main()
     RUN_TEST(test_a_jammed_rotor_leaves_the_load_swinging);
     RUN_TEST(test_all_the_energy_is_found_again_in_motion);
     RUN_TEST(test_and_while_it_coasts_down_and_its_currents_end);
+    RUN_TEST(test_and_in_stops_of_the_machine_and_of_a_plain_motor);
+    RUN_TEST(test_stops_that_come_where_the_rotor_is_bring_no_energy);
     RUN_TEST(test_unlike_dividers_show_the_bus_while_the_bridge_is_on);
     RUN_TEST(test_a_residual_comes_with_the_first_voltage_and_goes_with_the_bridge);
     RUN_TEST(test_what_no_motor_has_is_refused_by_name);
