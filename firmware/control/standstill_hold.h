@@ -100,7 +100,8 @@ __attribute__((noinline)) void standstill_hold_follow(struct standstill_hold *ho
 
 /* Every fourth period of a hold is for its slow work: where it leads its rotor the frame turns,
    where it rests the resistance is adapted. What else takes its time and can wait leaves it alone.
-   `periods`: in this state, whenever the drive was switched on. */
+   A share of the interrupts, not a time. `periods`: in this state, whenever the drive was switched
+   on. */
 static inline bool standstill_hold_works_in(uint32_t periods)
 {
     return (periods & 3u) == 1u;

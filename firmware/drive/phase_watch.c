@@ -6,13 +6,14 @@
 #include "firmware/drive/state_machine.h"
 #include "firmware/numeric/trig.h"
 
-/* Six sigma of a noisy board, or 2 % of the rated current. */
+/* Noise is six sigma of a noisy board, or 2 % of the rated current. Looks and gaps are of samples,
+   whatever their period: how far apart a current is looked at, and for how many one look stands. */
 #define NOISE_CODES       8u
 #define NOISE_SHARE       0.02
-#define LOOK_PERIODS      4u /* from look to look, or one more */
-#define LOOKS             4u /* two currents of a moving rotor can be the same */
-#define LAG_LOOKS         32 /* 13 ms: a fault carries the estimate away within less */
-#define GAP_PERIODS       14u
+#define LOOK_PERIODS      4u       /* from look to look, or one more */
+#define LOOKS             4u       /* two currents of a moving rotor can be the same */
+#define LAG_S             12.8e-3  /* a fault carries the estimate away within less */
+#define GAP_PERIODS       14u      /* of one voltage, as it was at the look */
 #define PUSHED_MAX        NUM(1.0) /* twice the rated current */
 #define VOLTAGE_ERROR     0.05     /* of the supply */
 #define COUNTS_ERROR      2.0
@@ -35,8 +36,11 @@ struct phase_watch_params phase_watch_design(const struct per_unit *base,
         voltage += COUNTS_ERROR * two_pi / (double)facts->encoder_counts_per_turn *
                    settings->observer_bandwidth_rad_s / base->speed_rad_s;
     }
-    return (struct phase_watch_params){num_from_double(voltage),
-                                       codes > NOISE_CODES ? codes : NOISE_CODES};
+    return (struct phase_watch_params){
+        .voltage_error = num_from_double(voltage),
+        .lag_looks = (uint16_t)(LAG_S / (LOOK_PERIODS * facts->control_period_s) + 0.5),
+        .noise_codes = codes > NOISE_CODES ? codes : NOISE_CODES,
+    };
 }
 
 static bool stands(uint16_t at, uint16_t code, const struct phase_watch_params *params)
@@ -129,11 +133,12 @@ static struct phases back_emf(const struct drive *drive)
    its reference in motion, where it feeds forward a speed that is not the estimate's. */
 static void track_lag(struct phase_watch *watch, const struct drive *drive)
 {
+    const int32_t looks = drive->phase_watch_params.lag_looks;
     const angle_t at = drive->estimator.estimate.next.position.fraction;
     const angle_t lag = at - drive->reference.next.position.fraction;
 
     /* A turn is no overflow: the sum wraps. */
-    const int32_t nearer = (int32_t)(lag - (angle_t)watch->lag) / LAG_LOOKS;
+    const int32_t nearer = (int32_t)(lag - (angle_t)watch->lag) / looks;
 
     watch->lag = (int32_t)((angle_t)watch->lag + (angle_t)nearer);
 }

@@ -33,6 +33,7 @@
 
 struct phase_watch_params {
     num_t voltage_error;  /* in which u - R i - e may be wrong */
+    uint16_t lag_looks;   /* over which the lag is a mean */
     uint16_t noise_codes; /* within which a current stands */
 };
 

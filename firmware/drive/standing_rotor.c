@@ -7,7 +7,7 @@
 #define PLACE     (1 << 27)
 #define DELAYS    4u /* of the hold */
 
-#define PERIODS_MAX 32u /* at once, of a background that was busy */
+#define AT_ONCE_S 3.2e-3 /* of a background that was busy */
 
 static void begin_anew(struct standing_rotor *standing, uint32_t period)
 {
@@ -32,7 +32,10 @@ static void lead_back(struct drive *drive, uint32_t period)
     const num_t creep =
         half_period_turns(&drive->params.model, drive->params.reference.creep_speed);
     const uint32_t passed = period - drive->standing.period;
-    const uint32_t periods = passed < PERIODS_MAX ? passed : PERIODS_MAX;
+    const uint32_t at_once =
+        (uint32_t)((num_real)AT_ONCE_S / (num_real)drive->board->facts->control_period_s +
+                   (num_real)0.5);
+    const uint32_t periods = passed < at_once ? passed : at_once;
 
     standstill_hold_lead_back(&drive->hold, 2 * (int32_t)periods * angle_from_turns(creep));
 }

@@ -5,6 +5,7 @@
 #include "firmware/drive/settings_in_motion.h"
 #include "firmware/drive/state_machine.h"
 
+/* A share of the samples, whatever their period; heat goes by seconds. */
 #define SLOT_PERIODS 8u
 #define SPAN_PERIODS (SLOT_PERIODS * WINDING_LOOKS)
 #define STEPS        64

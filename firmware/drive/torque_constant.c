@@ -4,10 +4,10 @@
 #include "firmware/drive/inductance.h"
 #include "firmware/drive/interrupt_view.h"
 
-#define WINDOW_PERIODS 128u
-#define BACK_EMF_MIN   NUM(0.125) /* of the supply */
-#define SHARE          0.25       /* of its way to what a window shows */
-#define CHANGE_MIN     NUM(0.03)
+#define WINDOW_S     12.8e-3
+#define BACK_EMF_MIN NUM(0.125) /* of the supply */
+#define SHARE        0.25       /* of its way to what a window shows */
+#define CHANGE_MIN   NUM(0.03)
 
 /* Of what the interrupt reads, what goes by the torque constant. */
 static void renew(struct drive_params *params, const struct motor_model_params *model,
@@ -78,6 +78,12 @@ static void learn(struct drive *drive, struct position at)
     torque_constant_put(drive, num_from_double(within));
 }
 
+static uint32_t window_periods(const struct drive *drive)
+{
+    return (uint32_t)((num_real)WINDOW_S / (num_real)drive->board->facts->control_period_s +
+                      (num_real)0.5);
+}
+
 void torque_constant_background(struct drive *drive)
 {
     struct torque_constant *constant = &drive->torque_constant;
@@ -101,7 +107,7 @@ void torque_constant_background(struct drive *drive)
         const num_t turns = num_mul_coef(rotor.speed, drive->params.model.turns_per_speed);
 
         constant->travel += (int64_t)angle_from_turns(turns) * (int32_t)(period - constant->looked);
-        if (period - constant->begun >= WINDOW_PERIODS) {
+        if (period - constant->begun >= window_periods(drive)) {
             learn(drive, rotor.position);
             begin(constant, rotor.position, period);
         }

@@ -84,6 +84,20 @@ static void product_is_the_floor_with_16_bits_of_the_second(int32_t a, int32_t b
     }
 }
 
+static void test_a_wide_product_is_the_floor_with_any_second_factor(void)
+{
+    random_state = 12;
+    for (int i = 0; i < 1000000; i++) {
+        int32_t a = (int32_t)random_bits() >> (random_bits() % 32u);
+        int32_t b = (int32_t)random_bits() >> (random_bits() % 32u);
+        int64_t product = floor_of((int64_t)a * floor_of(b, NUM_FRACTION_BITS - 14), 14);
+
+        if (product >= INT32_MIN && product <= INT32_MAX) {
+            TEST_ASSERT_EQUAL_INT32((int32_t)product, num_mul_wide(a, b));
+        }
+    }
+}
+
 static void test_a_product_is_the_floor_with_16_bits_of_the_second_factor(void)
 {
     random_state = 1;
@@ -599,6 +613,7 @@ int main(void)
     RUN_TEST(test_the_upper_half_of_a_16_bit_product_is_its_floor);
     RUN_TEST(test_a_gain_is_rounded_down_once_and_shifted);
     RUN_TEST(test_a_ratio_is_the_floor_of_the_exact_one);
+    RUN_TEST(test_a_wide_product_is_the_floor_with_any_second_factor);
     RUN_TEST(test_a_product_that_does_not_fit_is_seen);
     RUN_TEST(test_a_second_factor_of_more_than_16_bits_is_seen);
     RUN_TEST(test_what_is_meant_to_go_round_is_none);

@@ -84,6 +84,22 @@ static void test_a_phase_that_does_not_move_is_named_as_soon_as_it_would_have_ha
     }
 }
 
+static void test_the_lag_is_a_mean_over_13_ms_whatever_the_period(void)
+{
+    static const double period_s[] = {50e-6, 100e-6, 200e-6};
+
+    for (int i = 0; i < 3; i++) {
+        struct per_unit base = per_unit_base(&bench_params, period_s[i]);
+        struct hal_facts facts = bench_facts;
+        struct drive_settings settings;
+
+        facts.control_period_s = period_s[i];
+        drive_settings_default(&settings, &bench_params);
+        params = phase_watch_design(&base, &facts, &settings);
+        TEST_ASSERT_EQUAL_UINT(64u >> i, params.lag_looks);
+    }
+}
+
 static void test_noise_stands_and_more_does_not(void)
 {
     look.push[0] = NUM(0.1);
@@ -150,6 +166,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_phase_that_does_not_move_is_named_as_soon_as_it_would_have_had_to);
+    RUN_TEST(test_the_lag_is_a_mean_over_13_ms_whatever_the_period);
     RUN_TEST(test_noise_stands_and_more_does_not);
     RUN_TEST(test_four_looks_at_least_find_it_standing);
     RUN_TEST(test_without_a_push_a_current_may_stand);

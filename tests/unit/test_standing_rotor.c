@@ -156,6 +156,29 @@ static void test_a_frame_comes_back_at_the_speed_at_which_it_creeps(void)
     }
 }
 
+static void test_a_background_that_was_busy_leads_it_by_3_2_ms_whatever_the_period(void)
+{
+    static const double period_s[] = {50e-6, 100e-6, 200e-6};
+
+    for (int i = 0; i < 3; i++) {
+        drive_bench_reset();
+        board.facts = &encoder_facts;
+        enabled_drive_whose_hold_waits();
+        encoder_facts.control_period_s = period_s[i];
+        drive.hold.active = true;
+        pass(1u, 0.0);
+        drive.hold.offset = 60 * degree;
+        pass(1u, 0.0);
+        const int32_t step = 60 * degree - drive.hold.offset;
+
+        drive.hold.offset = 60 * degree;
+        drive.supervision.period += 999u;
+        pass(1u, 0.0);
+        TEST_ASSERT_TRUE(step > 0);
+        TEST_ASSERT_EQUAL_INT32((64 >> i) * step, 60 * degree - drive.hold.offset);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -166,5 +189,6 @@ int main(void)
     RUN_TEST(test_its_place_is_known_while_the_hold_waits);
     RUN_TEST(test_where_no_hold_leads_nothing_stands);
     RUN_TEST(test_a_frame_comes_back_at_the_speed_at_which_it_creeps);
+    RUN_TEST(test_a_background_that_was_busy_leads_it_by_3_2_ms_whatever_the_period);
     return UNITY_END();
 }

@@ -107,6 +107,35 @@ static void test_a_drive_that_begins_with_it_is_as_one_that_has_learned_it(void)
                               drive.base.speed_rad_s);
 }
 
+/* Of a rotor whose speed is imposed on the estimate. */
+static void test_it_looks_for_13_ms_whatever_the_period(void)
+{
+    static const double period_s[] = {50e-6, 100e-6, 200e-6};
+
+    for (int i = 0; i < 3; i++) {
+        uint32_t periods = 0u;
+
+        drive_bench_reset();
+        encoder_facts.control_period_s = period_s[i];
+        board.facts = &encoder_facts;
+        power_up();
+        drive.supervision.state = DRIVE_OPERATION_ENABLED;
+        drive.supervision.period = 1u;
+        torque_constant_background(&drive);
+        drive.estimator.estimate.rotor.speed = NUM(0.25);
+        const uint32_t begun = drive.torque_constant.begun;
+
+        while (drive.torque_constant.begun == begun && periods < 1000u) {
+            drive.supervision.period++;
+            drive.estimator.estimate.rotor.position =
+                position_add(drive.estimator.estimate.rotor.position, 1 << 20);
+            torque_constant_background(&drive);
+            periods++;
+        }
+        TEST_ASSERT_EQUAL_UINT(256u >> i, periods);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -114,5 +143,6 @@ int main(void)
     RUN_TEST(test_one_as_the_settings_say_changes_nothing);
     RUN_TEST(test_it_is_put_in_force_while_interrupts_are_held_back);
     RUN_TEST(test_a_drive_that_begins_with_it_is_as_one_that_has_learned_it);
+    RUN_TEST(test_it_looks_for_13_ms_whatever_the_period);
     return UNITY_END();
 }
