@@ -1,6 +1,6 @@
 """Cyclic synchronous position by one PDO each way and SYNC through an unmodified python-canopen: no target is missed,
 the axis follows with the delay that is stated, and what jitter of SYNC is left in the reference is printed. And on
-reception, without SYNC; homing. An underrun is forgiven where SYNC came more than three intervals late.
+reception, without SYNC; homing. A run in which a SYNC came more than three intervals late is not judged.
 
 usage: canopen_cyclic.py SIL          a few seconds
        canopen_cyclic.py SIL full     250 Hz for 60 s of the drive's time, 1 kHz for 10 s
@@ -133,7 +133,18 @@ def follow(network, node, course, clock):
     return heard
 
 
-def by_sync(interval_ms, cycles, speed, by_wall=False, swing_s=0.8):
+def by_sync(*arguments, **named):
+    """Up to three times, until the client has not been kept from the line, which is no fault of the drive's."""
+    for _ in range(3):
+        if run_by_sync(*arguments, **named):
+            return
+    if CHECKS.failed == 0:
+        print("skipped: the machine keeps the client from the line")
+        sys.exit(77)
+
+
+def run_by_sync(interval_ms, cycles, speed, by_wall=False, swing_s=0.8):
+    """false: nothing is judged, as SYNC came later than the drive bears."""
     with Served("--speed", speed) as served, Bus(served.link) as bus:
         node, interval_s = bus.node, 1e-3 * interval_ms
         slow(node, speed)
@@ -146,13 +157,16 @@ def by_sync(interval_ms, cycles, speed, by_wall=False, swing_s=0.8):
         heard = follow(bus.network, node, course, DriveClock(interval_s, speed, by_wall))
         what = f"{1000 // interval_ms} Hz, {cycles} cycles, serve --speed {speed}"
         underruns, away = node.sdo[UNDERRUNS].raw - before, times_away(heard, interval_s / PERIOD_S)
-        CHECKS.that(underruns <= away, f"{what}: {underruns} underruns")
         print(f"{what}: {underruns} underruns; the client was kept from the line {away} times")
+        if away:
+            return False
+        CHECKS.that(underruns == 0, f"{what}: {underruns} underruns")
         CHECKS.that(len(heard) >= 0.99 * cycles, f"{what}: an answer to each SYNC: {len(heard)}")
         status = node.sdo[0x6041].raw
         CHECKS.that(status & 0x206F == 0x0027, f"{what}: in operation, without a following error: {status:#x}")
         CHECKS.that(wait_for(lambda: abs(node.sdo[POSITION].raw - begin) < 100, 20), f"{what}: and back")
         compare(what, node, course, heard)
+    return True
 
 
 def lateness(heard, periods):
@@ -176,14 +190,13 @@ def compare(what, node, course, heard):
     stated = INTERVALS_OF_DELAY + DELAY_S / course.interval_s
     steepest = TURN // 8 * 2 * math.pi / course.swing  # units in an interval
     unit_us = course.interval_s / steepest * 1e6
-    behind = sorted(abs(position - course((period - first) / periods - delay)) for _, period, position in heard)
-    within = behind[-1 if max(late) <= MOST_LATE else len(behind) * 9 // 10]
+    behind = max(abs(position - course((period - first) / periods - delay)) for _, period, position in heard)
     print(f"{what}: SYNC came up to {max(late) * course.interval_s * 1e3:.1f} ms late; the reference {delay:.2f} intervals "
           f"behind the course and off it by {rms * unit_us:.0f} us rms, {most * unit_us:.0f} at most, of full speed "
-          f"({rms:.1f}, {most:.1f} units); position within {within:.0f} units")
+          f"({rms:.1f}, {most:.1f} units); position within {behind:.0f} units")
     CHECKS.that(abs(delay - stated) < 0.6, f"{what}: the delay is {delay:.2f} intervals, stated {stated:.2f}")
     CHECKS.that(most < 0.5 * steepest, f"{what}: the reference is off by {most:.1f} units")
-    CHECKS.that(within < TURN // 100 + 1.5 * steepest, f"{what}: the axis by {within:.0f}")
+    CHECKS.that(behind < TURN // 100 + 1.5 * steepest, f"{what}: the axis by {behind:.0f}")
 
 
 def on_reception(speed=0.2, interval_s=0.004, cycles=100):
