@@ -19,7 +19,7 @@ STAGES = [
     "position law",  # and hold, and detent compensation
     "current control",
     "modulator",  # and loss compensation
-    "protection",
+    "protection",  # and synchronism monitor
     "outputs",  # compares, bridge, leaving the interrupt
     "cycle counts",  # that the application keeps
     "other",  # what puts the blocks together
@@ -34,6 +34,8 @@ CLAIMED = {
 
 # File -> block.
 BLOCKS = [
+    ("firmware/drive/synchronism.*", "protection"),
+    ("firmware/estimator/synchronism_monitor.*", "protection"),
     ("firmware/drive/block_reset.*", "state machine"),
     ("firmware/drive/state_machine.*", "state machine"),
     ("firmware/drive/command_queue.*", "state machine"),
@@ -54,11 +56,17 @@ CONTROL_CYCLE = {
     "remember_demand": "estimator",
     "compensate_detent": "position law",
     "regulate_voltage": "position law",
-    "law_input": "position law",
-    "consider_hold": "position law",
-    "wanted_current": "position law",
+    "hold_rotor": "position law",
+    "move_rotor": "position law",
     "transfer": "position law",
+    "enter_or_leave_hold": "position law",
+    "enter_hold": "position law",
+    "leave_or_lead_hold": "position law",
+    "work_on_hold": "position law",
+    "turn_reference": "reference",
     "modulate": "modulator",
+    "watch_synchronism": "protection",
+    "act_on_synchronism": "protection",
 }
 
 INTERRUPT = "control_interrupt"
@@ -67,6 +75,7 @@ CYCLE_COUNTS = "control_cycles_count"
 # Looked through: (file, function) -> block of what is left. Other functions of the files: "other".
 THROUGH = {
     ("firmware/drive/control_cycle.c", "observe"): "estimator",
+    ("firmware/drive/control_cycle.c", "observe_sensorless"): "estimator",
     ("firmware/drive/control_cycle.c", "regulate_current"): "current control",
 }
 THROUGH_FILES = ["firmware/drive/control_cycle.c", "firmware/application/*"]
@@ -116,6 +125,20 @@ def of_frames(frames):
 def of_return(function):
     """Index of the stage of the instruction by which a function returns, None: as of all others."""
     return STAGES.index("outputs") if function == INTERRUPT else None
+
+
+def by_stage(stage_at, paths):
+    """Cycles by name of the stage, of the calls whose runs (trace.Run) `paths` holds in their order;
+    stage_at: of an address, as Stages.at."""
+    pieces, cycles, stage = {}, [0] * len(STAGES), STAGES.index("other")
+    for path in paths:
+        for run in path:
+            if run not in pieces:
+                pieces[run] = [(stage_at(address), nominal) for address, nominal, _ in run.costs]
+            for of, nominal in pieces[run]:
+                stage = stage if of == CALLER else of
+                cycles[stage] += nominal
+    return dict(zip(STAGES, cycles))
 
 
 class Stages:

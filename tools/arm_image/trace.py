@@ -125,7 +125,7 @@ class Calls:
         self.total_cycles = 0
         self.worst_path = []
         self.executions = Counter()  # of each run, over all calls
-        self.calls = []  # (cycles, set of runs) of each call
+        self.calls = []  # (cycles, runs in their order) of each call
 
     def add(self, path):
         instructions = sum(run.instructions for run in path)
@@ -137,7 +137,7 @@ class Calls:
         if cycles > self.worst_cycles:
             self.worst_cycles, self.worst_path, self.worst_index = cycles, path, self.count
         self.executions.update(path)
-        self.calls.append((cycles, frozenset(path)))
+        self.calls.append((cycles, tuple(path)))
         self.count += 1
 
     def executed(self):

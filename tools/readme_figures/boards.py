@@ -67,7 +67,7 @@ def interrupt(sources):
     first = run_on_board(sources, BOARD_RUNS[0][1])
     stages = {name: columns["nominal"]["mean"] for name, columns in first["stage_cycles"].items()}
     around = [stages["sampling"], stages["outputs"], stages["cycle counts"]]
-    rest = first["total_cycles"]["nominal"]["mean"] - sum(around) - 14  # entry, in no stage's count
+    rest = first["total_cycles"]["nominal"]["mean"] - sum(around)
     heads = ["", "nominal: mean, worst", "worst case, from CCM",
              "worst case, from flash without cache"]
     return {"table": table(heads, rows), "longest": us(bound["worst_ccm"]),
@@ -213,6 +213,10 @@ def quick_rows(sources):
     return counted(json.loads(file.read_text(encoding="utf-8")))
 
 
+def probe_of_cycles(sources):
+    return json.dumps([row["worst_cycles"] for row in quick_rows(sources).values()])
+
+
 @entry("cycles", "tools/cycles --only sensorless --only feedback-linearisation")
 def cycles(sources):
     rows = quick_rows(sources)
@@ -230,6 +234,7 @@ def cycles(sources):
         if not name.startswith("encoder"):
             found[f"{name}-mean"] = f"{row['mean_cycles']:,}"
         found[f"{name}-bound"] = f"{row['must_cycles']:,}"
+    found["float-mean-bound"] = f"{float_row['must_mean_cycles']:,}"
     for name, core in (("one-motor", "m4f"), ("one-motor-m0plus", "m0plus")):
         row = rows[core, "one_motor", default]
         found |= {name: f"{row['worst_cycles']:,}", f"{name}-mean": f"{row['mean_cycles']:,}",
@@ -239,6 +244,38 @@ def cycles(sources):
               "start-up": spelled(float_row["start_up_ms"], 0),
               "start-up-m0plus": spelled(small["start_up_ms"], 0)}
     return found
+
+
+# Before the estimator's prediction became what the control answers to, by block: M4F float at worst and
+# in motion, and the whole interrupt on the virtual board, its idle periods included.
+BEFORE = {"sampling": (None, None, 394), "measurement": (40, 40, 40), "state machine": (128, 25, 22),
+          "estimator": (327, 338, 349), "reference": (122, 125, 86), "position law": (109, 109, 75),
+          "current control": (86, 86, 85), "modulator": (110, 110, 105), "protection": (39, 39, 38),
+          "outputs": (None, None, 93), "cycle counts": (None, None, 112), "other": (72, 94, 137)}
+OF_BLOCK = {"estimator": "estimator, prediction", "position law": "position law, hold",
+            "modulator": "modulator, loss, bus", "protection": "protection, synchronism monitor",
+            "outputs": "outputs, leaving", "cycle counts": "cycles counted", "other": "what puts them together"}
+BLOCK_ROW = "m4f float default-sensorless"
+
+
+@entry("cycle-blocks", f'tools/cycles --blocks --only "{BLOCK_ROW}"; ctest --preset {G474} -R board.run')
+def cycle_blocks(sources):
+    """Of the default without encoder, in float."""
+    same_compiler(sources)
+    row, = json.loads(sources.tool("cycles", "--blocks", "--json", "--only", BLOCK_ROW))
+    on_board = run_on_board(sources, BOARD_RUNS[0][1])["stage_cycles"]
+    now = (row["blocks"]["worst"], row["blocks"]["mean"],
+           {name: columns["nominal"]["mean"] for name, columns in on_board.items()})
+
+    def line(title, names, before):
+        sums = [sum(of[name] for name in names) for of in now]
+        return [title, *(f"{old:,} → {new:,.0f}" if old else f"{new:,.0f}" if new else "–"
+                         for old, new in zip(before, sums))]
+
+    lines = [line(OF_BLOCK.get(name, name), (name,), before) for name, before in BEFORE.items()]
+    sums = [sum(filter(None, column)) for column in zip(*BEFORE.values())]
+    lines.append(line("in all", tuple(BEFORE), sums))
+    return {"table": table(["block", "worst", "mean", "whole interrupt on the board, mean"], lines)}
 
 
 OBSERVED = "what all laws with an encoder share: the observer, the frames for three currents, " \
@@ -252,10 +289,6 @@ BESIDES = {"csmc-equivalent": "the equivalent control",
 
 def why(law, first):
     return (OBSERVED if first else "the same") + (f", and {BESIDES[law]}" if law in BESIDES else "")
-
-
-def probe_of_cycles(sources):
-    return json.dumps([row["worst_cycles"] for row in quick_rows(sources).values()])
 
 
 @entry("cycles-all", "tools/cycles --json > tools/comparison/cycles.json", Cost.DEAR,
