@@ -275,6 +275,16 @@ void settings_with_encoder(const ElfImage &image)
            "stored settings that ask for an encoder are refused");
 }
 
+/* hal/stm32g071/CMakeLists.txt, default_laws. */
+void laws_are_listed(const ElfImage &image)
+{
+    Powered run(image);
+    run.run_for(start_time);
+    const std::string listed = run.type("get law\n", 50 * ms);
+    expect(count(listed, "; state-feedback, pid, microstepping; ") == 1,
+           "get law lists the laws that the image carries, and no other");
+}
+
 void program_leaves_memory(const ElfImage &image)
 {
     Powered run(image);
@@ -327,6 +337,7 @@ int main(int argc, char **argv)
         debugger_halts(image);
         settings_act(image);
         settings_with_encoder(image);
+        laws_are_listed(image);
         program_leaves_memory(image);
         bus_is_braked(image);
     } catch (const std::exception &error) {
