@@ -303,8 +303,11 @@ def check_clocks(root, facts):
 
 def check_memory(root, facts):
     script = without_comments((root / PORT / "memory.ld").read_text(encoding="utf-8"))
-    regions = re.findall(r"(\w+)\s+\(\w+\)\s*: ORIGIN = (0x\w+), LENGTH = (\d+)K", script)
-    regions = sorted((int(origin, 16), int(length) * 1024, name) for name, origin, length in regions)
+    regions = re.findall(r"(\w+)\s+\(\w+\)\s*: ORIGIN = (0x\w+), LENGTH = (\d+)(K?)", script)
+    regions = sorted(
+        (int(origin, 16), int(length) * (1024 if kilo else 1), name)
+        for name, origin, length, kilo in regions
+    )
     first = {"FLASH": "BANK_1", "CCM": "CCMRAM_ICODE", "RAM": "SRAM1"}
     end = max(start + size for start, size in facts.memories.values() if start >= 0x20000000)
     for (start, size, name), (following, _, other) in zip(regions, regions[1:] + [(end, 0, "the end")]):
@@ -375,9 +378,9 @@ PLANTED = [
     (PIN_MAP, "#define ENCODER_TIMER 4", "#define ENCODER_TIMER 8"),
     (PIN_MAP, "#define LED_PIN 5", "#define LED_PIN 6"),
     ("memory.ld", "ORIGIN = 0x10000000", "ORIGIN = 0x10001000"),
-    ("memory.ld", "ORIGIN = 0x20016400, LENGTH = 7K", "ORIGIN = 0x20016400, LENGTH = 8K"),
-    ("memory.ld", "ORIGIN = 0x20016400", "ORIGIN = 0x20012C00"),
-    ("memory.ld", "ORIGIN = 0x20012C00, LENGTH = 14K", "ORIGIN = 0x20012C00, LENGTH = 15K"),
+    ("memory.ld", "ORIGIN = 0x20016300, LENGTH = 7424", "ORIGIN = 0x20016300, LENGTH = 8K"),
+    ("memory.ld", "ORIGIN = 0x20016300", "ORIGIN = 0x20012B00"),
+    ("memory.ld", "ORIGIN = 0x20012B00, LENGTH = 14K", "ORIGIN = 0x20012B00, LENGTH = 15K"),
 ]
 
 
