@@ -199,6 +199,14 @@ class Image:
                 return data[address - start : address - start + count]
         return None
 
+    def numeric(self):
+        """Number format, as a board's image itself says, behind version, sources, board and pin map
+        (tools/board_image.py)."""
+        start, text = self.symbols["image_version"], b""
+        while not text.endswith(b"\0"):
+            text += self.bytes(start + len(text), 1)
+        return text.split()[5].decode()
+
     def word(self, address):
         data = self.bytes(address, 4)
         return None if data is None else int.from_bytes(data, "little")
