@@ -5,6 +5,7 @@
 #include "firmware/application/application.h"
 #include "firmware/application/number_text.h"
 #include "firmware/application/setting_change.h"
+#include "firmware/design/hold_check.h"
 #include "firmware/interface/settings.h"
 
 /* One number, or one of several. */
@@ -158,6 +159,28 @@ static void put_sentence(const struct setting *setting, struct text *text)
 #endif
 }
 
+/* Of a current that holds the rotor: the lasting load that it bears, and its heat. */
+static void put_bearing(const struct application *application, const struct setting *setting,
+                        struct text *text)
+{
+    enum { DIGITS = 3 };
+    const struct motor_params *motor = &application->chosen.motor;
+    double current_A = setting_get(&application->chosen, setting, 0);
+
+    if (setting->offset != offsetof(struct drive_settings, hold_current_A) &&
+        setting->offset != offsetof(struct drive_settings, idle_current_A)) {
+        return;
+    }
+    if (!is_given(current_A)) {
+        current_A = setting_get(&application->drive.settings, setting, 0);
+    }
+    text_put(text, "; bears ");
+    text_number(text, hold_torque_Nm(motor, current_A), DIGITS);
+    text_put(text, " N m, heats the winding by ");
+    text_number(text, hold_heat_W(motor, current_A), DIGITS);
+    text_put(text, " W");
+}
+
 /* Those that begin so, as many as there is room for. */
 static bool list(const struct application *application, struct line_word begin, struct text *answer)
 {
@@ -216,6 +239,7 @@ static bool get(const struct application *application, struct line_word name, st
     }
     put_range(application, element.setting, answer);
     put_default(application, element, answer);
+    put_bearing(application, element.setting, answer);
     text_put(answer, element.setting->in_motion ? "; in motion" : "; at enable");
     put_sentence(element.setting, answer);
     return true;
@@ -285,6 +309,7 @@ static void put_set(const struct application *application, struct element elemen
 {
     text_put(answer, "ok set ");
     put_setting(application, element, answer);
+    put_bearing(application, element.setting, answer);
     text_put(answer,
              setting_change_waits(application) ? "; acts at the next enable" : "; acts at once");
 }

@@ -165,6 +165,7 @@ enum synchronism synchronism_monitor_judge_voltage(struct synchronism_monitor *m
                                                    num_t speed, num_t i_d)
 {
     const num_t allowed = params->voltage_floor + quarter(num_abs(speed)) +
+                          num_half(monitor->swing) +
                           num_mul_coef(num_abs(i_d), monitor->voltage_per_current);
 
     if (!(monitor->disturbance < allowed)) { /* a NaN is a loss, too */
@@ -186,6 +187,7 @@ enum synchronism synchronism_monitor_judge_motion(struct synchronism_monitor *mo
 
     monitor->held = 0u;
     monitor->settled = NUM(0.0);
+    monitor->swing = NUM(0.0);
     monitor->opposite = count(monitor->opposite, magnitude > params->standing_speed &&
                                                      !(monitor->disturbance < allowed));
     return monitor->opposite < params->opposite_blocks ? SYNCHRONISM_SURE : SYNCHRONISM_LOST;
@@ -195,14 +197,14 @@ enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *moni
                                                 const struct synchronism_monitor_params *params,
                                                 num_t speed, bool leads)
 {
-    const num_t allowed = params->settled_floor + quarter(num_abs(speed));
-
     monitor->opposite = 0u;
     if (leads) { /* away from the angle at which the offset along d passed for a resistance */
         monitor->held = 0u;
         monitor->settled = NUM(0.0);
+        monitor->swing = NUM(0.0);
         return SYNCHRONISM_SURE;
     }
+    monitor->swing += eighth(num_abs(speed) - monitor->swing);
     if (monitor->held < params->settled_blocks) {
         monitor->held++;
         return SYNCHRONISM_SURE;
@@ -210,6 +212,9 @@ enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *moni
     monitor->voltage_per_current = params->voltage_per_current;
     monitor->standing_speed = params->standing_speed;
     monitor->settled += eighth(monitor->past_mean - monitor->settled);
+
+    const num_t allowed = params->settled_floor + quarter(monitor->swing);
+
     if (num_abs(monitor->settled) > num_half(allowed)) {
         monitor->doubtful = params->doubtful_blocks;
     }

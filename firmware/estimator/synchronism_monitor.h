@@ -17,11 +17,15 @@
  *
  * In motion and in every hold. A rotor that a growing load draws out of a settled hold, whose
  * resistance is known by then, creeps past the quarter turn: there the mean over eight blocks has
- * the same bound with V_1 for V_0 and without r. V_1 is a quarter of V_0, or what a load leaves
- * that the hold bears: it displaces the rotor, and with it a part of the flux Km/N. Not in a hold
- * that leads its rotor, nor for a tenth of a second behind that: what passed for an offset or a
- * resistance lies along another axis of the rotor by then, and the rotor lags by a load that is not
- * known.
+ * the same bound with V_1 for V_0 and without r, and with the mean |w_hat| of these blocks. V_1 is
+ * a quarter of V_0, or what a load leaves that the hold bears: it displaces the rotor, and with it
+ * a part of the flux Km/N. Not in a hold that leads its rotor, nor for a tenth of a second behind
+ * that: what passed for an offset or a resistance lies along another axis of the rotor by then, and
+ * the rotor lags by a load that is not known.
+ *
+ * A load that vibrates swings a held rotor about its place: e_d swings with it, not in phase with
+ * |w_hat|, which passes zero. In a hold that rests both bounds count its mean, V_0 by Km |w_hat| /
+ * 2 more.
  *
  * On the opposite half-turn the estimate has a second equilibrium: it turns against the rotor,
  * and what is left in d, 0.4 Km |w_hat|, draws its angle along. Of a sound estimate nothing is left
@@ -98,6 +102,7 @@ struct synchronism_monitor {
     num_t past_mean;            /* e_d of the last block, per-unit voltage */
     num_t disturbance;          /* magnitude of its mean over the last two */
     num_t settled;              /* mean of e_d over eight blocks of a hold */
+    num_t swing;                /* likewise, of the speed's magnitude; else 0 */
     uint32_t held;              /* blocks at rest in a hold; in a row, as those below */
     uint32_t opposite;
     bool full;   /* all current is in use */

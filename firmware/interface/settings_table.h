@@ -156,9 +156,11 @@
     REAL(0x2144, hold_on_enable_s, "s", FIXED(0.01), FIXED(10.0), FIXED(0.150), AT_ENABLE,         \
          "half of it behind the search for an encoder's zero")                                     \
     REAL(0x2145, hold_current_A, "A", RATED(0.01), RATED(1.0), FOLLOWS, AT_ENABLE,                 \
-         "d-axis current at rest: rated (pulses: half), or what of it the hold's check passes")    \
+         "d-axis current at rest: rated (pulses: half), or what of it the hold's check passes; "   \
+         "bears "                                                                                  \
+         "Km x it, heats the winding by R x its square")                                           \
     REAL(0x214d, idle_current_A, "A", RATED(0.01), RATED(1.0), FOLLOWS, AT_ENABLE,                 \
-         "hold current after idle_delay_s at rest, which bears Km x it: hold_current_A")           \
+         "hold current after idle_delay_s at rest, bears and heats likewise: hold_current_A")      \
     REAL(0x214e, idle_delay_s, "s", FIXED(0.0), FIXED(3600.0), FIXED(1.0), AT_ENABLE,              \
          "at rest before the hold current falls to idle_current_A")                                \
     REAL(0x2146, motion_current_A, "A", FIXED(0.0), RATED(1.0), FIXED(0.0), IN_MOTION,             \

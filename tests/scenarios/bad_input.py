@@ -50,7 +50,7 @@ SCENARIOS = [
      ["plant.belt_inertia_share", "0...0.99", "got 1"]),
     ("a stop that gives at once", replaced('model = "bench"', "stop_stiffness_Nm_rad = 0"), 9,
      ["plant.stop_stiffness_Nm_rad", "0.1...100000", "got 0"]),
-    ("stops that leave no room", replaced('model = "bench"', "stop_low_rad = 1\nstop_high_rad = 0.5"), 10,
+    ("stops that overlap", replaced('model = "bench"', "stop_low_rad = 1\nstop_high_rad = 0.5"), 10,
      ["plant.stop_high_rad", "more than stop_low_rad"]),
     ("stops that are none", SMALL + EVENT + "stops = true\n", 23, ["event[2].stops", "stop_low_rad"]),
     ("stops that have gone", SMALL + EVENT + "stops = false\nstop_low_rad = 1\n", 23,

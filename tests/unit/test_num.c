@@ -4,7 +4,7 @@
  */
 #include <unity.h>
 
-/* Here an overflow that the casts of fixed point hide is counted. */
+/* Here an overflow that the casts of fixed point do not show is counted. */
 static int overflows;
 #undef STEADYSTEP_CHECK_HEADROOM
 #define STEADYSTEP_CHECK_HEADROOM overflows++

@@ -64,6 +64,7 @@ static void test_what_follows_is_said_with_what_follows(void)
     const char *const answer = bench_ask("get hold_current_A");
 
     TEST_ASSERT_NOT_NULL(strstr(answer, "hold_current_A=3(follows) A; 0.03...3; default follows"));
+    TEST_ASSERT_NOT_NULL(strstr(answer, "; bears 0.471 N m, heats the winding by 3.33 W; at"));
     TEST_ASSERT_NOT_NULL(strstr(bench_ask("get law_gains.2"), "law_gains.2=(not given); "));
 }
 
@@ -115,7 +116,8 @@ static void enable(void)
 
 static void test_what_is_set_is_in_force_once_stored_and_started_again(void)
 {
-    answers("set hold_current_A 1.2", "ok set hold_current_A=1.2; acts at the next enable\n");
+    answers("set hold_current_A 1.2", "ok set hold_current_A=1.2; bears 0.188 N m, heats the "
+                                      "winding by 0.533 W; acts at the next enable\n");
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 3.0, drive->settings.hold_current_A);
     answers("set detent_torque_Nm.6 -0.01",
             "ok set detent_torque_Nm.6=-0.01; acts at the next enable\n");
@@ -123,6 +125,7 @@ static void test_what_is_set_is_in_force_once_stored_and_started_again(void)
     start();
     TEST_ASSERT_EQUAL_INT(APPLICATION_SETTINGS_STORED, bench.application.settings_from);
     TEST_ASSERT_TRUE(drive->settings.hold_current_A == 1.2);
+    TEST_ASSERT_NOT_NULL(strstr(bench_ask("get idle_current_A"), "; bears 0.188 N m, heats "));
     TEST_ASSERT_TRUE(drive->settings.detent_torque_Nm[5] == -0.01);
     start();
     answers("defaults", "ok defaults\n");

@@ -308,6 +308,29 @@ static void test_a_rotor_that_rests_in_its_hold_under_full_current_is_held(void)
     expect(SYNCHRONISM_STALLED, rests, 14.4e-3);
 }
 
+/* At 40 Hz, 60 degrees of phase between the two: 7 rad/s are 1.1 V of back-EMF, of which a third is
+   in d. */
+static void test_a_rotor_that_vibrates_in_its_hold_is_held(void)
+{
+    const struct course held = {.i_d_A = LIMIT_A, .holding = true};
+
+    synchronism_monitor_reset(&monitor, &params);
+    TEST_ASSERT_EQUAL_INT(SYNCHRONISM_SURE, after(&held, 0.2));
+    for (int n = 0; n < 200; n++) {
+        const double phase = 6.2831853 * 40.0 * BLOCK_S * n;
+        const double grown = n < 16 ? n / 16.0 : 1.0;
+        const struct course swings = {.i_d_A = LIMIT_A,
+                                      .speed_rad_s = grown * 7.0 * sin(phase),
+                                      .disturbance_V = grown * 0.35 * sin(phase + 1.05),
+                                      .holding = true};
+
+        TEST_ASSERT_LESS_THAN(SYNCHRONISM_STALLED, block(&swings));
+    }
+    const struct course creeps = {.i_d_A = LIMIT_A, .holding = true, .disturbance_V = 0.2};
+
+    TEST_ASSERT_EQUAL_INT(SYNCHRONISM_LOST, after(&creeps, 40e-3));
+}
+
 /* One block later than that: the load is looked at behind the torque. */
 static void test_a_hold_that_all_current_does_not_bear_is_stalled(void)
 {
@@ -510,6 +533,7 @@ int main(void)
     RUN_TEST(test_a_hold_settles_anew_behind_motion);
     RUN_TEST(test_a_rotor_that_stands_under_full_current_is_stalled_in_15_ms);
     RUN_TEST(test_a_rotor_that_rests_in_its_hold_under_full_current_is_held);
+    RUN_TEST(test_a_rotor_that_vibrates_in_its_hold_is_held);
     RUN_TEST(test_a_hold_that_all_current_does_not_bear_is_stalled);
     RUN_TEST(test_a_hold_bears_no_more_than_the_current_that_heat_leaves);
     RUN_TEST(test_a_speed_that_an_unknown_resistance_feigns_is_standing);

@@ -115,6 +115,12 @@ static void test_it_looks_for_13_ms_whatever_the_period(void)
     for (int i = 0; i < 3; i++) {
         uint32_t periods = 0u;
 
+#ifdef STEADYSTEP_COEFFICIENT_SHIFTS
+        if (i != 1) { /* an image for one motor is for one period, too */
+            continue;
+        }
+#endif
+
         drive_bench_reset();
         encoder_facts.control_period_s = period_s[i];
         board.facts = &encoder_facts;
