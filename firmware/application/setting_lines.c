@@ -163,6 +163,7 @@ static void put_sentence(const struct setting *setting, struct text *text)
 static void put_bearing(const struct application *application, const struct setting *setting,
                         struct text *text)
 {
+#ifndef STEADYSTEP_WITHOUT_BEARING
     enum { DIGITS = 3 };
     const struct motor_params *motor = &application->chosen.motor;
     double current_A = setting_get(&application->chosen, setting, 0);
@@ -179,6 +180,11 @@ static void put_bearing(const struct application *application, const struct sett
     text_put(text, " N m, heats the winding by ");
     text_number(text, hold_heat_W(motor, current_A), DIGITS);
     text_put(text, " W");
+#else
+    (void)application;
+    (void)setting;
+    (void)text;
+#endif
 }
 
 /* Those that begin so, as many as there is room for. */
