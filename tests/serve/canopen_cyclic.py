@@ -46,13 +46,13 @@ class DriveClock:
 
     def __init__(self, interval_s, speed, by_wall):
         self.interval_s, self.speed, self.by_wall = interval_s, speed, by_wall
-        self.began, self.began_wall, self.synced = None, time.monotonic(), 0
+        self.began, self.began_wall = None, time.monotonic()
         self.period, self.period_wall = None, None
 
     def answered(self, period):
         self.period, self.period_wall = period, time.monotonic()
         if self.began is None:
-            self.began = period - round(self.synced * self.interval_s / PERIOD_S)
+            self.began = period
 
     def wait(self, n):
         """Until SYNC n is due."""
@@ -61,7 +61,6 @@ class DriveClock:
             left_s = n * self.interval_s - (self.period - self.began) * PERIOD_S
             due_wall = self.period_wall + left_s / self.speed
         time.sleep(max(0.0, due_wall - time.monotonic()))
-        self.synced = n
 
 
 def enable(node):
@@ -120,7 +119,7 @@ def follow(network, node, course, clock):
 
     def hear(pdo):
         clock.answered(pdo[1].raw)
-        heard.append((clock.synced, pdo[1].raw, pdo[0].raw))
+        heard.append((len(heard), pdo[1].raw, pdo[0].raw))  # one each, in their order, however late
 
     node.tpdo[1].callbacks.clear()
     node.tpdo[1].add_callback(hear)
