@@ -18,7 +18,7 @@
  *
  * A number must never leave -32...32. Factors are limited before their product (num_headroom), with
  * limits that follow from the gains at start-up; a gain that leaves none is refused there.
- * How that is shown: in preset sil-sanitize each sum, product, shift and conversion is checked, and
+ * How that is shown: in preset sil-sanitize, with STEADYSTEP_TRAP_HEADROOM, each sum, product, shift and conversion is checked, and
  * the first result that does not fit ends the program. The sanitizer checks plain operators. What
  * converts a long product to 32 bits it cannot see: that states its own condition, NUM_HEADROOM.
  * Under these checks run tests/unit/test_headroom.c, every law in motion, with a load and with
@@ -74,7 +74,9 @@ typedef struct {
 
 /*
  * What must hold of factors and product. Where it does not, STEADYSTEP_CHECK_HEADROOM is evaluated:
- * preset sil-sanitize defines it as a trap, test_num.c counts. In any other build it is nothing.
+ * the option STEADYSTEP_TRAP_HEADROOM defines it as a trap, test_num.c counts. In any other build
+ * it is nothing. Three unit tests trap, with inputs of no motor: initial_position, modulator
+ * (fixed) and headroom (one_motor, at a trip of twice the rated current).
  */
 #ifdef STEADYSTEP_CHECK_HEADROOM
 #define NUM_HEADROOM(holds) ((holds) ? (void)0 : (void)(STEADYSTEP_CHECK_HEADROOM))

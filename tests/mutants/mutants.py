@@ -880,7 +880,7 @@ MUTANTS = [
            "monitor->standing_speed && !rests", "monitor->standing_speed"),
     Mutant(ESTIMATOR + "synchronism_monitor.c", "synchronism_monitor",
            "a_rotor_that_rests_in_its_hold_under_full_current_is_held",
-           "        return SYNCHRONISM_SURE;\n    }\n    if (monitor->held <", "    }\n    if (monitor->held <"),
+           "        return SYNCHRONISM_SURE;\n    }\n    monitor->swing +=", "    }\n    monitor->swing +="),
     Mutant(ESTIMATOR + "synchronism_monitor.c", "synchronism_monitor",
            "a_rotor_that_vibrates_in_its_hold_is_held",
            "params->settled_floor + quarter(monitor->swing)", "params->settled_floor + quarter(num_abs(speed))"),

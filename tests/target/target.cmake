@@ -37,8 +37,8 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
   if(STEADYSTEP_CORE STREQUAL m0plus)
     list(FILTER unit_tests EXCLUDE REGEX "test_encoder_alignment\\.c$")
   endif()
-  # Its course takes more memory than a core here has.
-  list(FILTER unit_tests EXCLUDE REGEX "test_motion_delay\\.c$")
+  # Their courses take more memory, or time, than a core here has.
+  list(FILTER unit_tests EXCLUDE REGEX "test_(motion_delay|headroom)\\.c$")
   # An application, its test's board and the stack of the design take more than 16 KB.
   set(large_tests application axis axis_motion axis_stream axis_torque can_bus canopen cia402 console machine_io modbus node pdo resets sdo
     setting_lines settings_in_motion settings_record torque_constant)

@@ -452,8 +452,8 @@ static void test_whatever_comes_the_node_goes_on(void)
         (void)bench_heard();
         fuzz_look();
     }
-    TEST_ASSERT_TRUE(fuzz.captures > inputs / 100);
-    TEST_ASSERT_TRUE(fuzz.enabled > inputs / 100);
+    TEST_ASSERT_TRUE(fuzz.captures >= inputs / 100);
+    TEST_ASSERT_TRUE(fuzz.enabled >= inputs / 100);
     bus.room = 8;
     bus.state = 0;
     bench_periods(100);

@@ -296,8 +296,8 @@ static void test_whatever_comes_the_node_goes_on(void)
         pass(4);
         fuzz_look();
     }
-    TEST_ASSERT_TRUE(fuzz.captures > inputs / 100);
-    TEST_ASSERT_TRUE(fuzz.enabled > inputs / 100);
+    TEST_ASSERT_TRUE(fuzz.captures >= inputs / 100);
+    TEST_ASSERT_TRUE(fuzz.enabled >= inputs / 100);
     (void)link_bench_say("", 20); /* the end of a line that is being received */
     (void)link_bench_say("C", 20);
     (void)link_bench_say("O", 2);

@@ -353,8 +353,8 @@ static void test_whatever_comes_the_node_goes_on(void)
         type_any_request();
         fuzz_look();
     }
-    TEST_ASSERT_TRUE(fuzz.captures > inputs / 1000);
-    TEST_ASSERT_TRUE(fuzz.enabled > inputs / 100);
+    TEST_ASSERT_TRUE(fuzz.captures >= inputs / 1000);
+    TEST_ASSERT_TRUE(fuzz.enabled >= inputs / 100);
     bench_periods(SILENCE);
 
     uint8_t frame[8] = {bench_link.node, 3, 0x10, 0, 0, 2};
