@@ -45,8 +45,8 @@ static void move_on(struct steady_state_ekf *ekf, const struct steady_state_ekf_
     num_t torque = i.q - num_mul_coef(rotor->speed, model->friction) - rotor->load_torque;
     num_t turns = num_mul_coef(rotor->speed, model->turns_per_speed);
 
-    ekf->current.d += num_mul_coef(u_d, model->rate) + num_mul_wide(rotation, i.q);
-    ekf->current.q += num_mul_coef(u_q, model->rate) - num_mul_wide(rotation, i.d);
+    ekf->current.d += num_mul_coef(u_d, model->rate) + num_mul(rotation, i.q);
+    ekf->current.q += num_mul_coef(u_q, model->rate) - num_mul(rotation, i.d);
     rotor->speed += num_mul_coef(torque, model->speed_per_torque);
     rotor->position = position_add(rotor->position, angle_from_any_turns(turns));
 }

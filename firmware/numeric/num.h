@@ -18,17 +18,17 @@
  *
  * A number must never leave -32...32. Factors are limited before their product (num_headroom), with
  * limits that follow from the gains at start-up; a gain that leaves none is refused there.
- * How that is shown: in preset sil-sanitize, with STEADYSTEP_TRAP_HEADROOM, each sum, product, shift and conversion is checked, and
- * the first result that does not fit ends the program. The sanitizer checks plain operators. What
- * converts a long product to 32 bits it cannot see: that states its own condition, NUM_HEADROOM.
- * Under these checks run tests/unit/test_headroom.c, every law in motion, with a load and with
- * samples at their ends, and the experiments of the test headroom. So it is a proof by test:
- * of the values that occur there, not of every value.
- * Not checked are angles and num_add_around, which are meant to go round.
- * One condition belongs to the Cortex-M0+: of the second factor of num_mul 16 bits count there,
- * -2...2. With a larger one its product may be 2^-8 off the other cores' (num_mul_wide is not). A
- * current stays below as long as the overcurrent trip is at most twice the rated current, by
- * default 1.8 times; with a wider trip the decoupling of the current control may see a larger one.
+ * How that is shown: in preset sil-sanitize, with STEADYSTEP_TRAP_HEADROOM, each sum, product,
+ * shift and conversion is checked, and the first result that does not fit ends the program. The
+ * sanitizer checks plain operators. What converts a long product to 32 bits it cannot see: that
+ * states its own condition, NUM_HEADROOM. Under these checks run tests/unit/test_headroom.c, every
+ * law in motion, with a load and with samples at their ends, and the experiments of the test
+ * headroom. So it is a proof by test: of the values that occur there, not of every value. Not
+ * checked are angles and num_add_around, which are meant to go round. One condition belongs to the
+ * Cortex-M0+: of the second factor of num_mul 16 bits count there, -2...2. With a larger one its
+ * product may be 2^-8 off the other cores' (num_mul_wide is not). A current stays below as long as
+ * the overcurrent trip is at most twice the rated current, by default 1.8 times; with a wider trip
+ * the decoupling of the current control may see a larger one.
  */
 #ifndef STEADYSTEP_NUM_H
 #define STEADYSTEP_NUM_H
