@@ -272,6 +272,12 @@ bool drive_command_asked_in(struct drive *drive, const struct drive_command *com
    switch-on-disabled if a disable waits that acts by then. A fault to come is not foreseen. */
 enum drive_state drive_state_by(const struct drive *drive, uint32_t at_period);
 
+/* Background: control periods in a time, to the nearest. */
+static inline uint32_t drive_periods_in(const struct drive *drive, num_real time_s)
+{
+    return (uint32_t)(time_s / (num_real)drive->board->facts->control_period_s + (num_real)0.5);
+}
+
 /* Background: where the reference rests when all posted moves are done; the last place it was known
    to rest, while a stop, sine, set-points or a speed leave that open. */
 double drive_planned_end_rad(struct drive *drive);

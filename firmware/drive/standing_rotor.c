@@ -32,9 +32,7 @@ static void lead_back(struct drive *drive, uint32_t period)
     const num_t creep =
         half_period_turns(&drive->params.model, drive->params.reference.creep_speed);
     const uint32_t passed = period - drive->standing.period;
-    const uint32_t at_once =
-        (uint32_t)((num_real)AT_ONCE_S / (num_real)drive->board->facts->control_period_s +
-                   (num_real)0.5);
+    const uint32_t at_once = drive_periods_in(drive, (num_real)AT_ONCE_S);
     const uint32_t periods = passed < at_once ? passed : at_once;
 
     standstill_hold_lead_back(&drive->hold, 2 * (int32_t)periods * angle_from_turns(creep));

@@ -78,12 +78,6 @@ static void learn(struct drive *drive, struct position at)
     torque_constant_put(drive, num_from_double(within));
 }
 
-static uint32_t window_periods(const struct drive *drive)
-{
-    return (uint32_t)((num_real)WINDOW_S / (num_real)drive->board->facts->control_period_s +
-                      (num_real)0.5);
-}
-
 void torque_constant_background(struct drive *drive)
 {
     struct torque_constant *constant = &drive->torque_constant;
@@ -107,7 +101,7 @@ void torque_constant_background(struct drive *drive)
         const num_t turns = num_mul_coef(rotor.speed, drive->params.model.turns_per_speed);
 
         constant->travel += (int64_t)angle_from_turns(turns) * (int32_t)(period - constant->looked);
-        if (period - constant->begun >= window_periods(drive)) {
+        if (period - constant->begun >= drive_periods_in(drive, (num_real)WINDOW_S)) {
             learn(drive, rotor.position);
             begin(constant, rotor.position, period);
         }

@@ -157,8 +157,7 @@
          "half of it behind the search for an encoder's zero")                                     \
     REAL(0x2145, hold_current_A, "A", RATED(0.01), RATED(1.0), FOLLOWS, AT_ENABLE,                 \
          "d-axis current at rest: rated (pulses: half), or what of it the hold's check passes; "   \
-         "bears "                                                                                  \
-         "Km x it, heats the winding by R x its square")                                           \
+         "bears Km x it, heats the winding by R x its square")                                     \
     REAL(0x214d, idle_current_A, "A", RATED(0.01), RATED(1.0), FOLLOWS, AT_ENABLE,                 \
          "hold current after idle_delay_s at rest, bears and heats likewise: hold_current_A")      \
     REAL(0x214e, idle_delay_s, "s", FIXED(0.0), FIXED(3600.0), FIXED(1.0), AT_ENABLE,              \

@@ -75,8 +75,9 @@ typedef struct {
 /*
  * What must hold of factors and product. Where it does not, STEADYSTEP_CHECK_HEADROOM is evaluated:
  * the option STEADYSTEP_TRAP_HEADROOM defines it as a trap, test_num.c counts. In any other build
- * it is nothing. Three unit tests trap, with inputs of no motor: initial_position, modulator
- * (fixed) and headroom (one_motor, at a trip of twice the rated current).
+ * it is nothing. What traps today: the unit tests initial_position and modulator (fixed) and
+ * headroom (one_motor, at a trip of twice the rated current), of which it is open whether a motor
+ * has such inputs; and the paper's filter where it diverges (steady_state_ekf).
  */
 #ifdef STEADYSTEP_CHECK_HEADROOM
 #define NUM_HEADROOM(holds) ((holds) ? (void)0 : (void)(STEADYSTEP_CHECK_HEADROOM))
