@@ -4,7 +4,7 @@ test could see. The virtual board must catch each, for its own reason: by what i
 drive_hash that is not the simulator's, or by an expectation of stm32g474_disturbances that is not
 held.
 
-usage: mutants.py ROOT BUILD SIMULATOR DISTURBANCES [--only TEXT] [--one-per-file]
+usage: mutants.py ROOT BUILD SIMULATOR DISTURBANCES [--only TEXT] [--one-of PARTS]
 
 BUILD: folder of the preset board-stm32g474, with steadystep.elf built. A mutant recompiles the
 sources of the port that read what was changed, and links them to the firmware as it is.
@@ -447,6 +447,14 @@ def try_mutant(mutant, options):
         return judge(mutant, image, options.simulator, options.numeric)
 
 
+def commits(root):
+    """How many commits lead to this one; 0 where that is not known."""
+    done = subprocess.run(
+        ["git", "-C", str(root), "rev-list", "--count", "HEAD"], capture_output=True, text=True
+    )
+    return int(done.stdout) if done.returncode == 0 else 0
+
+
 def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -456,7 +464,13 @@ def main():
     parser.add_argument("simulator", type=lambda text: Path(text).resolve())
     parser.add_argument("disturbances", type=lambda text: Path(text).resolve())
     parser.add_argument("--only", metavar="TEXT", default="", help="mutants whose name has TEXT")
-    parser.add_argument("--one-per-file", action="store_true", help="of each file the first only")
+    parser.add_argument(
+        "--one-of",
+        type=int,
+        default=1,
+        metavar="PARTS",
+        help="one part of them; which, the number of commits says: each in its turn",
+    )
     options = parser.parse_args()
     built = (options.build / "steadystep.elf").stat().st_mtime
     newer = [
@@ -474,8 +488,7 @@ def main():
     ]
     for mutant in MUTANTS:  # run or not
         place_of(mutant, options.root)
-    if options.one_per_file:
-        chosen = list({mutant.file: mutant for mutant in reversed(chosen)}.values())
+    chosen = chosen[commits(options.root) % options.one_of :: options.one_of]
     caught = 0
     with ThreadPoolExecutor(max_workers=2) as pool:
         for mutant, (right, happened) in zip(

@@ -31,6 +31,7 @@ add_test(NAME board.run
 set(one_motor ${PROJECT_BINARY_DIR}/one-motor)
 add_image_variant(one-motor ${one_motor} one_motor
   COMMAND ${host_build}/tests/stm32g071_run ${one_motor}/steadystep.elf)
+set_tests_properties(board.one-motor PROPERTIES LABELS full)
 add_test(NAME board.disturbances
   COMMAND ${host_build}/tests/stm32g071_disturbances $<TARGET_FILE:steadystep>)
 set_tests_properties(

@@ -4,6 +4,7 @@
 usage: dependencies.py ROOT         exit 1 and one line file:line per violation
        dependencies.py --self-test ROOT   plants violations in a copy and expects each to be found
 """
+import functools
 import pathlib
 import re
 import shutil
@@ -77,18 +78,21 @@ NUMBER_FORMAT = re.compile(r"\b(STEADYSTEP_NUM|NUM_FLOAT|NUM_FIXED|NUM_DOUBLE)\b
 COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
 
 
-def code_lines(path):
-    """Numbered lines of a source without its comments."""
-    text = path.read_text(encoding="utf-8")
+@functools.cache  # the self-test reads each source many times
+def matches(pattern, text):
+    """(line, match) for each line of a source that the pattern matches, comments left out."""
     text = COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match.group()), text)
-    return enumerate(text.splitlines(), start=1)
+    found = ((number, pattern.search(line)) for number, line in enumerate(text.splitlines(), start=1))
+    return [(number, match) for number, match in found if match]
+
+
+def matches_in(path, pattern):
+    return matches(pattern, path.read_text(encoding="utf-8"))
 
 
 def includes(path):
-    for number, line in code_lines(path):
-        match = INCLUDE.match(line)
-        if match:
-            yield number, match.group(1) == '"', match.group(2)
+    for number, match in matches_in(path, INCLUDE):
+        yield number, match.group(1) == '"', match.group(2)
 
 
 def exposed(root, header, found=None):
@@ -129,10 +133,8 @@ def check_file(root, name, board_exposes):
                   or "board.h's" in allowed and target in board_exposes):
             yield number, f'{module} must not include "{target}"'
     if not name.startswith("firmware/numeric/"):
-        for number, line in code_lines(root / name):
-            match = NUMBER_FORMAT.search(line)
-            if match:
-                yield number, f"{match.group()} is tested for in firmware/numeric/ and nowhere else"
+        for number, match in matches_in(root / name, NUMBER_FORMAT):
+            yield number, f"{match.group()} is tested for in firmware/numeric/ and nowhere else"
 
 
 def violations(root):

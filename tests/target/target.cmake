@@ -33,7 +33,7 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
   # Closed loops, too, whose motor is doubles, and designs, of which each takes a second.
   list(FILTER unit_tests EXCLUDE REGEX
     "test_(capture|drive_laws|drive_faults|drive_standstill|designed_anew|hold_bearing|law_gains|version_gains|version_run)\\.c$")
-  # Likewise; moreover this core has no board with an encoder. The M4F's is left to --full.
+  # Likewise; moreover this core has no board with an encoder.
   if(STEADYSTEP_CORE STREQUAL m0plus)
     list(FILTER unit_tests EXCLUDE REGEX "test_encoder_alignment\\.c$")
   endif()
@@ -43,8 +43,8 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
   set(large_tests application axis axis_motion axis_stream axis_torque can_bus canopen cia402 console machine_io modbus node pdo resets sdo
     setting_lines settings_in_motion settings_record torque_constant)
   # In fixed point each test runs on one core: the M4F has the long ones, the M0+ all others.
-  # Arithmetic, which knows the core, runs on both. The replays run the code of some of the long ones:
-  # those are left to tools/test --full.
+  # Arithmetic, which knows the core, runs on both. The long ones in fixed point are left to
+  # tools/test --full: in float they run, and the replays run their code.
   set(long_tests "application|axis|axis_motion|axis_stream|axis_torque|can_bus|canopen|cia402|console|machine_io|modbus|node|pdo|resets|sdo|setting_lines|settings_in_motion|settings_record|torque_constant|initial_position|invariant_ekf|motion|sliding_mode")
   if(STEADYSTEP_CORE STREQUAL m0plus)
     list(FILTER unit_tests EXCLUDE REGEX "test_(${long_tests})\\.c$")
@@ -73,15 +73,14 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
     add_test(NAME target.unit.${name}.${numeric} COMMAND ${target})
     set(labels target)
     set(timeout_s 120)
-    if((name MATCHES "^(invariant_ekf|motion|sliding_mode)$" AND numeric STREQUAL fixed)
-       OR name MATCHES "^(axis|encoder_alignment)$")
+    # Closed loops, ten seconds to minutes under QEMU: the replays run the code of most.
+    if(name MATCHES "^(axis|axis_motion|axis_stream|drive|encoder_alignment|initial_position|invariant_ekf|motion|offset_calibration|sliding_mode|thermal_watch|torque_constant|torque_mode)$"
+       OR (STEADYSTEP_CORE STREQUAL m4f AND numeric STREQUAL fixed AND name MATCHES "^(${long_tests})$"))
       list(APPEND labels full)
-      set(timeout_s 600) # closed loops: minutes under QEMU
-    elseif(name MATCHES "^(axis_motion|initial_position|thermal_watch)$" AND numeric STREQUAL float)
-      list(APPEND labels full) # ten seconds each; in fixed point they run
-    elseif(name STREQUAL invariant_ekf
-           OR (STEADYSTEP_CORE STREQUAL m0plus AND name MATCHES "^(drive|torque_mode)$"))
-      list(APPEND labels full) # ten to thirty seconds; the replays run the same code
+      set(timeout_s 600)
+      if(NOT STEADYSTEP_FULL_TESTS)
+        set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
+      endif()
     endif()
     set_tests_properties(target.unit.${name}.${numeric}
       PROPERTIES LABELS "${labels}" TIMEOUT ${timeout_s})
@@ -111,7 +110,8 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
       COMMAND ${PROJECT_SOURCE_DIR}/tools/longest_path --executed
               $<TARGET_FILE:replay_${case}_${numeric}>)
     set(labels target)
-    if(NOT case STREQUAL references) # which leaves nothing out
+    if(NOT (case STREQUAL references # which leaves nothing out
+            AND STEADYSTEP_CORE STREQUAL "m4f" AND numeric STREQUAL float))
       list(APPEND labels full)
     endif()
     set_tests_properties(target.longest-path.${case}.${numeric}
