@@ -149,12 +149,15 @@ static bool design_hold(struct drive *drive, const struct drive_settings *settin
     return true;
 }
 
+/* In supply / Km: no motor drives itself that fast, and its square still fits (numeric/num.h). */
+static const double speed_in_range = 4.0;
+
 /* Sampling ends what the model can follow: a quarter of an electrical turn in a period. A law
    without current control ends before; what is given beyond its limit it refuses itself. */
 static double speed_limit(const struct drive_settings *settings, const struct per_unit *base)
 {
     const double wanted = settings->speed_limit_rad_s;
-    const double limit = 0.24 / base->turns_per_period * base->speed_rad_s;
+    const double limit = smaller(speed_in_range, 0.24 / base->turns_per_period) * base->speed_rad_s;
 
     if (settings->law == POSITION_LAW_STMMS &&
         wanted == default_speed_limit_rad_s(&settings->motor)) {

@@ -67,8 +67,8 @@ bool rotor_watch_winding_denies(const struct rotor_winding *winding, num_t margi
 {
     const struct phases i = winding->current;
     const num_t off = num_abs(i.a - winding->expected.a) + num_abs(i.b - winding->expected.b);
-    const num_t of_currents = num_mul_wide(winding->resistance + num_abs(winding->reactance),
-                                           num_abs(i.a) + num_abs(i.b));
+    const num_t of_currents =
+        num_mul(winding->resistance + num_abs(winding->reactance), num_abs(i.a) + num_abs(i.b));
     const num_t unsure = num_half(of_currents + num_abs(winding->speed));
 
     return off > num_mul_coef(margin + unsure, winding->rate);

@@ -18,7 +18,7 @@ void winding_heat_look(struct winding_heat *winding, struct phases current)
     for (int i = 0; i < 2; i++) {
         const num_t factor = num_headroom(phase[i], CURRENT_MAX);
 
-        winding->sum[i] += num_mul_unit(num_mul_wide(factor, factor), UNIT(1.0 / WINDING_LOOKS));
+        winding->sum[i] += num_mul_unit(num_mul(factor, factor), UNIT(1.0 / WINDING_LOOKS));
     }
     winding->looks++;
 }

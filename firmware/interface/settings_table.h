@@ -81,7 +81,7 @@
          "the board measures")                                                                     \
     REAL(0x2122, speed_limit_rad_s, "rad/s", FIXED(0.1), FIXED(1e4), COMPUTED, AT_ENABLE,          \
          "an estimate beyond it opens the bridge: 1.3 x supply / Km, of a law without current "    \
-         "control N w L / R = 4, cut to 0.24 electrical turn per period")                          \
+         "control N w L / R = 4, cut to 0.24 electrical turn per period and 4 x supply / Km")      \
     REAL(0x2123, following_error_rad, "rad", FIXED(0.0), FIXED(100.0), FOLLOWS, AT_ENABLE,         \
          "with an encoder a rotor that is further from its reference, and not coming back, opens " \
          "the bridge: 1 electrical turn, with microstepping 0, which is not watched; cut to 14")   \

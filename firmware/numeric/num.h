@@ -18,17 +18,13 @@
  *
  * A number must never leave -32...32. Factors are limited before their product (num_headroom), with
  * limits that follow from the gains at start-up; a gain that leaves none is refused there.
- * How that is shown: in preset sil-sanitize, with STEADYSTEP_TRAP_HEADROOM, each sum, product,
- * shift and conversion is checked, and the first result that does not fit ends the program. The
- * sanitizer checks plain operators. What converts a long product to 32 bits it cannot see: that
- * states its own condition, NUM_HEADROOM. Under these checks run tests/unit/test_headroom.c, every
- * law in motion, with a load and with samples at their ends, and the experiments of the test
- * headroom. So it is a proof by test: of the values that occur there, not of every value. Not
- * checked are angles and num_add_around, which are meant to go round. One condition belongs to the
- * Cortex-M0+: of the second factor of num_mul 16 bits count there, -2...2. With a larger one its
- * product may be 2^-8 off the other cores' (num_mul_wide is not). A current stays below as long as
- * the overcurrent trip is at most twice the rated current, by default 1.8 times; with a wider trip
- * the decoupling of the current control may see a larger one.
+ * How that is shown: preset sil-sanitize checks each sum, product, shift and conversion, and the
+ * first result that does not fit ends the program. The sanitizer checks plain operators. What
+ * converts a long product to 32 bits it cannot see: that states its own condition, NUM_HEADROOM.
+ * Under these checks run all unit tests, among them tests/unit/test_headroom.c, every law in
+ * motion, with a load and with samples at their ends, and the experiments of the test headroom. So
+ * it is a proof by test: of the values that occur there, not of every value. Not checked are angles
+ * and num_add_around, which are meant to go round.
  */
 #ifndef STEADYSTEP_NUM_H
 #define STEADYSTEP_NUM_H
@@ -74,10 +70,7 @@ typedef struct {
 
 /*
  * What must hold of factors and product. Where it does not, STEADYSTEP_CHECK_HEADROOM is evaluated:
- * the option STEADYSTEP_TRAP_HEADROOM defines it as a trap, test_num.c counts. In any other build
- * it is nothing. What traps today: the unit tests initial_position and modulator (fixed) and
- * headroom (one_motor, at a trip of twice the rated current), of which it is open whether a motor
- * has such inputs; and the paper's filter where it diverges (steady_state_ekf).
+ * preset sil-sanitize defines it as a trap, test_num.c counts. In any other build it is nothing.
  */
 #ifdef STEADYSTEP_CHECK_HEADROOM
 #define NUM_HEADROOM(holds) ((holds) ? (void)0 : (void)(STEADYSTEP_CHECK_HEADROOM))
@@ -86,7 +79,7 @@ typedef struct {
 #endif
 #define NUM_IS_32_BITS(x) ((x) >= INT32_MIN && (x) <= INT32_MAX)
 #define NUM_IS_17_BITS(x) ((x) >= -65536 && (x) <= 65535)
-#define NUM_IS_16_BITS(x) ((x) >= INT16_MIN && (x) <= INT16_MAX)
+#define NUM_IS_FACTOR(x)  ((x) >= -131072 && (x) <= 131072)
 
 /* floor(a m / 2^16) */
 static inline int32_t num_mul_high16(int32_t a, int16_t m)
@@ -206,17 +199,17 @@ static inline num_t num_mul_coef_nearest(num_t a, coef_t k)
 }
 
 /*
- * The product of two run-time quantities. The second counts with 16 bits, -2...2 with a resolution
- * of 6e-5: floor(a floor(2^14 b) / 2^14).
+ * The product of two run-time quantities. The second counts with a resolution of 6e-5, and within
+ * -8...8: floor(a floor(2^14 b) / 2^14).
  */
 static inline num_t num_mul(num_t a, num_t b)
 {
     const int32_t factor = b >> (NUM_FRACTION_BITS - 14);
 
-    NUM_HEADROOM(NUM_IS_32_BITS(((int64_t)a * factor) >> 14) && NUM_IS_16_BITS(factor));
+    NUM_HEADROOM(NUM_IS_32_BITS(((int64_t)a * factor) >> 14) && NUM_IS_FACTOR(factor));
 #if defined(__ARM_ARCH_6M__)
-    return num_shift_left((a >> 16) * factor, 2) +
-           ((int32_t)(((uint32_t)a & 0xffffu) * (uint32_t)factor) >> 14);
+    return (num_t)((uint32_t)(a >> 14) * (uint32_t)factor +
+                   (uint32_t)(((a & 0x3fff) * factor) >> 14));
 #else
     return (num_t)(((int64_t)a * factor) >> 14);
 #endif
@@ -227,27 +220,13 @@ static inline num_t num_mul_nearest(num_t a, num_t b)
 {
     const int32_t factor = b >> (NUM_FRACTION_BITS - 14);
 
-    NUM_HEADROOM(NUM_IS_32_BITS(((int64_t)a * factor + 0x2000) >> 14) && NUM_IS_16_BITS(factor));
+    NUM_HEADROOM(NUM_IS_32_BITS(((int64_t)a * factor + 0x2000) >> 14) && NUM_IS_FACTOR(factor));
 #if defined(__ARM_ARCH_6M__)
-    return num_shift_left((a >> 16) * factor, 2) +
-           ((int32_t)(((uint32_t)a & 0xffffu) * (uint32_t)factor + 0x2000u) >> 14);
+    return (num_t)((uint32_t)(a >> 14) * (uint32_t)factor +
+                   (uint32_t)(((a & 0x3fff) * factor + 0x2000) >> 14));
 #else
     return (num_t)(((int64_t)a * factor + 0x2000) >> 14);
 #endif
-}
-
-/* num_mul of any second factor: beyond -2...2 a Cortex-M0+ takes a long product. */
-static inline num_t num_mul_wide(num_t a, num_t b)
-{
-    const int32_t factor = b >> (NUM_FRACTION_BITS - 14);
-
-    NUM_HEADROOM(NUM_IS_32_BITS(((int64_t)a * factor) >> 14));
-#if defined(__ARM_ARCH_6M__)
-    if (!RARE(!NUM_IS_16_BITS(factor))) {
-        return num_mul(a, b);
-    }
-#endif
-    return (num_t)(((int64_t)a * factor) >> 14);
 }
 
 static inline unit_t unit_mul(unit_t a, unit_t b)
@@ -368,11 +347,6 @@ static inline num_t num_mul(num_t a, num_t b)
 }
 
 static inline num_t num_mul_nearest(num_t a, num_t b)
-{
-    return a * b;
-}
-
-static inline num_t num_mul_wide(num_t a, num_t b)
 {
     return a * b;
 }

@@ -2,8 +2,7 @@
  * Whatever the converters and the encoder say, at rest and in motion, no number leaves its format:
  * a drive that goes to the ends of its speed and its torque, and whose samples jump between the
  * ends of what its protection lets pass. What overflows is found in fixed point by preset
- * sil-sanitize, what a cast keeps from it with STEADYSTEP_TRAP_HEADROOM too (numeric/num.h); the
- * rest is found by any build.
+ * sil-sanitize, which traps it (numeric/num.h); the rest is found by any build.
  */
 #include "tests/unit/drive_bench.h"
 #include "tests/unit/emulated.h"

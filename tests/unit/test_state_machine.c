@@ -690,6 +690,19 @@ static void test_no_limit_lets_the_speed_pass_what_the_sampling_can_follow(void)
     TEST_ASSERT_TRUE(trips_at(-305.0));
 }
 
+/* Four times supply / Km, whose square is half of what fixed point bears. */
+static void test_no_limit_lets_the_speed_pass_what_its_square_can_bear(void)
+{
+    settings.speed_limit_rad_s = 1000.0;
+    settings.motor.torque_constant_Nm_A *= 3.0;
+    const double most = 4.0 * settings.motor.supply_V / settings.motor.torque_constant_Nm_A;
+
+    TEST_ASSERT_TRUE(most < 290.0);
+    TEST_ASSERT_FALSE(trips_at(0.98 * most));
+    TEST_ASSERT_TRUE(trips_at(1.02 * most));
+    TEST_ASSERT_TRUE(trips_at(-1.02 * most));
+}
+
 #if STEADYSTEP_NUM != NUM_FIXED
 static void test_an_estimate_that_is_not_finite_opens_the_bridge_in_the_same_period(void)
 {
@@ -1126,6 +1139,7 @@ int main(void)
     RUN_TEST(test_a_disabled_drive_needs_no_supply);
     RUN_TEST(test_an_estimate_out_of_range_opens_the_bridge_in_the_same_period);
     RUN_TEST(test_no_limit_lets_the_speed_pass_what_the_sampling_can_follow);
+    RUN_TEST(test_no_limit_lets_the_speed_pass_what_its_square_can_bear);
 #if STEADYSTEP_NUM != NUM_FIXED
     RUN_TEST(test_an_estimate_that_is_not_finite_opens_the_bridge_in_the_same_period);
 #endif
