@@ -17,8 +17,9 @@ struct offset_calibration_params offset_calibration_design(const struct hal_fact
     const double drop_V = motor->resistance_ohm * facts->current_A_per_code;
 
     return (struct offset_calibration_params){
-        .delay = {whole(delay_codes * OFFSET_SAMPLES), -1},
-        .shift_max = {whole(shift_codes * OFFSET_SAMPLES), INT32_MAX},
+        .settling_samples = whole(OFFSET_SETTLING_S / facts->control_period_s + 0.5),
+        .delay = whole(delay_codes * OFFSET_SAMPLES),
+        .shift_max = whole(shift_codes * OFFSET_SAMPLES),
         .deviation_max = whole(OFFSET_DEVIATION_CODES_MAX * finer * OFFSET_SAMPLES),
         .drop = coef_from_double(drop_V / base->voltage_V * NUM_CODE_SCALE),
         .drop_resistance = num_from_double(motor->resistance_ohm / base->resistance_ohm),
@@ -67,9 +68,9 @@ static void add(struct offset_calibration *calibration, const int32_t code[OFFSE
 }
 
 /* Whether what a channel has read is that of a sensor. Leaves the sum that counts, and after stage
-   1 what stage 2 is compared with. */
+   1 what stage 2 is compared with: a voltage may differ by anything, and takes stage 2. */
 static bool judge(struct offset_channel *channel, const struct offset_calibration_params *params,
-                  int kind, bool bridge_on)
+                  bool is_current, bool bridge_on)
 {
     if (magnitude(channel->sum) > OFFSET_CODES_MAX * OFFSET_SAMPLES) {
         return false;
@@ -78,10 +79,11 @@ static bool judge(struct offset_channel *channel, const struct offset_calibratio
         const int32_t difference = channel->sum - channel->sum_off;
         const int32_t shift = magnitude(difference);
 
-        if (shift > params->shift_max[kind] || channel->deviation > channel->deviation_max) {
+        if ((is_current && shift > params->shift_max) ||
+            channel->deviation > channel->deviation_max) {
             return false;
         }
-        if (shift > params->delay[kind]) {
+        if (!is_current || shift > params->delay) {
             return true;
         }
         channel->sum = channel->sum_off;
@@ -98,13 +100,13 @@ static bool end_stage(struct offset_calibration *calibration,
                       const struct offset_calibration_params *params)
 {
     for (int n = 0; n < OFFSET_CHANNELS; n++) {
-        if (!judge(&calibration->channel[n], params, n / 2, calibration->bridge_on)) {
+        if (!judge(&calibration->channel[n], params, n < 2, calibration->bridge_on)) {
             return false;
         }
     }
     if (!calibration->bridge_on) {
         calibration->bridge_on = true;
-        calibration->samples = -OFFSET_SETTLING_SAMPLES;
+        calibration->samples = -params->settling_samples;
     }
     return true;
 }

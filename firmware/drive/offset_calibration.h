@@ -30,9 +30,8 @@
 /* An offset above this many codes is a defect, not an offset. */
 #define OFFSET_CODES_MAX 64
 
-/* Of stage 2 until amplifiers, filters of the legs and the slowest windings have settled: 20 ms at
-   10 kHz, 10 ms at 20 kHz. */
-#define OFFSET_SETTLING_SAMPLES 200
+/* Of stage 2 until amplifiers, filters of the legs and the slowest windings have settled. */
+#define OFFSET_SETTLING_S 0.02
 
 /* Codes of 12 bits: what the switching may shift a current's offset by, beside what flows, and how
    far the samples of stage 2 may lie from those of its beginning, in the mean, beside twice as far
@@ -43,13 +42,14 @@
 enum {
     OFFSET_CHANNELS = 4,
     OFFSET_REFERENCE_SAMPLES = OFFSET_SAMPLES / 8, /* the beginning of a stage */
-    OFFSET_PERIODS = 2 * OFFSET_SAMPLES + OFFSET_SETTLING_SAMPLES + 1, /* of both stages */
+    OFFSET_PERIODS = 2 * OFFSET_SAMPLES + 200 + 1, /* of both stages, at 10 kHz */
 };
 
 struct offset_calibration_params {
-    /* of sums of codes between the stages; of a current, of a voltage */
-    int32_t delay[2];      /* what the delay between two legs explains; below 0: nothing */
-    int32_t shift_max[2];  /* what a sensor's offset may differ by */
+    int32_t settling_samples;
+    /* of sums of codes of a current, between the stages */
+    int32_t delay;         /* what the delay between two legs explains */
+    int32_t shift_max;     /* what a sensor's offset may differ by */
     int32_t deviation_max; /* sum of magnitudes */
     coef_t drop;           /* voltage at the winding's resistance, per code of current */
     num_t drop_resistance;

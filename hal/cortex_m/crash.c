@@ -10,7 +10,6 @@
 enum {
     RECORD_VALID = 0x57ec0de5,
     STARTS_IN_A_ROW = 3, /* that may fail before the board stays off */
-    START_DONE = 1000,   /* control period from which a crash is none of the start */
     FRAME_WORDS = 8,     /* r0...r3, r12, lr, pc, xpsr */
 };
 
@@ -221,9 +220,9 @@ _Noreturn void crash_report(void)
     }
 }
 
-void crash_watch_start(void)
+void crash_watch_start(uint32_t start_periods)
 {
-    if (port_control_period() - START_DONE < PORT_NOT_STARTED / 2) {
+    if (port_control_period() - start_periods < PORT_NOT_STARTED / 2) {
         record.failures = 0;
     }
 }

@@ -7,6 +7,7 @@
 #define STEADYSTEP_CORTEX_M_CRASH_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #include STEADYSTEP_FAULTS
 
@@ -31,8 +32,12 @@ const char *crash_start_cause(void);
 bool crash_stays_off(void);
 /* Says why, once a second, to whoever listens, for ever; gates and pins are the caller's. */
 _Noreturn void crash_report(void);
-/* From the background, all the time: once the start has succeeded, failures in a row count anew. */
-void crash_watch_start(void);
+/* What a start takes, of control. */
+enum { CRASH_START_us = 100000 };
+
+/* From the background, all the time: behind so many control periods the start has succeeded, and
+   failures in a row count anew. */
+void crash_watch_start(uint32_t start_periods);
 
 /* Handler of the core's faults and of any other exception that nothing handles. */
 void crash_exception(void);

@@ -10,6 +10,7 @@
 #include "hal/cortex_m/serial_line.h"
 #include "hal/cortex_m/unpack.h"
 #include "hal/stm32g071/bridge.h"
+#include "hal/stm32g071/board.h"
 #include "hal/stm32g071/clock.h"
 #include "hal/stm32g071/control_interrupt.h"
 #include "hal/stm32g071/converter.h"
@@ -72,7 +73,7 @@ int main(void)
     bridge_guard_start();
     watchdog_start();
     for (;;) {
-        crash_watch_start();
+        crash_watch_start(CRASH_START_us / CONTROL_PERIOD_us);
         application_background(&application);
         __WFI();
     }

@@ -6,6 +6,7 @@
 #include "hal/cortex_m/linker.h"
 #include "hal/cortex_m/serial_line.h"
 #include "hal/cortex_m/unpack.h"
+#include "hal/stm32g474/board.h"
 #include "hal/stm32g474/clock.h"
 #include "hal/stm32g474/control_interrupt.h"
 #include "hal/stm32g474/current_sampling.h"
@@ -101,7 +102,7 @@ int main(void)
     watchdog_start();
     pins_led(1);
     for (;;) {
-        crash_watch_start();
+        crash_watch_start(CRASH_START_us / CONTROL_PERIOD_us);
         application_background(&application);
         (void)serial_line_write(0, 0);
         __WFI();

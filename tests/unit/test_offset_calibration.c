@@ -328,18 +328,27 @@ static void test_a_shift_passes_up_to_its_limit_and_not_beyond(void)
 {
     for (int channel = 0; channel < 2; channel++) {
         setUp();
-        const int kind = 0; /* currents: a voltage may differ by anything */
-        const int limit = params.shift_max[kind] / OFFSET_SAMPLES;
+        const int limit = params.shift_max / OFFSET_SAMPLES;
 
         world.more_on[channel] = limit;
         TEST_ASSERT_EQUAL(OFFSETS_FOUND, calibrate());
-        params.shift_max[kind] = limit * OFFSET_SAMPLES;
+        params.shift_max = limit * OFFSET_SAMPLES;
         TEST_ASSERT_EQUAL(OFFSETS_FOUND, calibrate());
         world.more_on[channel] = -limit;
         TEST_ASSERT_EQUAL(OFFSETS_FOUND, calibrate());
-        params.shift_max[kind] -= 1;
+        params.shift_max -= 1;
         TEST_ASSERT_EQUAL(OFFSETS_OUT_OF_RANGE, calibrate());
     }
+}
+
+static void test_what_settles_takes_as_long_at_any_rate(void)
+{
+    struct hal_facts faster = bench_facts;
+
+    faster.control_period_s = PERIOD_S / 2.0;
+    params = offset_calibration_design(&faster, &small_motor, &base);
+    TEST_ASSERT_EQUAL(OFFSETS_FOUND, calibrate());
+    TEST_ASSERT_EQUAL_INT(OFFSET_PERIODS + 200, periods);
 }
 
 int main(void)
@@ -359,5 +368,6 @@ int main(void)
     RUN_TEST(test_noise_alone_is_no_rotor_that_turns);
     RUN_TEST(test_finer_converters_have_as_many_more_codes);
     RUN_TEST(test_a_shift_passes_up_to_its_limit_and_not_beyond);
+    RUN_TEST(test_what_settles_takes_as_long_at_any_rate);
     return UNITY_END();
 }
