@@ -15,10 +15,13 @@
 #define LAG_S             12.8e-3  /* a fault carries the estimate away within less */
 #define GAP_PERIODS       14u      /* of one voltage, as it was at the look */
 #define PUSHED_MAX        NUM(1.0) /* twice the rated current */
-#define VOLTAGE_ERROR     0.05     /* of the supply */
+#define MISSED            3u
+#define PUSHED_SUSPECT    NUM(0.25)
+#define VOLTAGE_ERROR     0.05 /* of the supply */
 #define COUNTS_ERROR      2.0
 #define RESISTANCE_ERROR  NUM(0.6)   /* what a winding that warms up or is not known may have */
 #define CURRENT_DEVIATION NUM(0.075) /* of twice the rated current */
+#define CURRENT_GONE      NUM(0.1)
 #define CURRENT_MIN       NUM(0.025)
 #define FAST_TURNS        NUM(0.0625)
 
@@ -50,6 +53,11 @@ static bool stands(uint16_t at, uint16_t code, const struct phase_watch_params *
     return away <= (int)params->noise_codes && -away <= (int)params->noise_codes;
 }
 
+static uint8_t counted(uint8_t count)
+{
+    return count < UINT8_MAX ? (uint8_t)(count + 1u) : count;
+}
+
 _Static_assert(DRIVE_FAULT_OPEN_PHASE_A + 1 == (int)DRIVE_FAULT_OPEN_PHASE_B &&
                    DRIVE_FAULT_CURRENT_SENSOR_A + 1 == (int)DRIVE_FAULT_CURRENT_SENSOR_B,
                "phase b behind phase a");
@@ -60,23 +68,42 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
 {
     const uint32_t passed = look->period - watch->period;
     enum drive_fault fault = DRIVE_FAULT_NONE;
+    num_t furthest = NUM(0.0);
 
     watch->period = look->period;
+    watch->suspected = DRIVE_FAULT_NONE;
     for (int phase = 0; phase < 2; phase++) {
+        const uint8_t name = (uint8_t)((look->flows[phase] ? DRIVE_FAULT_CURRENT_SENSOR_A
+                                                           : DRIVE_FAULT_OPEN_PHASE_A) +
+                                       phase);
+        const num_t wanted = look->wanted[phase];
+        const bool is_gone = look->held && !look->flows[phase] && num_abs(wanted) > CURRENT_GONE;
+
         if (passed > GAP_PERIODS || !stands(watch->code[phase], look->code[phase], params)) {
             watch->code[phase] = look->code[phase];
+            watch->wanted[phase] = wanted;
             watch->looks[phase] = 0;
+            watch->missed[phase] = 0;
             watch->pushed[phase] = NUM(0.0);
-            continue;
+        } else {
+            for (uint32_t k = 0; k < passed && num_abs(watch->pushed[phase]) <= PUSHED_MAX; k++) {
+                watch->pushed[phase] += look->push[phase];
+            }
+            watch->looks[phase] = counted(watch->looks[phase]);
+            if (num_abs(wanted - watch->wanted[phase]) > CURRENT_MIN) {
+                watch->missed[phase] = counted(watch->missed[phase]);
+            } else if (watch->missed[phase] > 0u) {
+                watch->missed[phase]--;
+            }
         }
-        for (uint32_t k = 0; k < passed && num_abs(watch->pushed[phase]) <= PUSHED_MAX; k++) {
-            watch->pushed[phase] += look->push[phase];
+        if ((is_gone || watch->missed[phase] >= MISSED ||
+             num_abs(watch->pushed[phase]) > PUSHED_SUSPECT) &&
+            look->off[phase] >= furthest) {
+            furthest = look->off[phase];
+            watch->suspected = name;
         }
-        watch->looks[phase]++;
         if (watch->looks[phase] >= LOOKS && num_abs(watch->pushed[phase]) > PUSHED_MAX) {
-            fault = (enum drive_fault)((int)(look->flows[phase] ? DRIVE_FAULT_CURRENT_SENSOR_A
-                                                                : DRIVE_FAULT_OPEN_PHASE_A) +
-                                       phase);
+            fault = (enum drive_fault)name;
         }
     }
     return fault;
@@ -100,17 +127,22 @@ static num_t push(const struct drive *drive, num_t current, num_t voltage, num_t
     return left < NUM(0.0) && phase_watch_chatters(drive) ? -size : size;
 }
 
-/* What is measured, in the frame of the control. */
-static bool follows(const struct drive *drive, struct phases current)
+/* What is measured, in the frame of the control; a voltage law has no reference of it. */
+static bool follows(const struct drive *drive, struct phase_look *look, struct phases current)
 {
     const struct sincos frame = drive->hold.active
                                     ? drive->hold.frame
                                     : sincos_of(drive->estimator.estimate.rotor.position.fraction);
-    const struct dq now = park(current, frame);
+    const struct phases wanted = inverse_park(drive->current_reference, frame);
 
-    return !(position_law_gives_voltage(drive->params.position_law) && !drive->hold.active) &&
-           num_abs(drive->current_reference.d - now.d) < CURRENT_DEVIATION &&
-           num_abs(drive->current_reference.q - now.q) < CURRENT_DEVIATION;
+    if (position_law_gives_voltage(drive->params.position_law) && !drive->hold.active) {
+        return false;
+    }
+    look->wanted[0] = wanted.a;
+    look->wanted[1] = wanted.b;
+    look->off[0] = num_abs(wanted.a - current.a);
+    look->off[1] = num_abs(wanted.b - current.b);
+    return look->off[0] < CURRENT_DEVIATION && look->off[1] < CURRENT_DEVIATION;
 }
 
 /* Against the voltage of S(k+1)...S(k+2). Without an encoder of the reference, as far beside it as
@@ -151,7 +183,7 @@ static void look_at(struct phase_look *look, const struct drive *drive)
         measurement_current(&drive->measurement, &drive->params.measurement, code_a, code_b);
     const struct phases emf = back_emf(drive);
     const struct actuation *actuation = &drive->actuation;
-    const bool follow = follows(drive, current);
+    const bool follow = follows(drive, look, current);
 
     look->code[0] = code_a;
     look->code[1] = code_b;
@@ -162,6 +194,7 @@ static void look_at(struct phase_look *look, const struct drive *drive)
     look->larger = num_abs(current.b) > num_abs(current.a);
     look->flows[0] = num_abs(current.a) > CURRENT_MIN;
     look->flows[1] = num_abs(current.b) > CURRENT_MIN;
+    look->held = drive->hold.active;
 }
 
 /* A hold whose winding shows a resistance that none has: its current is not what is measured. */
@@ -198,8 +231,11 @@ void phase_watch_background(struct drive *drive)
     struct phase_look look = {.period = interrupt_view_period(drive)};
     enum drive_fault fault;
 
+    if (interrupt_view_state(drive) != DRIVE_OPERATION_ENABLED) {
+        drive->phase_watch.suspected = DRIVE_FAULT_NONE;
+        return;
+    }
     if (look.period - drive->phase_watch.period < interval(drive) ||
-        interrupt_view_state(drive) != DRIVE_OPERATION_ENABLED ||
         has_zero_delay(&drive->params.path)) {
         return;
     }

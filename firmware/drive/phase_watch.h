@@ -20,6 +20,13 @@
  * In a hold a stuck sensor lets the true current drift away, and the resistance that is found with
  * it: at the end of its range it is the sensor of the larger current.
  *
+ * Before that is certain, the rotor may have left the estimate or a comparator have tripped. So it
+ * is suspected before, and what else ends the operation and may come of it goes by its name
+ * (state_machine.c). Signs: a quarter of that push; three looks in which a current stands while its
+ * reference has gone away by 5 % of the rated current; in a hold, a phase without a current of
+ * which 20 % of the rated are asked for. A voltage law has no such reference. Of two phases it is
+ * the one that is further off.
+ *
  * In the background, by four looks at least; behind fourteen periods that it does not come to it
  * begins anew.
  */
@@ -39,20 +46,26 @@ struct phase_watch_params {
 
 /* Of phase a, then b. */
 struct phase_watch {
-    uint32_t period;  /* looked at last */
-    uint16_t code[2]; /* at which the current stands */
-    uint8_t looks[2]; /* that have found it there */
-    int32_t lag;      /* of the estimate behind the reference of late, 2^-32 turns */
-    num_t pushed[2];  /* by how much its voltage would have changed it since */
+    uint32_t period;   /* looked at last */
+    uint16_t code[2];  /* at which the current stands */
+    uint8_t looks[2];  /* that have found it there */
+    uint8_t missed[2]; /* in which its reference was elsewhere, less the others since */
+    uint8_t suspected; /* fault: what another one comes of */
+    int32_t lag;       /* of the estimate behind the reference of late, 2^-32 turns */
+    num_t wanted[2];   /* current, when it came to stand there */
+    num_t pushed[2];   /* by how much its voltage would have changed it since */
 };
 
 /* What is seen of both in a period. */
 struct phase_look {
     uint32_t period;
     uint16_t code[2];
-    num_t push[2]; /* by how much the voltage would change the current in each period, at least */
-    bool flows[2]; /* there is a current worth the name */
-    bool larger;   /* the phase of the larger one */
+    num_t push[2];   /* by how much the voltage would change the current in each period, at least */
+    bool flows[2];   /* there is a current worth the name */
+    num_t wanted[2]; /* current; by a voltage law 0 */
+    num_t off[2];    /* by how much the current is another one */
+    bool held;
+    bool larger; /* the phase of the larger one */
 };
 
 struct drive;

@@ -152,9 +152,19 @@ __attribute__((noinline)) static void disable(struct drive *drive)
     enter(drive, DRIVE_SWITCH_ON_DISABLED);
 }
 
+/* What a phase that carries another current than is measured comes to. */
+#define COMES_OF_PHASE                                                                             \
+    (1u << DRIVE_FAULT_OVERCURRENT | 1u << DRIVE_FAULT_HARDWARE_OVERCURRENT |                      \
+     1u << DRIVE_FAULT_ESTIMATE_RANGE | 1u << DRIVE_FAULT_LOST_SYNCHRONISM |                       \
+     1u << DRIVE_FAULT_STALLED | 1u << DRIVE_FAULT_FOLLOWING_ERROR)
+
 /* Apart: rare. */
 __attribute__((noinline)) static void enter_fault(struct drive *drive, enum drive_fault fault)
 {
+    if ((COMES_OF_PHASE >> fault & 1u) != 0u &&
+        drive->phase_watch.suspected != (uint8_t)DRIVE_FAULT_NONE) {
+        fault = (enum drive_fault)drive->phase_watch.suspected;
+    }
     axis_note_bridge_off(drive, fault);
     drive->supervision.fault = fault;
     command_queue_look_next(&drive->commands); /* nothing waits for a rest any more */

@@ -1,6 +1,7 @@
 /* What breaks in a drive, in closed loop: which fault says so, and how soon. */
 #include <stdio.h>
 
+#include "firmware/drive/state_machine.h"
 #include "tests/unit/drive_bench.h"
 
 enum breakage {
@@ -292,6 +293,55 @@ static void test_a_policy_warns_or_looks_away_instead(void)
     TEST_ASSERT_EQUAL_INT(DRIVE_POSITION_ASSUMED, drive.axis.reference);
 }
 
+/* Their rotor leaves the estimate before the currents are enough by themselves. */
+static void test_a_phase_that_breaks_at_rest_is_named_and_not_what_comes_of_it(void)
+{
+    static const struct {
+        enum breakage what;
+        double move_rad;
+        const char *fault;
+    } rows[] = {
+        {LEAD_A, 0.0, "open-phase-a"},
+        {SENSOR_A, 15.0, "current-sensor-a"},
+    };
+
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
+        enable();
+        run(2000);
+        break_it(rows[i].what);
+        if (rows[i].move_rad > 0.0) {
+            run(1000);
+            move(rows[i].move_rad, 0.75);
+        }
+        (void)periods_until_fault();
+        TEST_ASSERT_EQUAL_STRING(rows[i].fault, drive_fault_name(drive.supervision.fault));
+    }
+}
+
+static void test_what_a_phase_cannot_cause_keeps_its_name(void)
+{
+    static const enum drive_fault causes[] = {
+        DRIVE_FAULT_OVERCURRENT,    DRIVE_FAULT_HARDWARE_OVERCURRENT,
+        DRIVE_FAULT_ESTIMATE_RANGE, DRIVE_FAULT_LOST_SYNCHRONISM,
+        DRIVE_FAULT_STALLED,        DRIVE_FAULT_FOLLOWING_ERROR,
+    };
+
+    for (int fault = 1; fault < DRIVE_FAULTS; fault++) {
+        bool caused = false;
+
+        for (size_t i = 0; i < sizeof causes / sizeof causes[0]; i++) {
+            caused = caused || causes[i] == (enum drive_fault)fault;
+        }
+        drive.phase_watch.suspected = DRIVE_FAULT_CURRENT_SENSOR_B;
+        state_machine_fault(&drive, (enum drive_fault)fault);
+        TEST_ASSERT_EQUAL_INT(caused ? (int)DRIVE_FAULT_CURRENT_SENSOR_B : fault,
+                              drive.supervision.fault);
+        phase_watch_background(&drive);
+        TEST_ASSERT_EQUAL_INT(DRIVE_FAULT_NONE, drive.phase_watch.suspected);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -303,5 +353,7 @@ int main(void)
     RUN_TEST(test_a_rotor_that_is_pressed_against_a_stop_is_no_fault_of_the_encoder);
     RUN_TEST(test_a_sound_drive_says_nothing);
     RUN_TEST(test_a_policy_warns_or_looks_away_instead);
+    RUN_TEST(test_a_phase_that_breaks_at_rest_is_named_and_not_what_comes_of_it);
+    RUN_TEST(test_what_a_phase_cannot_cause_keeps_its_name);
     return UNITY_END();
 }

@@ -162,6 +162,90 @@ static void test_what_passes_for_noise(void)
     TEST_ASSERT_NUM_WITHIN(1e-4, 0.05 + counts, design(DRIVE_FEEDBACK_ENCODER).voltage_error);
 }
 
+static const char *suspected(void)
+{
+    return drive_fault_name((enum drive_fault)watch.suspected);
+}
+
+/* A look every fourth period, with this much of the current that is asked for of phase b. */
+static void look_behind(num_t wanted)
+{
+    look.period += 4u;
+    look.wanted[1] = wanted;
+    TEST_ASSERT_EQUAL_INT(DRIVE_FAULT_NONE, phase_watch_step(&watch, &params, &look));
+}
+
+static void test_a_current_that_stands_while_another_is_asked_for_is_suspected(void)
+{
+    look.flows[1] = true;
+    look_behind(NUM(0.3));
+    for (int n = 0; n < 100; n++) { /* 5 % of the rated current, no more */
+        look_behind(n % 2 == 0 ? NUM(0.3249) : NUM(0.2751));
+    }
+    TEST_ASSERT_EQUAL_STRING("none", suspected());
+    look_behind(NUM(0.3251));
+    look_behind(NUM(0.3251));
+    TEST_ASSERT_EQUAL_STRING("none", suspected());
+    look_behind(NUM(0.3251));
+    TEST_ASSERT_EQUAL_STRING("current-sensor-b", suspected());
+    look_behind(NUM(0.3251));
+    look_behind(NUM(0.3)); /* it may have come back meanwhile */
+    TEST_ASSERT_EQUAL_STRING("current-sensor-b", suspected());
+    look_behind(NUM(0.3));
+    TEST_ASSERT_EQUAL_STRING("none", suspected());
+    look.code[1] = (uint16_t)(ZERO + params.noise_codes + 1u); /* it moves */
+    look_behind(NUM(0.3251));
+    look_behind(NUM(0.3251));
+    TEST_ASSERT_EQUAL_STRING("none", suspected());
+}
+
+/* What a hold asks for is there, but for a lead that is not. */
+static void test_a_hold_whose_current_is_gone_is_suspected_at_once(void)
+{
+    look.held = true;
+    look_behind(NUM(0.099));
+    TEST_ASSERT_EQUAL_STRING("none", suspected());
+    look_behind(NUM(0.101));
+    TEST_ASSERT_EQUAL_STRING("open-phase-b", suspected());
+    look.flows[1] = true;
+    look_behind(NUM(0.101));
+    TEST_ASSERT_EQUAL_STRING("none", suspected());
+    look.held = look.flows[1] = false;
+    look_behind(NUM(0.101));
+    TEST_ASSERT_EQUAL_STRING("none", suspected());
+}
+
+/* The other answers what it does to the rotor. */
+static void test_of_two_phases_the_one_that_is_further_off_is_suspected(void)
+{
+    for (int furthest = 0; furthest < 2; furthest++) {
+        look.held = true;
+        look.wanted[0] = NUM(0.2);
+        look.off[furthest] = NUM(0.3);
+        look.off[1 - furthest] = NUM(0.2);
+        look_behind(NUM(0.2));
+        TEST_ASSERT_EQUAL_STRING(furthest == 0 ? "open-phase-a" : "open-phase-b", suspected());
+    }
+}
+
+static void test_a_quarter_of_the_push_is_enough_for_a_suspicion(void)
+{
+    look.push[0] = NUM(0.0626);
+    look_behind(NUM(0.0));
+    TEST_ASSERT_EQUAL_STRING("none", suspected());
+    look_behind(NUM(0.0));
+    TEST_ASSERT_EQUAL_STRING("open-phase-a", suspected());
+}
+
+/* A count that wraps would be a look that begins. */
+static void test_what_stands_for_long_goes_on_standing(void)
+{
+    for (int n = 0; n < 300; n++) {
+        look_behind(NUM(0.0));
+    }
+    TEST_ASSERT_EQUAL_UINT8(UINT8_MAX, watch.looks[0]);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -173,5 +257,10 @@ int main(void)
     RUN_TEST(test_pushes_to_and_fro_cancel);
     RUN_TEST(test_a_background_that_was_busy_begins_anew);
     RUN_TEST(test_what_passes_for_noise);
+    RUN_TEST(test_a_current_that_stands_while_another_is_asked_for_is_suspected);
+    RUN_TEST(test_a_hold_whose_current_is_gone_is_suspected_at_once);
+    RUN_TEST(test_of_two_phases_the_one_that_is_further_off_is_suspected);
+    RUN_TEST(test_a_quarter_of_the_push_is_enough_for_a_suspicion);
+    RUN_TEST(test_what_stands_for_long_goes_on_standing);
     return UNITY_END();
 }
