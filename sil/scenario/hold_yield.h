@@ -37,6 +37,12 @@ class HoldYield : public RowReader
     void read(const Record &record, const Row &row) override;
     std::optional<double> yield_rad() const; /* of the rows read */
 
+    /* Of the hold as it is designed; no value with an encoder, or of a motor that is refused. */
+    const std::optional<drive_hold_bearing> &bearing() const
+    {
+        return bearing_;
+    }
+
   private:
     const Scenario &scenario_;
     std::optional<drive_hold_bearing> bearing_;

@@ -222,6 +222,8 @@ Json summary(const Result &result)
     json["cpu_s"] = result.cpu_s;
     json["blind_below_rad_s"] = result.blind_below_rad_s ? Json(*result.blind_below_rad_s) : Json();
     json["hold_yield_rad"] = result.hold_yield_rad ? Json(*result.hold_yield_rad) : Json();
+    json["hold_torque_Nm"] = result.hold_torque_Nm ? Json(*result.hold_torque_Nm) : Json();
+    json["hold_heat_W"] = result.hold_heat_W ? Json(*result.hold_heat_W) : Json();
     json["trace_hash"] = hexadecimal(result.trace_hash);
     json["drive_hash"] = hexadecimal(result.drive_hash);
     json["metrics"]["move"] = window_json(result.move);

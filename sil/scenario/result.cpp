@@ -209,6 +209,10 @@ Result execute(const Scenario &scenario, const firmware_image &image, std::uint6
     result.serial = run.serial;
     result.blind_below_rad_s = run.blind_below_rad_s;
     result.hold_yield_rad = hold_yield.yield_rad();
+    if (hold_yield.bearing()) {
+        result.hold_torque_Nm = hold_yield.bearing()->torque_Nm;
+        result.hold_heat_W = hold_yield.bearing()->heat_W;
+    }
     result.trace_hash = record.hash();
     result.drive_hash = run.drive_hash;
     result.simulated_s =

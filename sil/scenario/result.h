@@ -41,6 +41,8 @@ struct Result {
     /* Of a run whose reference creeps where the drive is blind: the speed below which it is. */
     std::optional<double> blind_below_rad_s;
     std::optional<double> hold_yield_rad;            /* by how much its hold yields at most */
+    std::optional<double> hold_torque_Nm;            /* lasting load that its hold bears */
+    std::optional<double> hold_heat_W;               /* of the winding in it */
     std::string serial;                              /* transcript of the serial line */
     std::optional<virtual_board::BoardReport> board; /* of an image on the virtual board */
 

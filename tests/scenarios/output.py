@@ -52,6 +52,8 @@ def files_are_complete(folder):
     CHECKS.that(summary["expectations"] == [{"metric": "fault", "window": "all", "equals": "none",
                                              "value": "none", "passed": True}],
                 f"expectations: {summary['expectations']}")
+    CHECKS.that(abs(summary["hold_torque_Nm"] - 0.471) < 1e-9 and abs(summary["hold_heat_W"] - 3.33) < 1e-9,
+                f"the hold bears {summary['hold_torque_Nm']} N m for {summary['hold_heat_W']} W")
     CHECKS.that(len(summary["trace_hash"]) == 16 and int(summary["trace_hash"], 16) > 0,
                 "a trace hash of 64 bits")
 
