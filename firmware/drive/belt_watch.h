@@ -48,9 +48,9 @@ struct belt_watch {
 
 struct drive;
 
-/* Of a drive whose settings follow from these, `given`. */
+/* Of a drive whose settings follow from these. */
 __attribute__((cold)) void belt_watch_design(struct drive *drive,
-                                             const struct drive_settings *given);
+                                             const struct drive_settings *settings);
 
 /* Whether `value` has turned often enough. */
 bool belt_watch_swings(struct belt_watch *watch, num_t value, uint32_t period);

@@ -26,7 +26,7 @@ WRITERS = {
                "inductance"],
     "belt_watch": ["belt_watch"],
     "torque_constant": ["torque_constant"],
-    "settings": ["drive", "settings_in_motion"],
+    "settings": ["drive", "settings_in_motion", "belt_watch"],
     "supervision": ["state_machine"],
     "axis": ["axis"],
     "synchronism": ["synchronism", "settings_in_motion"],
