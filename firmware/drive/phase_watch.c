@@ -16,7 +16,6 @@
 #define GAP_PERIODS       14u      /* of one voltage, as it was at the look */
 #define PUSHED_MAX        NUM(1.0) /* twice the rated current */
 #define MISSED            3u
-#define PUSHED_SUSPECT    NUM(0.25)
 #define VOLTAGE_ERROR     0.05 /* of the supply */
 #define COUNTS_ERROR      2.0
 #define RESISTANCE_ERROR  NUM(0.6)   /* what a winding that warms up or is not known may have */
@@ -96,9 +95,7 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
                 watch->missed[phase]--;
             }
         }
-        if ((is_gone || watch->missed[phase] >= MISSED ||
-             num_abs(watch->pushed[phase]) > PUSHED_SUSPECT) &&
-            look->off[phase] >= furthest) {
+        if ((is_gone || watch->missed[phase] >= MISSED) && look->off[phase] >= furthest) {
             furthest = look->off[phase];
             watch->suspected = name;
         }
@@ -194,7 +191,7 @@ static void look_at(struct phase_look *look, const struct drive *drive)
     look->larger = num_abs(current.b) > num_abs(current.a);
     look->flows[0] = num_abs(current.a) > CURRENT_MIN;
     look->flows[1] = num_abs(current.b) > CURRENT_MIN;
-    look->held = drive->hold.active;
+    look->held = drive->hold.active && !drive->hold.leads;
 }
 
 /* A hold whose winding shows a resistance that none has: its current is not what is measured. */

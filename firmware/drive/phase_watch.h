@@ -22,10 +22,10 @@
  *
  * Before that is certain, the rotor may have left the estimate or a comparator have tripped. So it
  * is suspected before, and what else ends the operation and may come of it goes by its name
- * (state_machine.c). Signs: a quarter of that push; three looks in which a current stands while its
- * reference has gone away by 5 % of the rated current; in a hold, a phase without a current of
- * which 20 % of the rated are asked for. A voltage law has no such reference. Of two phases it is
- * the one that is further off.
+ * (state_machine.c). Signs: three looks in which a current stands while its
+ * reference has gone away by 5 % of the rated current; in a hold at rest, a phase without a current
+ * of which 20 % of the rated are asked for. A voltage law has no such reference. Of two phases it
+ * is the one that is further off.
  *
  * In the background, by four looks at least; behind fourteen periods that it does not come to it
  * begins anew.

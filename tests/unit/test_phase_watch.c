@@ -228,15 +228,6 @@ static void test_of_two_phases_the_one_that_is_further_off_is_suspected(void)
     }
 }
 
-static void test_a_quarter_of_the_push_is_enough_for_a_suspicion(void)
-{
-    look.push[0] = NUM(0.0626);
-    look_behind(NUM(0.0));
-    TEST_ASSERT_EQUAL_STRING("none", suspected());
-    look_behind(NUM(0.0));
-    TEST_ASSERT_EQUAL_STRING("open-phase-a", suspected());
-}
-
 /* A count that wraps would be a look that begins. */
 static void test_what_stands_for_long_goes_on_standing(void)
 {
@@ -260,7 +251,6 @@ int main(void)
     RUN_TEST(test_a_current_that_stands_while_another_is_asked_for_is_suspected);
     RUN_TEST(test_a_hold_whose_current_is_gone_is_suspected_at_once);
     RUN_TEST(test_of_two_phases_the_one_that_is_further_off_is_suspected);
-    RUN_TEST(test_a_quarter_of_the_push_is_enough_for_a_suspicion);
     RUN_TEST(test_what_stands_for_long_goes_on_standing);
     return UNITY_END();
 }
