@@ -21,13 +21,8 @@
 #define STEADYSTEP_MACHINE_IO_H
 
 #include "firmware/interface/drive_interface.h"
+#include "firmware/interface/parts_carried.h"
 #include "hal/hal.h"
-
-#ifdef STEADYSTEP_WITHOUT_MACHINE_IO
-enum { MACHINE_IO_CARRIED = 0 };
-#else
-enum { MACHINE_IO_CARRIED = 1 };
-#endif
 
 struct application;
 

@@ -13,14 +13,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/interface/parts_carried.h"
 #include "firmware/numeric/num.h"
-
-/* An image that has no room for it goes by the settings. */
-#ifdef STEADYSTEP_WITHOUT_INDUCTANCE
-enum { FINDS_INDUCTANCE = 0 };
-#else
-enum { FINDS_INDUCTANCE = 1 };
-#endif
 
 /* What a sound motor has less or more than its settings. */
 #define INDUCTANCE_LESS_MAX 0.35

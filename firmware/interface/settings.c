@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "firmware/design/refusal.h"
+#include "firmware/interface/parts_carried.h"
 
 #define VALUE_FIXED(value) (value)
 #define VALUE_RATED(share) (share)
@@ -194,14 +195,27 @@ static double in_base(const struct drive_settings *settings, double value, unsig
     return base == SETTING_RATED ? value * settings->motor.rated_current_A : value;
 }
 
+/* Of a part that this image does not carry: it stays as it is preset. */
+static bool is_left_out(const struct setting *setting)
+{
+#define IS(member) (setting->offset == offsetof(struct drive_settings, member))
+    return (!FINDS_INDUCTANCE && IS(identify_inductance)) ||
+           (!LINK_CARRIED && (IS(node_id) || IS(modbus_rtu))) ||
+           (!MACHINE_IO_CARRIED &&
+            (IS(inputs_used) || IS(inputs_low) || IS(outputs_low) || IS(holding_brake_s)));
+#undef IS
+}
+
 double setting_least(const struct drive_settings *settings, const struct setting *setting)
 {
-    return in_base(settings, setting->least, setting->least_base);
+    return in_base(settings, is_left_out(setting) ? setting->preset : setting->least,
+                   setting->least_base);
 }
 
 double setting_most(const struct drive_settings *settings, const struct setting *setting)
 {
-    return in_base(settings, setting->most, setting->most_base);
+    return in_base(settings, is_left_out(setting) ? setting->preset : setting->most,
+                   setting->most_base);
 }
 
 void settings_put_presets(struct drive_settings *settings)

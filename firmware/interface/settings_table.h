@@ -147,7 +147,7 @@
     FLAG(0x214c, balance_phases, true, AT_ENABLE,                                                  \
          "step of enabling without an encoder, behind the hold: the ratio of the phases, half a "  \
          "full step away and back")                                                                \
-    FLAG(0x214f, identify_inductance, true, AT_ENABLE,                                             \
+    FLAG(0x214f, identify_inductance, FINDS_INDUCTANCE, AT_ENABLE,                                 \
          "with balance_phases: the motor's inductance, of swings of the hold current")             \
     FLAG(0x2142, hold_at_rest, true, AT_ENABLE, "d-axis current at rest; with an encoder false")   \
     FLAG(                                                                                          \

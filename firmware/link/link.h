@@ -20,12 +20,6 @@
 #include "firmware/link/pdo.h"
 #include "firmware/link/sdo.h"
 
-#ifdef STEADYSTEP_WITHOUT_LINK
-enum { LINK_CARRIED = 0 };
-#else
-enum { LINK_CARRIED = 1 };
-#endif
-
 /* States of the node, by the numbers of its heartbeat. */
 enum link_nmt { LINK_STOPPED = 0x04, LINK_OPERATIONAL = 0x05, LINK_PRE_OPERATIONAL = 0x7f };
 

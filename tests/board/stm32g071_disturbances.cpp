@@ -259,6 +259,7 @@ void settings_with_encoder(const ElfImage &image)
     drive_settings stored;
     drive_settings_default(&stored, &stm32g071::motor);
     stored.motor.rated_current_A = 2.5;
+    stored.identify_inductance = false; /* of this machine's firmware, not of the image */
     {
         Powered run(image, &stored);
         run.run_for(1000 * ms);
@@ -273,6 +274,23 @@ void settings_with_encoder(const ElfImage &image)
                count(text, "not in force: encoder_counts_per_turn: this board reads none, "
                            "expected 0") == 1,
            "stored settings that ask for an encoder are refused");
+}
+
+/* What the image has no part for: hal/stm32g071/CMakeLists.txt. */
+void settings_of_parts_left_out(const ElfImage &image)
+{
+    Powered run(image);
+    run.run_for(start_time);
+    for (const char *set :
+         {"identify_inductance true", "node_id 2", "modbus_rtu true", "inputs_used 8",
+          "inputs_low 1", "outputs_low 1", "holding_brake_s 0.5"}) {
+        const std::string line = std::string("set ") + set,
+                          name = line.substr(4, line.find(' ', 4) - 4);
+        const std::string text = run.type(line + "\n", 40 * ms);
+        expect(count(text, "error: " + name) == 1, ("refused by name: " + line).c_str());
+    }
+    expect(count(run.type("set identify_inductance false\n", 40 * ms), "ok set") == 1,
+           "what it is without the part is no error");
 }
 
 /* hal/stm32g071/CMakeLists.txt, default_laws. */
@@ -338,6 +356,7 @@ int main(int argc, char **argv)
         settings_act(image);
         settings_with_encoder(image);
         laws_are_listed(image);
+        settings_of_parts_left_out(image);
         program_leaves_memory(image);
         bus_is_braked(image);
     } catch (const std::exception &error) {

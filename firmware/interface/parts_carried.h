@@ -1,0 +1,28 @@
+/*
+ * Which parts an image carries. A build may leave some out, STEADYSTEP_WITHOUT_..., for which its
+ * controller has no room. The settings of what is left out keep the value without it; any other is
+ * refused by name.
+ */
+#ifndef STEADYSTEP_PARTS_CARRIED_H
+#define STEADYSTEP_PARTS_CARRIED_H
+
+#ifdef STEADYSTEP_WITHOUT_LINK
+enum { LINK_CARRIED = 0 };
+#else
+enum { LINK_CARRIED = 1 };
+#endif
+
+#ifdef STEADYSTEP_WITHOUT_MACHINE_IO
+enum { MACHINE_IO_CARRIED = 0 };
+#else
+enum { MACHINE_IO_CARRIED = 1 };
+#endif
+
+/* Without it the settings' inductance is in force. */
+#ifdef STEADYSTEP_WITHOUT_INDUCTANCE
+enum { FINDS_INDUCTANCE = 0 };
+#else
+enum { FINDS_INDUCTANCE = 1 };
+#endif
+
+#endif
