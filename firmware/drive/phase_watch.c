@@ -106,6 +106,11 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
     return fault;
 }
 
+void phase_watch_forget(struct phase_watch *watch)
+{
+    watch->suspected = DRIVE_FAULT_NONE;
+}
+
 bool phase_watch_chatters(const struct drive *drive)
 {
     const enum position_law law = drive->params.position_law;
@@ -229,7 +234,7 @@ void phase_watch_background(struct drive *drive)
     enum drive_fault fault;
 
     if (interrupt_view_state(drive) != DRIVE_OPERATION_ENABLED) {
-        drive->phase_watch.suspected = DRIVE_FAULT_NONE;
+        phase_watch_forget(&drive->phase_watch);
         return;
     }
     if (look.period - drive->phase_watch.period < interval(drive) ||

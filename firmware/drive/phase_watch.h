@@ -79,6 +79,9 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
                                   const struct phase_watch_params *params,
                                   const struct phase_look *look);
 
+/* Outside operation nothing is suspected. */
+void phase_watch_forget(struct phase_watch *watch);
+
 /* Background: looks at a drive in operation, every fourth period or so. */
 void phase_watch_background(struct drive *drive);
 
