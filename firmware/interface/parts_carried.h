@@ -1,6 +1,6 @@
 /*
- * Which parts an image carries. A build may leave some out, STEADYSTEP_WITHOUT_..., for which its
- * controller has no room. The settings of what is left out keep the value without it; any other is
+ * Which parts an image carries. A build may leave out some that do not fit its controller,
+ * STEADYSTEP_WITHOUT_.... The settings of what is left out keep the value without it; any other is
  * refused by name.
  */
 #ifndef STEADYSTEP_PARTS_CARRIED_H
