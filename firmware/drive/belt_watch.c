@@ -76,7 +76,7 @@ static void narrow_law(struct drive *drive)
     union position_law_params law = drive->params.law;
     char error[DRIVE_ERROR_TEXT];
 
-    drive->belt_watch.narrowings--;
+    drive->belt_watch.narrowings = (drive->belt_watch.narrowings - 1u) & 3u;
     drive->settings.law_bandwidth_rad_s *= NARROWER;
     if (law_design(drive, &drive->settings, &law, error)) {
         hal_defer_interrupts(drive->board, true);

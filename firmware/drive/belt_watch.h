@@ -35,15 +35,15 @@ enum { WATCHES_BELT = 1 };
 #endif
 
 struct belt_watch {
-    uint32_t turned;    /* period in which what is watched did last */
-    num_t extreme;      /* of it since */
-    num_t swing;        /* h */
-    uint16_t latest;    /* periods from turn to turn, a quarter of them at least */
-    uint8_t swings;     /* on end */
-    uint8_t narrowings; /* of the law that are left */
-    bool falls;
-    bool widened; /* the current loop is as wide as it may be: the current is watched */
-    bool watches;
+    uint32_t turned;        /* period in which what is watched did last */
+    num_t extreme;          /* of it since */
+    num_t swing;            /* h */
+    uint16_t latest;        /* periods from turn to turn, a quarter of them at least */
+    uint8_t swings;         /* on end */
+    uint8_t narrowings : 2; /* of the law that are left */
+    bool falls : 1;
+    bool widened : 1; /* the current loop is as wide as it may be: the current is watched */
+    bool watches : 1;
 };
 
 struct drive;

@@ -52,9 +52,10 @@ static bool stands(uint16_t at, uint16_t code, const struct phase_watch_params *
     return away <= (int)params->noise_codes && -away <= (int)params->noise_codes;
 }
 
+/* One more, of four bits. */
 static uint8_t counted(uint8_t count)
 {
-    return count < UINT8_MAX ? (uint8_t)(count + 1u) : count;
+    return count < 15u ? (uint8_t)(count + 1u) : count;
 }
 
 _Static_assert(DRIVE_FAULT_OPEN_PHASE_A + 1 == (int)DRIVE_FAULT_OPEN_PHASE_B &&
@@ -81,25 +82,25 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
         if (passed > GAP_PERIODS || !stands(watch->code[phase], look->code[phase], params)) {
             watch->code[phase] = look->code[phase];
             watch->wanted[phase] = wanted;
-            watch->looks[phase] = 0;
-            watch->missed[phase] = 0;
+            watch->count[phase].looks = 0;
+            watch->count[phase].missed = 0;
             watch->pushed[phase] = NUM(0.0);
         } else {
             for (uint32_t k = 0; k < passed && num_abs(watch->pushed[phase]) <= PUSHED_MAX; k++) {
                 watch->pushed[phase] += look->push[phase];
             }
-            watch->looks[phase] = counted(watch->looks[phase]);
+            watch->count[phase].looks = counted(watch->count[phase].looks) & 15u;
             if (num_abs(wanted - watch->wanted[phase]) > CURRENT_MIN) {
-                watch->missed[phase] = counted(watch->missed[phase]);
-            } else if (watch->missed[phase] > 0u) {
-                watch->missed[phase]--;
+                watch->count[phase].missed = counted(watch->count[phase].missed) & 15u;
+            } else if (watch->count[phase].missed > 0u) {
+                watch->count[phase].missed = (watch->count[phase].missed - 1u) & 15u;
             }
         }
-        if ((is_gone || watch->missed[phase] >= MISSED) && look->off[phase] >= furthest) {
+        if ((is_gone || watch->count[phase].missed >= MISSED) && look->off[phase] >= furthest) {
             furthest = look->off[phase];
             watch->suspected = name;
         }
-        if (watch->looks[phase] >= LOOKS && num_abs(watch->pushed[phase]) > PUSHED_MAX) {
+        if (watch->count[phase].looks >= LOOKS && num_abs(watch->pushed[phase]) > PUSHED_MAX) {
             fault = (enum drive_fault)name;
         }
     }

@@ -46,10 +46,12 @@ struct phase_watch_params {
 
 /* Of phase a, then b. */
 struct phase_watch {
-    uint32_t period;   /* looked at last */
-    uint16_t code[2];  /* at which the current stands */
-    uint8_t looks[2];  /* that have found it there */
-    uint8_t missed[2]; /* in which its reference was elsewhere, less the others since */
+    uint32_t period;  /* looked at last */
+    uint16_t code[2]; /* at which the current stands */
+    struct {
+        uint8_t looks : 4;  /* that have found it there */
+        uint8_t missed : 4; /* in which its reference was elsewhere, less the others since */
+    } count[2];
     uint8_t suspected; /* fault: what another one comes of */
     int32_t lag;       /* of the estimate behind the reference of late, 2^-32 turns */
     num_t wanted[2];   /* current, when it came to stand there */

@@ -114,9 +114,10 @@ static bool is_pushed(const struct drive *drive, num_t error)
 /* A current that stands is no rotor's: its phase or its sensor is another watch's. */
 static bool currents_move(const struct drive *drive)
 {
-    const uint8_t *looks = drive->phase_watch.looks;
+    const struct phase_watch *watch = &drive->phase_watch;
 
-    return looks[0] < STANDS && looks[1] < STANDS && !phase_watch_chatters(drive);
+    return watch->count[0].looks < STANDS && watch->count[1].looks < STANDS &&
+           !phase_watch_chatters(drive);
 }
 
 static bool winding_denies(struct drive *drive, uint32_t period)

@@ -687,7 +687,7 @@ MUTANTS = [
     Mutant(DRIVE + "phase_watch.c", "phase_watch", "a_background_that_was_busy_begins_anew",
            "passed > GAP_PERIODS", "false"),
     Mutant(DRIVE + "phase_watch.c", "phase_watch", "four_looks_at_least_find_it_standing",
-           "watch->looks[phase] >= LOOKS", "true"),
+           "watch->count[phase].looks >= LOOKS", "true"),
     Mutant(DRIVE + "belt_watch.c", "belt_watch", "slower_quicker_and_smaller_ones_are_none",
            "4u * since >= watch->latest && since", "since"),
     Mutant(DRIVE + "belt_watch.c", "belt_watch", "a_few_cycles_are_none",
