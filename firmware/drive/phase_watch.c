@@ -62,6 +62,38 @@ _Static_assert(DRIVE_FAULT_OPEN_PHASE_A + 1 == (int)DRIVE_FAULT_OPEN_PHASE_B &&
                    DRIVE_FAULT_CURRENT_SENSOR_A + 1 == (int)DRIVE_FAULT_CURRENT_SENSOR_B,
                "phase b behind phase a");
 
+/* Whether the current stands where it did; else it begins anew. */
+static bool goes_on(struct phase_watch *watch, const struct phase_watch_params *params,
+                    const struct phase_look *look, int phase, uint32_t passed)
+{
+    if (passed <= GAP_PERIODS && stands(watch->code[phase], look->code[phase], params)) {
+        return true;
+    }
+    watch->code[phase] = look->code[phase];
+    watch->wanted[phase] = look->wanted[phase];
+    watch->count[phase].looks = 0;
+    watch->count[phase].missed = 0;
+    watch->pushed[phase] = NUM(0.0);
+    return false;
+}
+
+static void count_look(struct phase_watch *watch, const struct phase_look *look, int phase,
+                       uint32_t passed)
+{
+    const num_t away = num_abs(look->wanted[phase] - watch->wanted[phase]);
+    const uint8_t missed = watch->count[phase].missed;
+
+    for (uint32_t k = 0; k < passed && num_abs(watch->pushed[phase]) <= PUSHED_MAX; k++) {
+        watch->pushed[phase] += look->push[phase];
+    }
+    watch->count[phase].looks = counted(watch->count[phase].looks) & 15u;
+    if (away > CURRENT_MIN) {
+        watch->count[phase].missed = counted(missed) & 15u;
+    } else if (missed > 0u) {
+        watch->count[phase].missed = (missed - 1u) & 15u;
+    }
+}
+
 enum drive_fault phase_watch_step(struct phase_watch *watch,
                                   const struct phase_watch_params *params,
                                   const struct phase_look *look)
@@ -76,25 +108,11 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
         const uint8_t name = (uint8_t)((look->flows[phase] ? DRIVE_FAULT_CURRENT_SENSOR_A
                                                            : DRIVE_FAULT_OPEN_PHASE_A) +
                                        phase);
-        const num_t wanted = look->wanted[phase];
-        const bool is_gone = look->held && !look->flows[phase] && num_abs(wanted) > CURRENT_GONE;
+        const bool is_gone =
+            look->held && !look->flows[phase] && num_abs(look->wanted[phase]) > CURRENT_GONE;
 
-        if (passed > GAP_PERIODS || !stands(watch->code[phase], look->code[phase], params)) {
-            watch->code[phase] = look->code[phase];
-            watch->wanted[phase] = wanted;
-            watch->count[phase].looks = 0;
-            watch->count[phase].missed = 0;
-            watch->pushed[phase] = NUM(0.0);
-        } else {
-            for (uint32_t k = 0; k < passed && num_abs(watch->pushed[phase]) <= PUSHED_MAX; k++) {
-                watch->pushed[phase] += look->push[phase];
-            }
-            watch->count[phase].looks = counted(watch->count[phase].looks) & 15u;
-            if (num_abs(wanted - watch->wanted[phase]) > CURRENT_MIN) {
-                watch->count[phase].missed = counted(watch->count[phase].missed) & 15u;
-            } else if (watch->count[phase].missed > 0u) {
-                watch->count[phase].missed = (watch->count[phase].missed - 1u) & 15u;
-            }
+        if (goes_on(watch, params, look, phase, passed)) {
+            count_look(watch, look, phase, passed);
         }
         if ((is_gone || watch->count[phase].missed >= MISSED) && look->off[phase] >= furthest) {
             furthest = look->off[phase];

@@ -158,12 +158,20 @@ __attribute__((noinline)) static void disable(struct drive *drive)
      1u << DRIVE_FAULT_ESTIMATE_RANGE | 1u << DRIVE_FAULT_LOST_SYNCHRONISM |                       \
      1u << DRIVE_FAULT_STALLED | 1u << DRIVE_FAULT_FOLLOWING_ERROR)
 
+/* Too much current is none of a phase that is open; of a sensor stuck at zero it may be. */
+static bool comes_of(enum drive_fault suspected, enum drive_fault fault)
+{
+    return suspected != DRIVE_FAULT_NONE && (COMES_OF_PHASE >> fault & 1u) != 0u &&
+           (fault > DRIVE_FAULT_HARDWARE_OVERCURRENT || suspected >= DRIVE_FAULT_CURRENT_SENSOR_A);
+}
+
 /* Apart: rare. */
 __attribute__((noinline)) static void enter_fault(struct drive *drive, enum drive_fault fault)
 {
-    if ((COMES_OF_PHASE >> fault & 1u) != 0u &&
-        drive->phase_watch.suspected != (uint8_t)DRIVE_FAULT_NONE) {
-        fault = (enum drive_fault)drive->phase_watch.suspected;
+    const enum drive_fault suspected = (enum drive_fault)drive->phase_watch.suspected;
+
+    if (comes_of(suspected, fault)) {
+        fault = suspected;
     }
     axis_note_bridge_off(drive, fault);
     drive->supervision.fault = fault;
