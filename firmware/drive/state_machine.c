@@ -152,11 +152,12 @@ __attribute__((noinline)) static void disable(struct drive *drive)
     enter(drive, DRIVE_SWITCH_ON_DISABLED);
 }
 
-/* What a phase that carries another current than is measured comes to. */
+/* What a phase that carries another current than is measured comes to. Not a stall, which is a
+   load's as a rule: currents stand then, too. */
 #define COMES_OF_PHASE                                                                             \
     (1u << DRIVE_FAULT_OVERCURRENT | 1u << DRIVE_FAULT_HARDWARE_OVERCURRENT |                      \
      1u << DRIVE_FAULT_ESTIMATE_RANGE | 1u << DRIVE_FAULT_LOST_SYNCHRONISM |                       \
-     1u << DRIVE_FAULT_STALLED | 1u << DRIVE_FAULT_FOLLOWING_ERROR)
+     1u << DRIVE_FAULT_FOLLOWING_ERROR)
 
 /* Too much current is none of a phase that is open; of a sensor stuck at zero it may be. */
 static bool comes_of(enum drive_fault suspected, enum drive_fault fault)

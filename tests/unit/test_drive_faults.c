@@ -322,9 +322,8 @@ static void test_a_phase_that_breaks_at_rest_is_named_and_not_what_comes_of_it(v
 static void test_what_a_phase_cannot_cause_keeps_its_name(void)
 {
     static const enum drive_fault causes[] = {
-        DRIVE_FAULT_OVERCURRENT,    DRIVE_FAULT_HARDWARE_OVERCURRENT,
-        DRIVE_FAULT_ESTIMATE_RANGE, DRIVE_FAULT_LOST_SYNCHRONISM,
-        DRIVE_FAULT_STALLED,        DRIVE_FAULT_FOLLOWING_ERROR,
+        DRIVE_FAULT_OVERCURRENT,      DRIVE_FAULT_HARDWARE_OVERCURRENT, DRIVE_FAULT_ESTIMATE_RANGE,
+        DRIVE_FAULT_LOST_SYNCHRONISM, DRIVE_FAULT_FOLLOWING_ERROR,
     };
 
     for (int fault = 1; fault < DRIVE_FAULTS; fault++) {
@@ -342,6 +341,15 @@ static void test_what_a_phase_cannot_cause_keeps_its_name(void)
     }
 }
 
+static void test_too_much_current_is_none_of_an_open_phase(void)
+{
+    for (int fault = DRIVE_FAULT_OVERCURRENT; fault <= DRIVE_FAULT_HARDWARE_OVERCURRENT; fault++) {
+        drive.phase_watch.suspected = DRIVE_FAULT_OPEN_PHASE_A;
+        state_machine_fault(&drive, (enum drive_fault)fault);
+        TEST_ASSERT_EQUAL_INT(fault, drive.supervision.fault);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -355,5 +363,6 @@ int main(void)
     RUN_TEST(test_a_policy_warns_or_looks_away_instead);
     RUN_TEST(test_a_phase_that_breaks_at_rest_is_named_and_not_what_comes_of_it);
     RUN_TEST(test_what_a_phase_cannot_cause_keeps_its_name);
+    RUN_TEST(test_too_much_current_is_none_of_an_open_phase);
     return UNITY_END();
 }
