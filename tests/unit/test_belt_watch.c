@@ -104,8 +104,8 @@ static double law_behind_a_swing(double share, uint32_t periods, double given_ra
 
 static void test_a_law_whose_current_swings_has_half_its_bandwidth_then_a_quarter(void)
 {
-    TEST_ASSERT_EQUAL_DOUBLE(0.5, law_behind_a_swing(0.3, 400u, NAN, false));
-    TEST_ASSERT_EQUAL_DOUBLE(0.25, law_behind_a_swing(0.3, 4000u, NAN, false));
+    TEST_ASSERT_EQUAL_DOUBLE(0.5, law_behind_a_swing(0.3, 400u, __builtin_nan(""), false));
+    TEST_ASSERT_EQUAL_DOUBLE(0.25, law_behind_a_swing(0.3, 4000u, __builtin_nan(""), false));
 }
 
 static void test_a_law_keeps_the_bandwidth_that_is_given(void)
@@ -115,8 +115,8 @@ static void test_a_law_keeps_the_bandwidth_that_is_given(void)
 
 static void test_neither_a_hold_nor_the_ripple_of_a_detent_torque_weakens_the_law(void)
 {
-    TEST_ASSERT_EQUAL_DOUBLE(1.0, law_behind_a_swing(0.9, 4000u, NAN, true));
-    TEST_ASSERT_EQUAL_DOUBLE(1.0, law_behind_a_swing(0.2, 4000u, NAN, false));
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, law_behind_a_swing(0.9, 4000u, __builtin_nan(""), true));
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, law_behind_a_swing(0.2, 4000u, __builtin_nan(""), false));
 }
 
 int main(void)
