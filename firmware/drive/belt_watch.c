@@ -82,6 +82,8 @@ static void narrow_law(struct drive *drive)
         hal_defer_interrupts(drive->board, true);
         drive->params.law = law;
         hal_defer_interrupts(drive->board, false);
+    } else {
+        drive->settings.law_bandwidth_rad_s /= NARROWER; /* what is shown is in force */
     }
 }
 

@@ -25,14 +25,8 @@
 #include <stdint.h>
 
 #include "firmware/interface/drive_interface.h"
+#include "firmware/interface/parts_carried.h"
 #include "firmware/numeric/num.h"
-
-/* An image that has no room for it keeps its current loop as it is. */
-#ifdef STEADYSTEP_WITHOUT_BELT_WATCH
-enum { WATCHES_BELT = 0 };
-#else
-enum { WATCHES_BELT = 1 };
-#endif
 
 struct belt_watch {
     uint32_t turned;        /* period in which what is watched did last */

@@ -17,7 +17,7 @@ struct offset_calibration_params offset_calibration_design(const struct hal_fact
     const double drop_V = motor->resistance_ohm * facts->current_A_per_code;
 
     return (struct offset_calibration_params){
-        .settling_samples = whole(OFFSET_SETTLING_S / facts->control_period_s + 0.5),
+        .settling_samples = whole(OFFSET_SETTLING_us * 1e-6 / facts->control_period_s + 0.5),
         .delay = whole(delay_codes * OFFSET_SAMPLES),
         .shift_max = whole(shift_codes * OFFSET_SAMPLES),
         .deviation_max = whole(OFFSET_DEVIATION_CODES_MAX * finer * OFFSET_SAMPLES),

@@ -31,7 +31,7 @@
 #define OFFSET_CODES_MAX 64
 
 /* Of stage 2 until amplifiers, filters of the legs and the slowest windings have settled. */
-#define OFFSET_SETTLING_S 0.02
+#define OFFSET_SETTLING_us 20000
 
 /* Codes of 12 bits: what the switching may shift a current's offset by, beside what flows, and how
    far the samples of stage 2 may lie from those of its beginning, in the mean, beside twice as far
@@ -42,7 +42,7 @@
 enum {
     OFFSET_CHANNELS = 4,
     OFFSET_REFERENCE_SAMPLES = OFFSET_SAMPLES / 8, /* the beginning of a stage */
-    OFFSET_PERIODS = 2 * OFFSET_SAMPLES + 200 + 1, /* of both stages, at 10 kHz */
+    OFFSET_PERIODS = 2 * OFFSET_SAMPLES + OFFSET_SETTLING_us / 100 + 1, /* of both, at 10 kHz */
 };
 
 struct offset_calibration_params {

@@ -21,15 +21,9 @@
 
 #include <stdint.h>
 
+#include "firmware/interface/parts_carried.h"
 #include "firmware/numeric/angle.h"
 #include "firmware/numeric/num.h"
-
-/* An image that has no room for it goes by the settings. */
-#ifdef STEADYSTEP_WITHOUT_TORQUE_CONSTANT
-enum { LEARNS_TORQUE_CONSTANT = 0 };
-#else
-enum { LEARNS_TORQUE_CONSTANT = 1 };
-#endif
 
 #define TORQUE_CONSTANT_CHANGE_MAX 0.2
 

@@ -18,6 +18,20 @@ enum { MACHINE_IO_CARRIED = 0 };
 enum { MACHINE_IO_CARRIED = 1 };
 #endif
 
+/* Without it the loops are as they are designed. */
+#ifdef STEADYSTEP_WITHOUT_BELT_WATCH
+enum { WATCHES_BELT = 0 };
+#else
+enum { WATCHES_BELT = 1 };
+#endif
+
+/* Without it the settings' torque constant is in force. */
+#ifdef STEADYSTEP_WITHOUT_TORQUE_CONSTANT
+enum { LEARNS_TORQUE_CONSTANT = 0 };
+#else
+enum { LEARNS_TORQUE_CONSTANT = 1 };
+#endif
+
 /* Without it the settings' inductance is in force. */
 #ifdef STEADYSTEP_WITHOUT_INDUCTANCE
 enum { FINDS_INDUCTANCE = 0 };

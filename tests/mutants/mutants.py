@@ -1014,7 +1014,7 @@ MUTANTS = [
            "shift > params->shift_max", "shift >= params->shift_max"),
     Mutant(DRIVE + "offset_calibration.c", "offset_calibration",
            "what_settles_takes_as_long_at_any_rate",
-           "OFFSET_SETTLING_S / facts->control_period_s + 0.5", "200.0"),
+           "OFFSET_SETTLING_us * 1e-6 / facts->control_period_s + 0.5", "200.0"),
     Mutant(DRIVE + "drive.c", "designed_anew", "nothing_of_the_design_before_is_left",
            "    params->path.feed_forward = settings->feed_forward;\n", ""),
     Mutant(DRIVE + "drive_hash.c", "drive_hash", "every_gain_of_the_default_drive_counts",

@@ -137,7 +137,7 @@ static void test_the_voltage_limit_follows_the_bus(void)
 static void test_no_jump_of_the_bus_makes_the_reciprocal_diverge(void)
 {
     static const double buses[] = {0.5, 0.75, 1.0, 1.29, 1.9};
-    static const double broken[] = {0.0, -1.0, 9.0};
+    static const double broken[] = {0.0, -1.0, 30.0};
 
     for (unsigned i = 0; i < sizeof buses / sizeof buses[0]; i++) {
         for (unsigned j = 0; j < sizeof buses / sizeof buses[0]; j++) {
@@ -150,7 +150,7 @@ static void test_no_jump_of_the_bus_makes_the_reciprocal_diverge(void)
         modulator_see_bus(&modulator, num_from_double(broken[i]));
         settle_at_bus(1.0);
         TEST_ASSERT_NUM_WITHIN(1e-4, 1.0, modulator.bus_reciprocal);
-        modulator_track_bus(&modulator, num_from_double(broken[i]));
+        modulator_track_bus(&modulator, num_from_double(fmin(broken[i], 9.0)));
         settle_at_bus(1.0);
         TEST_ASSERT_NUM_WITHIN(1e-4, 1.0, modulator.bus_reciprocal);
     }
