@@ -4,6 +4,7 @@ enum {
     PROBABILITY_BITS = 12,
     ADAPTATION = 4,
     TOP = 1 << 24,
+    CALL = 0x1e,     /* of a BL the first bits; of its second half these and one more */
     GAMMA_BITS = 16, /* of a number, the first left out: at most one less */
     GAMMA_MODELS = GAMMA_BITS * (GAMMA_BITS + 1),
     EVEN_PLACE = 8, /* of the contexts of a literal, behind eight of odd places */
@@ -113,6 +114,22 @@ static void unpack_region(struct unpacker *unpacker, uint8_t *to, const uint8_t 
     }
 }
 
+/* A call goes to a place that other calls go to, too, so that packed it has that instead of how far
+   away it is: in halfwords from the region's begin. */
+static void place_calls(uint16_t *const begin, const uint16_t *end)
+{
+    for (uint16_t *at = begin; at + 2 <= end; at++) {
+        if (at[0] >> 11 == CALL && at[1] >> 11 == (CALL | 1)) {
+            const uint32_t away =
+                ((at[0] & 0x7ffu) << 11 | (at[1] & 0x7ffu)) - (uint32_t)(at - begin);
+
+            at[0] = (uint16_t)(CALL << 11 | (away >> 11 & 0x7ffu));
+            at[1] = (uint16_t)((CALL | 1) << 11 | (away & 0x7ffu));
+            at++;
+        }
+    }
+}
+
 void unpack(const uint8_t *packed, const struct unpacked_region *regions, unsigned count)
 {
     struct unpacker unpacker;
@@ -128,5 +145,6 @@ void unpack(const uint8_t *packed, const struct unpacked_region *regions, unsign
     unpacker.range = UINT32_MAX;
     for (unsigned region = 0; region < count; region++) {
         unpack_region(&unpacker, regions[region].begin, regions[region].end);
+        place_calls(regions[region].begin, regions[region].end);
     }
 }

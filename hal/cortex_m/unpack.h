@@ -9,6 +9,8 @@
  * - 1: earlier bytes of the region once more. A bit "again" is for the distance of the last match.
  *   Then how many, less one unless again; then how far back, unless again
  *
+ * In a region that is there the calls (ARMv7-M, BL of up to 4 MiB either way) are put right.
+ *
  * Numbers are from 1 on: as many 1 as bits follow the first, a 0, these bits, the highest first
  * (Elias's gamma code). Models distinguish even and odd places, since instructions are halfwords,
  * and what came before: `enum model`. Coder and models go on from region to region.
@@ -23,8 +25,8 @@ struct unpacked_region {
     const void *end;
 };
 
-/* Fills the regions, in the order of their addresses. Takes 7 KB of stack, and some 350 cycles for
-   each byte. */
+/* Fills the regions, which begin at even addresses, in the order of their addresses. Takes 7 KB of
+   stack, and some 350 cycles for each byte. */
 void unpack(const uint8_t *packed, const struct unpacked_region *regions, unsigned count);
 
 #endif

@@ -7,6 +7,7 @@ usage: unpacking.py CC ROOT IMAGE.elf     CC: a compiler of the host; IMAGE.elf:
 
 import ctypes
 import random
+import struct
 import subprocess
 import sys
 import tempfile
@@ -55,6 +56,8 @@ def of_image(path):
 def cases():
     numbers = random.Random(1)
     noise = bytes(numbers.randrange(256) for _ in range(30000))
+    calls = [numbers.randrange(0xF000, 0x10000) for _ in range(3000)]
+    yield "much that looks like calls, an odd number of bytes", [struct.pack("<3000H", *calls) + b"\xf8"]
     yield "one byte", [b"a"]
     yield "an empty region between others", [b"even", b"", b"odd"]
     yield "the same byte throughout", [b"\xff" * 3000]

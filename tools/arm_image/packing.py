@@ -3,12 +3,16 @@
 Whole numbers throughout: the same bytes wherever it runs.
 """
 
+import struct
+
 PROBABILITY_BITS = 12
 ADAPTATION = 4  # a model moves by 1/16 of what it was wrong by
 TOP = 1 << 24  # below it, the range takes in another byte
 LONGEST = 255
 CANDIDATES = 64  # earlier places that a match is looked for at
 PASSES = 3  # each counts by what the one before has learned
+
+CALL = 0x1E  # of a BL the first bits; of its second half these and one more
 
 EVEN_PLACE, CONTEXTS = 8, 9  # of a literal: one of even places, eight of odd ones
 
@@ -209,8 +213,23 @@ def put_region(coder, data, path):
         at += length
 
 
+def with_destinations(data):
+    """With each call by its destination, place_calls() of unpack.c."""
+    halves = list(struct.unpack_from(f"<{len(data) // 2}H", data))
+    at = 0
+    while at + 1 < len(halves):
+        first, second = halves[at : at + 2]
+        if first >> 11 == CALL and second >> 11 == CALL | 1:
+            to = ((first & 0x7FF) << 11 | second & 0x7FF) + at
+            halves[at : at + 2] = first & 0xF800 | to >> 11 & 0x7FF, second & 0xF800 | to & 0x7FF
+            at += 1
+        at += 1
+    return struct.pack(f"<{len(halves)}H", *halves) + data[2 * len(halves) :]
+
+
 def pack(regions):
     """The bytes that unpack() makes `regions` of, one after the other."""
+    regions = [with_destinations(data) for data in regions]
     matches = [earlier_matches(data) for data in regions]
     prices = Prices({(MATCH, p, m): [3, 1] for p in range(2) for m in range(2)})
     for _ in range(PASSES):
