@@ -6,9 +6,10 @@ enum {
     TOP = 1 << 24,
     CALL = 0x1e,     /* of a BL the first bits; of its second half these and one more */
     GAMMA_BITS = 16, /* of a number, the first left out: at most one less */
-    GAMMA_MODELS = GAMMA_BITS * (GAMMA_BITS + 1),
-    EVEN_PLACE = 8, /* of the contexts of a literal, behind eight of odd places */
-    CONTEXTS = 9,
+    GAMMA_MODELS = GAMMA_BITS * (GAMMA_BITS + 1) / 2,
+    WIDE = 0xe8,     /* an instruction of two halves begins with a byte from here on */
+    EVEN_PLACE = 14, /* of the contexts of a literal, behind those of odd places */
+    CONTEXTS = 16,
 };
 
 /* Where the models of each kind begin. */
@@ -65,14 +66,16 @@ static uint8_t take_literal(struct unpacker *unpacker, unsigned models)
     return (uint8_t)bits;
 }
 
-/* An odd place is the half of an instruction that says what it does: by three bits of the one
-   before it. */
+/* By the byte that says what the instruction before does; an odd place says what its own does. */
 static unsigned literal_context(const uint8_t *begin, const uint8_t *to)
 {
-    if (((to - begin) & 1) == 0) {
-        return EVEN_PLACE;
+    const unsigned odd = (unsigned)(to - begin) & 1u;
+    const unsigned before = to - begin > (int)odd ? *(to - 1 - odd) : 0u;
+
+    if (odd == 0u) {
+        return EVEN_PLACE + (before >= WIDE);
     }
-    return to - begin > 1 ? to[-2] >> 2 & 7u : 0u;
+    return before < WIDE ? before >> 2 & 7u : 8u + ((before - WIDE) >> 2);
 }
 
 static unsigned take_number(struct unpacker *unpacker, unsigned models)
@@ -82,7 +85,7 @@ static unsigned take_number(struct unpacker *unpacker, unsigned models)
     while (take_bit(unpacker, models + bits)) {
         bits++;
     }
-    models += GAMMA_BITS * (bits + 1u);
+    models += GAMMA_BITS + bits * (bits - 1u) / 2u;
     while (bits-- > 0u) {
         number = 2u * number + take_bit(unpacker, models + bits);
     }

@@ -4,8 +4,8 @@
  * is, with fewer models.
  *
  * A region's bytes come one after the other, each step by a bit "match":
- * - 0: a literal, 8 bits, the highest first; a model for each beginning of them, and at odd places
- *   for three bits of the byte two places earlier
+ * - 0: a literal, 8 bits, the highest first; a model for each beginning of them, and for what the
+ *   instruction before is: its length, and at odd places more of it
  * - 1: earlier bytes of the region once more. A bit "again" is for the distance of the last match.
  *   Then how many, less one unless again; then how far back, unless again
  *
@@ -25,7 +25,7 @@ struct unpacked_region {
     const void *end;
 };
 
-/* Fills the regions, which begin at even addresses, in the order of their addresses. Takes 7 KB of
+/* Fills the regions, which begin at even addresses, in the order of their addresses. Takes 9 KB of
    stack, and some 350 cycles for each byte. */
 void unpack(const uint8_t *packed, const struct unpacked_region *regions, unsigned count);
 

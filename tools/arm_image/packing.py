@@ -14,7 +14,8 @@ PASSES = 3  # each counts by what the one before has learned
 
 CALL = 0x1E  # of a BL the first bits; of its second half these and one more
 
-EVEN_PLACE, CONTEXTS = 8, 9  # of a literal: one of even places, eight of odd ones
+WIDE = 0xE8  # an instruction of two halves begins with a byte from here on
+EVEN_PLACE, CONTEXTS = 14, 16  # of a literal: two of even places, fourteen of odd ones
 
 MATCH, AGAIN, LITERAL = "match", "again", "literal"
 
@@ -30,10 +31,12 @@ def gamma(name, value):
 
 
 def context(data, at):
-    """An odd place is the half of an instruction that says what it does: by three bits of the one before it."""
-    if at & 1 == 0:
-        return EVEN_PLACE
-    return data[at - 2] >> 2 & 7 if at > 1 else 0
+    """By the byte that says what the instruction before does; an odd place says what its own does."""
+    odd = at & 1
+    before = data[at - 1 - odd] if at > odd else 0
+    if not odd:
+        return EVEN_PLACE + (before >= WIDE)
+    return before >> 2 & 7 if before < WIDE else 8 + (before - WIDE >> 2)
 
 
 def literal(context_of_it, byte):
