@@ -20,6 +20,10 @@ enum { QUICKLY = 2 }; /* option code of a halt */
 static const float jerk_share = 0.25f;
 static const float jerk_min_s = 2e-3f;
 
+/* Of homing: of the largest speed, and ten turns. */
+static const float homing_share = 0.04f;
+static const float homing_travel_rad = 62.831853f;
+
 static struct axis_motion *motion_of(struct application *application)
 {
     return &application->link->axis.motion;
@@ -86,6 +90,12 @@ void axis_motion_put_defaults(struct application *application)
     put_default(&objects->profile_acceleration, 0.25f * acceleration);
     put_default(&objects->profile_deceleration, 0.25f * acceleration);
     put_default(&objects->quick_stop_deceleration, 0.5f * acceleration);
+    put_default(&objects->homing_speed,
+                homing_share * axis_motion_speed_limit(application) / unit_rad);
+    put_default(&objects->homing_zero_speed,
+                homing_share * axis_motion_speed_limit(application) / unit_rad);
+    put_default(&objects->homing_acceleration, 0.25f * acceleration);
+    put_default(&objects->homing_travel, homing_travel_rad / unit_rad);
 }
 
 /* A steeper ramp ends as quickly as it began: by the jerk of a gentler one the speed would go on
@@ -101,9 +111,8 @@ static float jerk_to_end(struct axis_motion *motion, float jerk)
     return motion->jerk;
 }
 
-/* Acceleration and jerk of a command that goes to `speed_rad_s`; false: the drive refuses it. */
-static bool post(struct application *application, struct drive_command *command, float speed_rad_s,
-                 uint32_t acceleration_units)
+bool axis_motion_post(struct application *application, struct drive_command *command,
+                      float speed_rad_s, uint32_t acceleration_units)
 {
     const float acceleration =
         axis_motion_limited(application, units(application) * (float)acceleration_units, 1e-3f,
@@ -118,6 +127,12 @@ static bool post(struct application *application, struct drive_command *command,
     return cia402_command(application, command);
 }
 
+float axis_motion_speed(struct application *application, uint32_t speed_units)
+{
+    return axis_motion_limited(application, units(application) * (float)speed_units, 1e-6f,
+                               axis_motion_speed_limit(application));
+}
+
 void axis_motion_brake(struct application *application, bool quickly)
 {
     const struct link_objects *objects = &application->link->objects;
@@ -128,7 +143,9 @@ void axis_motion_brake(struct application *application, bool quickly)
     motion_of(application)->waits = false;
     motion_of(application)->speed_rad_s = 0.0f;
     motion_of(application)->at_limit = false;
-    if (!axis_motion_rests(application) && !post(application, &brake, 0.0f, deceleration)) {
+    motion_of(application)->homing.phase = HOMING_ENDED;
+    if (!axis_motion_rests(application) &&
+        !axis_motion_post(application, &brake, 0.0f, deceleration)) {
         brake.kind = DRIVE_COMMAND_STOP;
         (void)cia402_command(application, &brake);
     }
@@ -196,16 +213,14 @@ static void go_to_target(struct application *application)
     if (!motion->waits || motion->halted || !(motion->at_once || axis_motion_rests(application))) {
         return;
     }
-    const float speed =
-        axis_motion_limited(application, units(application) * (float)objects->profile_velocity,
-                            1e-6f, axis_motion_speed_limit(application));
+    const float speed = axis_motion_speed(application, objects->profile_velocity);
 
     /* a new target has one for both ends */
     const uint32_t lesser = objects->profile_deceleration < objects->profile_acceleration
                                 ? objects->profile_deceleration
                                 : objects->profile_acceleration;
 
-    motion->limited = !post(application, &retarget, speed, lesser) || motion->limited;
+    motion->limited = !axis_motion_post(application, &retarget, speed, lesser) || motion->limited;
     motion->waits = false;
 }
 
@@ -281,8 +296,9 @@ static bool ends_at_limit(struct application *application, float *speed)
         return false;
     }
     if (!command_queue_holds_any(&application->drive.commands) &&
-        post(application, &to_limit, 0.98f * most, /* a plan at its own limit is a soft one */
-             application->link->objects.profile_deceleration)) {
+        axis_motion_post(application, &to_limit,
+                         0.98f * most, /* a plan at its own limit is a soft one */
+                         application->link->objects.profile_deceleration)) {
         motion->at_limit = true;
         motion->target_rad = to_limit.position_rad;
         motion->speed_rad_s = *speed;
@@ -311,29 +327,15 @@ static void go_at_speed(struct application *application)
     }
     if ((speed != motion->speed_rad_s || motion->at_limit) &&
         !command_queue_holds_any(&application->drive.commands)) {
-        if (post(application, &velocity, speed,
-                 slows(before, speed) ? objects->profile_deceleration
-                                      : objects->profile_acceleration)) {
+        if (axis_motion_post(application, &velocity, speed,
+                             slows(before, speed) ? objects->profile_deceleration
+                                                  : objects->profile_acceleration)) {
             motion->speed_rad_s = speed;
             motion->at_limit = false;
         } else {
             motion->limited = true;
         }
     }
-}
-
-/* ---- homing ---- */
-
-static void home(struct application *application)
-{
-    const struct link_objects *objects = &application->link->objects;
-    struct drive_command here = {.kind = DRIVE_COMMAND_SET_POSITION,
-                                 .position_rad =
-                                     cia402_turned_unit_rad(objects, CIA402_POSITION_TURNED) *
-                                     objects->home_offset};
-
-    motion_of(application)->homed = cia402_command(application, &here);
-    motion_of(application)->not_homed = !motion_of(application)->homed;
 }
 
 /* ---- all ---- */
@@ -353,7 +355,7 @@ void axis_motion_control(struct application *application, uint16_t risen)
     if ((risen & NEW_SET_POINT) != 0u && axis->mode == CIA402_PROFILE_POSITION) {
         take_set_point(application);
     } else if ((risen & START_HOMING) != 0u && axis->mode == CIA402_HOMING) {
-        home(application);
+        axis_homing_start(application);
     }
 }
 
@@ -427,6 +429,9 @@ void axis_motion_look(struct application *application)
                                   : motion->steady_ms < UINT8_MAX  ? motion->steady_ms + 1
                                                                    : UINT8_MAX);
     motion->reference_rad_s = speed;
+    if (link->axis.mode == CIA402_HOMING) {
+        axis_homing_look(application);
+    }
     motion->reached = lasts(&motion->in_window_ms, there, link->objects.target_ms);
     motion->off = lasts(&motion->off_ms, off_rad > unit_rad * (float)link->objects.following_window,
                         link->objects.following_ms);
@@ -457,7 +462,7 @@ uint16_t axis_motion_status(struct application *application)
         of_mode = rests;
         off = false;
     } else if (axis->mode == CIA402_HOMING) {
-        reached = true;
+        reached = motion->homing.phase == HOMING_ENDED && rests;
         of_mode = motion->homed && rests;
         off = motion->not_homed;
     } else if (axis->mode == CIA402_CYCLIC_POSITION) {

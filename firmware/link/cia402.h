@@ -1,6 +1,6 @@
 /*
  * The drive profile, CiA 402 (IEC 61800-7-201): its state machine on the drive's own, and the modes
- * profile position (1), profile velocity (3), homing on the present position (6), cyclic
+ * profile position (1), profile velocity (3), homing (6), cyclic
  * synchronous position (8) and, with an encoder, torque (10), on the drive's own commands
  * (axis_motion.c).
  *
@@ -12,6 +12,7 @@
 #define STEADYSTEP_CIA402_H
 
 #include "firmware/interface/drive_interface.h"
+#include "firmware/link/axis_homing.h"
 #include "firmware/link/axis_stream.h"
 #include "firmware/link/objects.h"
 
@@ -37,6 +38,7 @@ struct application;
 
 /* What the motion of a mode goes by: axis_motion.c. */
 struct axis_motion {
+    struct axis_homing homing;
     double target_rad;      /* of the last set-point */
     float speed_rad_s;      /* as commanded last, of profile velocity */
     float reference_rad_s;  /* a millisecond ago */
@@ -53,7 +55,7 @@ struct axis_motion {
     bool limited; /* a limit has cut what was asked for */
     bool off;     /* beyond the following error window */
     bool homed;
-    bool not_homed; /* the drive has refused to be */
+    bool not_homed; /* refused, or no stop was found */
     bool halted;
     bool at_limit; /* of profile velocity and torque: goes to a software limit, or is there */
 };

@@ -1,6 +1,7 @@
 /* The objects of CiA 301 that code answers for, and what may become of those that are stored. */
 #include "firmware/application/application.h"
 #include "firmware/application/setting_change.h"
+#include "firmware/link/axis_homing.h"
 #include "firmware/link/axis_motion.h"
 #include "firmware/link/axis_torque.h"
 #include "firmware/link/data_sheet.h"
@@ -156,10 +157,12 @@ bool link_accepts(const struct application *application, const struct object *ob
         return pdo_may_have(number); /* it makes none, and has no identifiers of 29 bits */
     case 0x2400:
         return object->sub != 2u || number > 0u;
+    case 0x2403:
+        return number != 0u;
     case 0x6060:
         return is_mode(application, (int8_t)value[0]);
     case 0x6098:
-        return value[0] == 35u || value[0] == 37u; /* on the present position */
+        return axis_homing_is_method((int8_t)value[0]);
     case 0x60c2:
         return object->sub == 1u ? number != 0u : (int8_t)value[0] >= -6 && (int8_t)value[0] <= 0;
     case 0x605a:
@@ -175,6 +178,8 @@ bool link_accepts(const struct application *application, const struct object *ob
     case 0x6085:
     case 0x6091:
     case 0x6092:
+    case 0x6099:
+    case 0x609a:
         return number != 0u;
     default:
         return true;

@@ -32,10 +32,12 @@
     GROUP(0x1a00, "TPDO mapping parameter")                                                        \
     GROUP(0x2400, "Capture")                                                                       \
     GROUP(0x2401, "Captured signals")                                                              \
+    GROUP(0x2403, "Homing on a stop")                                                              \
     GROUP(0x607d, "Software position limit")                                                       \
     GROUP(0x608f, "Position encoder resolution")                                                   \
     GROUP(0x6091, "Gear ratio")                                                                    \
     GROUP(0x6092, "Feed constant")                                                                 \
+    GROUP(0x6099, "Homing speeds")                                                                 \
     GROUP(0x60c2, "Interpolation time period")                                                     \
     GROUP(0x60fe, "Digital outputs")
 
@@ -94,6 +96,8 @@
     STORED(0x2401, 7, U16, RW, capture_7, 0, "Captured signal 7")                                  \
     STORED(0x2401, 8, U16, RW, capture_8, 0, "Captured signal 8")                                  \
     ASKED(0x2402, 0, DOMAIN, RO, 0, "Captured values")                                             \
+    STORED(0x2403, 1, U16, RW, homing_torque, 700, "Torque of a stop")                             \
+    STORED(0x2403, 2, U32, RW, homing_travel, 0, "Travel to a stop")                               \
     ASKED(0x6040, 0, U16, RW_R, 0, "Controlword")                                                  \
     ASKED(0x6041, 0, U16, RO_T, 0, "Statusword")                                                   \
     STORED(0x605a, 0, I16, RW, quick_stop_option, 2, "Quick stop option code")                     \
@@ -132,6 +136,9 @@
     STORED(0x6092, 1, U32, RW, feed, 65536, "Feed")                                                \
     STORED(0x6092, 2, U32, RW, feed_shaft, 1, "Shaft revolutions")                                 \
     STORED(0x6098, 0, I8, RW_R, homing_method, 37, "Homing method")                                \
+    STORED(0x6099, 1, U32, RW, homing_speed, 0, "Speed during search for switch")                  \
+    STORED(0x6099, 2, U32, RW, homing_zero_speed, 0, "Speed during search for zero")               \
+    STORED(0x609a, 0, U32, RW, homing_acceleration, 0, "Homing acceleration")                      \
     STORED(0x60c2, 1, U8, RW, interval, 4, "Interpolation time period value")                      \
     STORED(0x60c2, 2, I8, RW, interval_exponent, -3, "Interpolation time index")                   \
     ASKED(0x60f4, 0, I32, RO_T, 0, "Following error actual value")                                 \
@@ -147,10 +154,12 @@
     STORED(0x1200, 0, U8, RO, sdo_highest, 2, "Highest sub-index supported")                       \
     STORED(0x2400, 0, U8, RO, capture_highest, 9, "Highest sub-index supported")                   \
     STORED(0x2401, 0, U8, RO, capture_columns, 8, "Highest sub-index supported")                   \
+    STORED(0x2403, 0, U8, RO, homing_highest, 2, "Highest sub-index supported")                    \
     STORED(0x607d, 0, U8, RO, limits_highest, 2, "Highest sub-index supported")                    \
     STORED(0x608f, 0, U8, RO, resolution_highest, 2, "Highest sub-index supported")                \
     STORED(0x6091, 0, U8, RO, gear_highest, 2, "Highest sub-index supported")                      \
     STORED(0x6092, 0, U8, RO, feed_highest, 2, "Highest sub-index supported")                      \
+    STORED(0x6099, 0, U8, RO, homing_speeds_highest, 2, "Highest sub-index supported")             \
     STORED(0x60c2, 0, U8, RO, interval_highest, 2, "Highest sub-index supported")                  \
     STORED(0x60fe, 0, U8, RO, outputs_highest, 1, "Highest sub-index supported")
 

@@ -133,13 +133,17 @@ def set_point(node, position, word=0x1F):
     CHECKS.that(wait_for(lambda: not node.sdo[0x6041].raw & 0x1000), "and the next may come")
 
 
+def true_position(knobs):
+    return float(knobs.ask("state").split("theta_rad=")[1].split()[0])
+
+
 def it_goes_to_positions(node, knobs):
     node.op_mode = "PROFILED POSITION"
     CHECKS.that(node.sdo[0x6081].raw > 0 and node.sdo[0x6083].raw > 0, "speed and acceleration")
     set_point(node, TURN)
     CHECKS.that(wait_for(lambda: node.sdo[0x6041].raw & 0x400), "it reaches its target")
     CHECKS.that(abs(node.sdo[0x6064].raw - TURN) < 100, f"a turn: {node.sdo[0x6064].raw}")
-    truth = float(knobs.ask("state").split("theta_rad=")[1].split()[0])
+    truth = true_position(knobs)
     CHECKS.that(abs(truth - 6.2832) < 0.01, f"the rotor does: {truth}")
     set_point(node, 20 * TURN)
     set_point(node, 0, 0x3F)  # at once
@@ -156,6 +160,20 @@ def it_turns_at_a_speed(node):
     node.state = "QUICK STOP ACTIVE"
     CHECKS.that(wait_for(lambda: node.state == "SWITCH ON DISABLED"), "a quick stop ends with it off")
     node.sdo[0x60FF].raw = 0
+
+
+def it_homes_on_a_stop(node, knobs):
+    stop = true_position(knobs) + 0.5
+    CHECKS.that(knobs.ask(f"stops = true, stop_high_rad = {stop}").startswith("ok"), "a stop")
+    node.sdo[0x6098].raw = -2
+    node.sdo[0x607C].raw = 1000
+    node.homing(timeout=20)
+    CHECKS.that(node.sdo[0x6041].raw & 0x3400 == 0x1400, "it homes on a stop")
+    shown = (node.sdo[0x6064].raw - 1000) / TURN * 6.2832
+    truth = true_position(knobs) - stop
+    CHECKS.that(abs(shown - truth) < 0.01, f"which is at the offset: {shown}, {truth}")
+    knobs.ask("stops = false")
+    node.state = "SWITCH ON DISABLED"
 
 
 def a_fault_is_seen_and_reset(node, knobs):
@@ -191,6 +209,7 @@ with Served() as served:
         it_is_enabled_in_time(bus.node)
         it_goes_to_positions(bus.node, KNOBS)
         it_turns_at_a_speed(bus.node)
+        it_homes_on_a_stop(bus.node, KNOBS)
         a_fault_is_seen_and_reset(bus.node, KNOBS)
         what_is_stored_survives(bus.node, KNOBS)
     with Bus(served.link) as bus:

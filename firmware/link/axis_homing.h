@@ -1,0 +1,49 @@
+/*
+ * Homing, mode 6. Methods 35 and 37: the axis is at 607ch where it stands. Methods -1 and -2: it
+ * goes down, or up, until a hard stop bears it. There is 607ch, and the rotor comes to rest a full
+ * step before it, where the hold draws it even if the stop has thrown it off.
+ *
+ * A stop is where the rotor ceases to follow. All of these have to show:
+ * - the estimated load against the motion is beyond the torque 2403h, 1;
+ * - it has been above three quarters of that at two looks in a row, 1 ms apart;
+ * - since then the reference has gone on by a quarter of a full step, the rotor by less than half
+ * as much.
+ *
+ * A rotor that goes on by a quarter of a full step under three quarters of the torque is not at a
+ * stop: what gives way is softer than a quarter of the torque over a quarter of a full step, or the
+ * load is heavier than the torque. That, a rotor out of step before anything bears
+ * it or at the end, and a reference that has gone the travel 2403h, 2, end in a homing error.
+ */
+#ifndef STEADYSTEP_AXIS_HOMING_H
+#define STEADYSTEP_AXIS_HOMING_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct application;
+
+enum homing_phase {
+    HOMING_ENDED, /* or not begun */
+    HOMING_SEARCHES,
+    HOMING_LEAVES /* the stop, or gives up */
+};
+
+struct axis_homing {
+    double began_rad;               /* of the reference, in the search */
+    double bears_rad, at_bears_rad; /* rotor and reference as the load grew: the stop */
+    float way;                      /* 1 up, -1 down, of the motor */
+    uint8_t phase;                  /* enum homing_phase */
+    uint8_t ms;                     /* for which it stands */
+    bool found;
+};
+
+/* Whether 6098h may have this value. */
+bool axis_homing_is_method(int8_t method);
+
+/* Begins by 6098h. */
+void axis_homing_start(struct application *application);
+
+/* Background, once in a millisecond, in the mode. */
+void axis_homing_look(struct application *application);
+
+#endif

@@ -1,0 +1,377 @@
+/* Homing on a hard stop, of a drive that is shown where its rotor is and what bears on it. */
+#include "firmware/link/axis_homing.h"
+#include "firmware/link/axis_motion.h"
+#include "tests/unit/link_bench.h"
+
+enum { TURN = 65536, REACHED = 0x0400, ATTAINED = 0x1000, FAILED = 0x2000, ALL = 0x3400 };
+
+static const double unit_rad = TWO_PI / TURN;
+
+static double load_Nm, rotor_rad;
+
+void setUp(void)
+{
+    link_bench_start();
+    link_bench_open();
+    (void)link_bench_say("t00020101", 1);
+    load_Nm = 0.0;
+    rotor_rad = 0.0;
+}
+
+void tearDown(void)
+{
+}
+
+static void put(unsigned index, unsigned sub, unsigned bytes, uint32_t value)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(index, sub, bytes, value));
+}
+
+static uint32_t status(void)
+{
+    return link_bench_get(0x6041, 0) & ALL;
+}
+
+static const struct axis_homing *homing(void)
+{
+    return &bench_link.axis.motion.homing;
+}
+
+static double reference_rad(void)
+{
+    struct drive_signals now;
+
+    drive_signals_read(&bench.application.drive, &now);
+    return now.theta_ref_rad;
+}
+
+/* Where the motor's zero is, of the axis. */
+static double zero_rad(void)
+{
+    struct drive_signals now;
+
+    drive_signals_read(&bench.application.drive, &now);
+    return now.motor_zero_rad;
+}
+
+static double speed_rad_s(void)
+{
+    struct drive_signals now;
+
+    drive_signals_read(&bench.application.drive, &now);
+    return now.omega_ref_rad_s;
+}
+
+static double rated_Nm(void)
+{
+    const struct motor_params *motor = &bench.application.drive.settings.motor;
+
+    return motor->rated_current_A * motor->torque_constant_Nm_A;
+}
+
+static double full_step_rad(void)
+{
+    return TWO_PI / 4.0 / bench.application.drive.settings.motor.rotor_teeth;
+}
+
+static void begin(int method)
+{
+    put(0x6060, 0, 1, 6);
+    put(0x6098, 0, 1, (uint32_t)method & 0xffu);
+    put(0x6040, 0, 2, 0x06);
+    bench_periods(20);
+    put(0x6040, 0, 2, 0x0f);
+    bench_periods(20);
+    TEST_ASSERT_EQUAL_HEX32(REACHED, status());
+    put(0x6040, 0, 2, 0x1f);
+    bench_periods(30);
+}
+
+/* A period in which the link is shown a rotor at `rotor_rad` that bears `load_Nm`. */
+static void period(bool follows)
+{
+    struct cia402 *axis = &bench_link.axis;
+
+    (void)bench_interrupt();
+    drive_signals_read(&bench.application.drive, &axis->signals);
+    axis->signals_in = bench.application.drive.supervision.period;
+    rotor_rad = follows ? axis->signals.theta_ref_rad : rotor_rad;
+    axis->signals.theta_est_rad = rotor_rad;
+    axis->signals.load_torque_est_Nm = load_Nm;
+    application_background(&bench.application);
+}
+
+/* The rotor stands, or follows, for so many milliseconds. */
+static void look(int times)
+{
+    for (int i = 0; i < 10 * times; i++) {
+        period(false);
+    }
+}
+
+static void follow(int times)
+{
+    for (int i = 0; i < 10 * times; i++) {
+        period(true);
+    }
+}
+
+/* Bears a share of the torque that is a stop's, in that direction. */
+static void bear(double way, double share)
+{
+    load_Nm = way * share * 0.7 * rated_Nm();
+}
+
+/* ---- statements ---- */
+
+static void test_it_goes_at_the_homing_speed_down_and_up(void)
+{
+    put(0x6099, 1, 4, TURN / 8);
+    begin(-1);
+    follow(30);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, -TWO_PI / 8, speed_rad_s());
+    TEST_ASSERT_EQUAL_HEX32(0, status());
+    put(0x6040, 0, 2, 0x0f);
+    look(100);
+    TEST_ASSERT_EQUAL_HEX32(REACHED, status()); /* interrupted */
+    put(0x6098, 0, 1, 0xfe);
+    put(0x6040, 0, 2, 0x1f);
+    follow(60);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, TWO_PI / 8, speed_rad_s());
+}
+
+static void test_a_polarity_turns_it_round(void)
+{
+    put(0x607e, 0, 1, 0x80);
+    begin(-1);
+    follow(30);
+    TEST_ASSERT_TRUE(speed_rad_s() > 0.5);
+}
+
+static void finds_a_stop(int method, double way, uint32_t polarity)
+{
+    put(0x607e, 0, 1, polarity);
+    put(0x607c, 0, 4, 1000);
+    begin(method);
+    follow(50);
+    const double stop_rad = rotor_rad;
+
+    bear(way, 1.1);
+    for (int i = 0; i < 100 && homing()->phase == HOMING_SEARCHES; i++) {
+        look(1);
+    }
+    TEST_ASSERT_EQUAL(HOMING_LEAVES, homing()->phase);
+    TEST_ASSERT_EQUAL_HEX32(0, status());
+    load_Nm = 0.0;
+    look(400);
+    const double offset_rad = (polarity != 0u ? -1000.0 : 1000.0) * unit_rad;
+
+    TEST_ASSERT_EQUAL_HEX32(REACHED | ATTAINED, status());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, offset_rad - way * full_step_rad(), reference_rad());
+    TEST_ASSERT_DOUBLE_WITHIN(0.2 * full_step_rad(), stop_rad, offset_rad - zero_rad());
+}
+
+static void test_a_stop_above_is_where_the_offset_says(void)
+{
+    finds_a_stop(-2, 1.0, 0);
+}
+
+static void test_a_stop_below_is_where_the_offset_says(void)
+{
+    finds_a_stop(-1, -1.0, 0);
+}
+
+static void test_a_stop_of_an_axis_that_is_turned_round(void)
+{
+    finds_a_stop(-1, 1.0, 0x80);
+}
+
+static void test_a_load_below_the_torque_is_no_stop(void)
+{
+    begin(-2);
+    follow(50);
+    bear(1.0, 0.97);
+    look(30); /* stands, too */
+    TEST_ASSERT_EQUAL(HOMING_SEARCHES, homing()->phase);
+}
+
+static void test_a_load_along_the_motion_is_no_stop(void)
+{
+    begin(-2);
+    follow(50);
+    bear(-1.0, 1.3);
+    look(30);
+    TEST_ASSERT_EQUAL(HOMING_SEARCHES, homing()->phase);
+}
+
+static void test_one_look_is_no_stop(void)
+{
+    put(0x6099, 1, 4, 2 * TURN); /* more than the quarter of a step in a millisecond */
+    begin(-2);
+    follow(50);
+    for (int i = 0; i < 20; i++) {
+        bear(1.0, 1.2);
+        look(1);
+        bear(1.0, 0.5);
+        look(1);
+    }
+    TEST_ASSERT_EQUAL(HOMING_SEARCHES, homing()->phase);
+}
+
+/* Slowly, and most of the way. */
+static void test_a_load_that_the_rotor_carries_along_is_no_stop(void)
+{
+    put(0x6099, 1, 4, (uint32_t)(2.0 * full_step_rad() / unit_rad)); /* a step in half a second */
+    begin(-2);
+    follow(100);
+    bear(1.0, 1.2);
+    const double began_rad = rotor_rad;
+
+    for (int i = 0; i < 400 && homing()->phase == HOMING_SEARCHES; i++) {
+        rotor_rad = began_rad + 0.7 * (reference_rad() - began_rad);
+        look(1);
+    }
+    TEST_ASSERT_EQUAL(HOMING_LEAVES, homing()->phase);
+    TEST_ASSERT_FALSE(homing()->found);
+    look(400);
+    TEST_ASSERT_EQUAL_HEX32(REACHED | FAILED, status());
+}
+
+static void test_a_stop_before_the_reference_has_led_is_none(void)
+{
+    put(0x6099, 1, 4, (uint32_t)(2.0 * full_step_rad() / unit_rad));
+    begin(-2);
+    follow(100);
+    bear(1.0, 1.2);
+    look(100); /* a fifth of a step */
+    TEST_ASSERT_EQUAL(HOMING_SEARCHES, homing()->phase);
+    look(50);
+    TEST_ASSERT_EQUAL(HOMING_LEAVES, homing()->phase);
+    TEST_ASSERT_TRUE(homing()->found);
+}
+
+static void test_what_gives_way_is_no_stop(void)
+{
+    begin(-2);
+    follow(50);
+    bear(1.0, 0.9);
+    look(3);
+    rotor_rad += 0.3 * full_step_rad();
+    look(1);
+    TEST_ASSERT_EQUAL(HOMING_LEAVES, homing()->phase);
+    look(400);
+    TEST_ASSERT_EQUAL_HEX32(REACHED | FAILED, status());
+}
+
+static void test_a_rotor_out_of_step_before_the_stop_ends_it(void)
+{
+    begin(-2);
+    follow(50);
+    bench.application.drive.synchronism.monitored = false;
+    bench.application.drive.synchronism.shown = DRIVE_SYNCHRONISM_DOUBTFUL;
+    follow(2);
+    TEST_ASSERT_EQUAL(HOMING_LEAVES, homing()->phase);
+    TEST_ASSERT_FALSE(homing()->found);
+}
+
+static void test_the_travel_ends_it(void)
+{
+    put(0x2403, 2, 4, TURN / 8);
+    put(0x6099, 1, 4, TURN);
+    begin(-1);
+    follow(80);
+    TEST_ASSERT_EQUAL(HOMING_SEARCHES, homing()->phase);
+    follow(100);
+    TEST_ASSERT_EQUAL(HOMING_LEAVES, homing()->phase);
+    look(400);
+    TEST_ASSERT_EQUAL_HEX32(REACHED | FAILED, status());
+    TEST_ASSERT_DOUBLE_WITHIN(0.1, -TWO_PI / 8, reference_rad());
+}
+
+static void test_the_torque_is_in_thousandths_of_the_rated_one(void)
+{
+    put(0x2403, 1, 2, 350);
+    begin(-2);
+    follow(50);
+    bear(1.0, 0.55);
+    look(30);
+    TEST_ASSERT_TRUE(homing()->found);
+}
+
+static void test_a_halt_interrupts_it(void)
+{
+    begin(-2);
+    follow(50);
+    put(0x6040, 0, 2, 0x11f);
+    look(100);
+    TEST_ASSERT_EQUAL(HOMING_ENDED, homing()->phase);
+    TEST_ASSERT_EQUAL_HEX32(REACHED, status());
+    TEST_ASSERT_TRUE(axis_motion_rests(&bench.application));
+}
+
+static void test_a_law_that_follows_nothing_refuses_it(void)
+{
+    bench.application.drive.settings.law = POSITION_LAW_MICROSTEPPING;
+    begin(-2);
+    TEST_ASSERT_EQUAL_HEX32(REACHED | FAILED, status());
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, speed_rad_s());
+}
+
+static void test_an_observer_of_counts_alone_refuses_it(void)
+{
+    bench.application.drive.settings.feedback = DRIVE_FEEDBACK_ENCODER;
+    bench.application.drive.settings.observer = DRIVE_OBSERVER_HIGH_GAIN;
+    begin(-2);
+    TEST_ASSERT_EQUAL_HEX32(REACHED | FAILED, status());
+}
+
+static void test_a_rotor_that_may_have_lost_step_is_not_homed(void)
+{
+    begin(-2);
+    follow(50);
+    bear(1.0, 1.2);
+    look(10);
+    TEST_ASSERT_TRUE(homing()->found);
+    load_Nm = 0.0;
+    bench.application.drive.synchronism.monitored = false;
+    bench.application.drive.synchronism.shown = DRIVE_SYNCHRONISM_DOUBTFUL;
+    look(400);
+    TEST_ASSERT_EQUAL_HEX32(REACHED | FAILED, status());
+}
+
+static void test_what_cannot_be_is_refused(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x6098, 0, 1, 33));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x6098, 0, 1, 34));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x6098, 0, 1, 0xfd));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x6099, 1, 4, 0));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x6099, 2, 4, 0));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x609a, 0, 4, 0));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x2403, 1, 2, 0));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x2403, 2, 4, 0));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_it_goes_at_the_homing_speed_down_and_up);
+    RUN_TEST(test_a_polarity_turns_it_round);
+    RUN_TEST(test_a_stop_above_is_where_the_offset_says);
+    RUN_TEST(test_a_stop_below_is_where_the_offset_says);
+    RUN_TEST(test_a_stop_of_an_axis_that_is_turned_round);
+    RUN_TEST(test_a_load_below_the_torque_is_no_stop);
+    RUN_TEST(test_a_load_along_the_motion_is_no_stop);
+    RUN_TEST(test_one_look_is_no_stop);
+    RUN_TEST(test_a_load_that_the_rotor_carries_along_is_no_stop);
+    RUN_TEST(test_a_stop_before_the_reference_has_led_is_none);
+    RUN_TEST(test_what_gives_way_is_no_stop);
+    RUN_TEST(test_a_rotor_out_of_step_before_the_stop_ends_it);
+    RUN_TEST(test_the_travel_ends_it);
+    RUN_TEST(test_the_torque_is_in_thousandths_of_the_rated_one);
+    RUN_TEST(test_a_halt_interrupts_it);
+    RUN_TEST(test_a_law_that_follows_nothing_refuses_it);
+    RUN_TEST(test_an_observer_of_counts_alone_refuses_it);
+    RUN_TEST(test_a_rotor_that_may_have_lost_step_is_not_homed);
+    RUN_TEST(test_what_cannot_be_is_refused);
+    return UNITY_END();
+}
