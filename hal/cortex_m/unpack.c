@@ -8,8 +8,8 @@ enum {
     GAMMA_BITS = 16, /* of a number, the first left out: at most one less */
     GAMMA_MODELS = GAMMA_BITS * (GAMMA_BITS + 1) / 2,
     WIDE = 0xe8,     /* an instruction of two halves begins with a byte from here on */
-    EVEN_PLACE = 14, /* of the contexts of a literal, behind those of odd places */
-    CONTEXTS = 16,
+    EVEN_PLACE = 12, /* of the contexts of a literal, behind those of odd places */
+    CONTEXTS = 14,
 };
 
 /* Where the models of each kind begin. */
@@ -75,7 +75,7 @@ static unsigned literal_context(const uint8_t *begin, const uint8_t *to)
     if (odd == 0u) {
         return EVEN_PLACE + (before >= WIDE);
     }
-    return before < WIDE ? before >> 2 & 7u : 8u + ((before - WIDE) >> 2);
+    return before < WIDE ? before >> 2 & 7u : 8u + (before >> 2 & 3u);
 }
 
 static unsigned take_number(struct unpacker *unpacker, unsigned models)

@@ -15,7 +15,7 @@ PASSES = 3  # each counts by what the one before has learned
 CALL = 0x1E  # of a BL the first bits; of its second half these and one more
 
 WIDE = 0xE8  # an instruction of two halves begins with a byte from here on
-EVEN_PLACE, CONTEXTS = 14, 16  # of a literal: two of even places, fourteen of odd ones
+EVEN_PLACE, CONTEXTS = 12, 14  # of a literal: two of even places, twelve of odd ones
 
 MATCH, AGAIN, LITERAL = "match", "again", "literal"
 
@@ -36,7 +36,7 @@ def context(data, at):
     before = data[at - 1 - odd] if at > odd else 0
     if not odd:
         return EVEN_PLACE + (before >= WIDE)
-    return before >> 2 & 7 if before < WIDE else 8 + (before - WIDE >> 2)
+    return before >> 2 & 7 if before < WIDE else 8 + (before >> 2 & 3)
 
 
 def literal(context_of_it, byte):
