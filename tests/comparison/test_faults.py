@@ -3,6 +3,7 @@
 usage: test_faults.py PROGRAM ROOT
 """
 import csv
+import json
 import pathlib
 import subprocess
 import sys
@@ -58,7 +59,7 @@ class Outcomes(unittest.TestCase):
     def test_a_motion_that_is_refused_behind_a_fault_is_no_failure(self):
         cell = cell_of("jam", "rest")
         run = summary([(cell.timeline()[1] + 0.01, "stalled")], failure="a command was refused")
-        self.assertEqual("stalled", outcome.outcome_of(cell, "float", run).fault)
+        self.assertEqual("stalled", outcome.outcome_of(cell, "float", run).detected_as)
         run["faults"] = []
         self.assertEqual("a command was refused", outcome.outcome_of(cell, "float", run).failure)
 
@@ -151,6 +152,9 @@ class Program(unittest.TestCase):
             self.assertIn("steadystep-sil run", done.stderr)
             rows = list(csv.DictReader(pathlib.Path(folder, "faults.csv").open(encoding="utf-8")))
             self.assertEqual({"bus-voltage"}, {row["detected_as"] for row in rows})
+            cells_found = json.loads(pathlib.Path(folder, "faults.json").read_text(encoding="utf-8"))
+            self.assertEqual({("over-voltage", "bus-voltage")},
+                             {(cell["fault"], cell["detected_as"]) for cell in cells_found})
 
     def test_what_is_unknown_is_refused(self):
         done = self.tool("--faults", "rust")

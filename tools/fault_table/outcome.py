@@ -8,11 +8,11 @@ from comparison.simulator import Refused
 
 
 class Outcome(NamedTuple):
-    """Of one run. `fault`: what the drive said, "" nothing, "warning": a line without a fault."""
+    """Of one run. `detected_as`: what the drive said, "" nothing, "warning": a line without a fault."""
     numeric: str
     seed: int
     failure: str = ""
-    fault: str = ""
+    detected_as: str = ""
     after_s: float = None   # behind the fault, or behind the begin of the next motion
     in_next: bool = False   # said in the next motion only
     early: bool = False     # said before there was a fault
@@ -41,7 +41,7 @@ def outcome_of(cell, numeric, run):
 
 def until_said_s(cell, outcome):
     """When the drive has said so; None: it has not."""
-    if outcome.failure or outcome.after_s is None or outcome.early or outcome.fault == "warning":
+    if outcome.failure or outcome.after_s is None or outcome.early or outcome.detected_as == "warning":
         return None
     _, at_s, next_s, _ = cell.timeline()
     return round((next_s if outcome.in_next else at_s) + outcome.after_s, 4)
@@ -108,12 +108,12 @@ def misses_of(cell, outcome, bound):
         return [f"failed: {outcome.failure}"]
     misses = []
     if outcome.early:
-        misses.append(f"{outcome.fault} before there is a fault")
-    elif not outcome.fault:
+        misses.append(f"{outcome.detected_as} before there is a fault")
+    elif not outcome.detected_as:
         if bound.said and not bound.silent:
             misses.append("nothing said")
-    elif outcome.fault not in bound.said:
-        misses.append(f"says {outcome.fault}")
+    elif outcome.detected_as not in bound.said:
+        misses.append(f"says {outcome.detected_as}")
     elif outcome.in_next and not bound.next:
         misses.append("said in the next motion only")
     elif bound.within_ms is not None and 1e3 * outcome.after_s > bound.within_ms + 0.05:

@@ -16,12 +16,12 @@ def linked(name):
 
 
 def definitions_of(found):
-    names = {one.fault for outcomes in found.values() for one in outcomes} - {"", "warning"}
+    names = {one.detected_as for outcomes in found.values() for one in outcomes} - {"", "warning"}
     return "\n".join(f"[{name}]: {PAGE}#{name}" for name in sorted(names))
 
 
 def names_of(outcomes):
-    found = sorted({outcome.fault for outcome in outcomes if outcome.fault})
+    found = sorted({outcome.detected_as for outcome in outcomes if outcome.detected_as})
     return " or ".join(linked(name) for name in found)
 
 
@@ -41,7 +41,7 @@ def cell_text(cells, outcomes):
     """Of the runs of one fault in one operating point."""
     if not outcomes:
         return "–"
-    said = [outcome for outcome in outcomes if outcome.fault]
+    said = [outcome for outcome in outcomes if outcome.detected_as]
     at_once = [outcome for outcome in said if not outcome.in_next]
     later = [outcome for outcome in said if outcome.in_next]
     silent = len(outcomes) - len(said)
@@ -104,6 +104,6 @@ def as_csv(found):
                 f"{one.peak_A:.4g}", f"{one.peak_A / cell.motor.rated_current_A:.3g}",
                 f"{one.error_rad:.4g}", f"{one.error_rad / cell.motor.full_step_rad:.3g}"]
             writer.writerow([cell.motor.id, cell.drive.name, cell.fault.name, cell.point.name,
-                             one.numeric, one.seed, one.fault, after, int(one.in_next), *sizes,
+                             one.numeric, one.seed, one.detected_as, after, int(one.in_next), *sizes,
                              one.failure])
     return out.getvalue()
