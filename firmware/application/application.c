@@ -2,8 +2,11 @@
 
 #include "firmware/application/settings_record.h"
 #include "firmware/design/refusal.h"
+#include "firmware/design/text.h"
 #include "firmware/drive/drive_hash.h"
 #include "firmware/drive/interrupt_view.h"
+#include "firmware/interface/parts_carried.h"
+#include "firmware/interface/settings.h"
 #include "firmware/linkage.h"
 
 static const struct hal_outputs bridge_off = {.bridge_on = false};
@@ -20,9 +23,6 @@ static bool design(struct application *application, const struct drive_settings 
     const uint32_t counts = (uint32_t)settings->encoder_counts_per_turn;
 
     application->facts.encoder_counts_per_turn = counts > 0u ? counts : application->board_counts;
-    if (!ESTIMATORS_READ_ENCODER && counts > 0u) {
-        return design_refuse(error, "encoder_counts_per_turn: this board reads none, expected 0");
-    }
     if (!machine_io_start(application, starts, error)) {
         return false;
     }
@@ -51,7 +51,7 @@ static void prepare(struct application *application, const struct hal *board)
     application->outputs = bridge_off;
     application->cycles = (struct control_cycles){.periods = 0};
     application->cycle_statistics = (struct control_cycle_statistics){.periods = 0};
-    application->stored_refused = false;
+    application->stored_refusal[0] = '\0';
     application->heard_in = 0;
     application->unheard = false;
     application->io = (struct machine_io){.stop = MACHINE_STOP_NONE};
@@ -68,15 +68,33 @@ CALLED_FROM_OUTSIDE void application_put_link(struct application *application, s
     }
 }
 
-static bool start_with_stored(struct application *application)
+/* What was stored for parts that this image does not carry. */
+static void leave_out(struct application *application)
+{
+    struct drive_settings *stored = &application->chosen;
+    struct text names = text_in(application->stored_refusal, sizeof application->stored_refusal);
+    const struct setting *setting;
+
+    for (size_t i = 0; (setting = setting_number(i)) != NULL; i++) {
+        if (setting_is_left_out(setting) && setting_get(stored, setting, 0) != setting->preset) {
+            setting_put(stored, setting, 0, setting->preset);
+            text_put(&names, " ");
+            text_put(&names, setting->name);
+        }
+    }
+}
+
+static bool start_with_stored(struct application *application, char error[DRIVE_ERROR_TEXT])
 {
     if (!settings_record_read(&application->board, &application->chosen)) {
         return false;
     }
     application->settings_from = APPLICATION_SETTINGS_STORED;
-    application->stored_refused =
-        !design(application, &application->chosen, true, application->stored_refusal);
-    return !application->stored_refused;
+    if (!SETTINGS_CARRIED) {
+        leave_out(application);
+    }
+    return design(application, &application->chosen, true, error) ||
+           design_refuse(application->stored_refusal, error);
 }
 
 CALLED_FROM_OUTSIDE bool application_init(struct application *application, const struct hal *board,
@@ -84,7 +102,7 @@ CALLED_FROM_OUTSIDE bool application_init(struct application *application, const
                                           char error[DRIVE_ERROR_TEXT])
 {
     prepare(application, board);
-    if (start_with_stored(application)) {
+    if (start_with_stored(application, error)) {
         return true;
     }
     application->settings_from = APPLICATION_SETTINGS_DEFAULT;

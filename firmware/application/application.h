@@ -46,8 +46,7 @@ struct application {
     uint32_t heard_in;                     /* period of the last line or command */
     bool unheard;                          /* since then for so long that a motion was stopped */
     bool awaits_enable;                    /* `chosen` does, as it may differ from them */
-    bool stored_refused;                   /* by the drive: the defaults are in force */
-    char stored_refusal[DRIVE_ERROR_TEXT]; /* why */
+    char stored_refusal[DRIVE_ERROR_TEXT]; /* of what is stored: why, or what is passed over */
     struct machine_io io;
     struct console console;
     struct link *link; /* NULL: none */
@@ -56,8 +55,8 @@ struct application {
 /*
  * Start-up with the newest valid settings in pages 2 and 3 of the parameter store, or, without any,
  * with the defaults for `motor_default`. Settings that the drive refuses are announced on the
- * console, and the defaults apply. false: these are refused, too; reason in error. Takes as long
- * as drive_init.
+ * console, and the defaults apply. So are those of parts that the image does not carry, and the
+ * rest applies. false: these are refused, too; reason in error. Takes as long as drive_init.
  */
 bool application_init(struct application *application, const struct hal *board,
                       const struct motor_params *motor_default, char error[DRIVE_ERROR_TEXT]);

@@ -161,7 +161,7 @@ static bool announce(struct application *application)
     if (!announced->start) {
         announced->start = true;
         report_start(&text, application);
-    } else if (application->stored_refused && !announced->refused_settings) {
+    } else if (application->stored_refusal[0] != '\0' && !announced->refused_settings) {
         announced->refused_settings = true;
         report_refused_settings(&text, application);
     } else if (application->drive.planner.underruns != announced->underruns) {

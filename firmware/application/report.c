@@ -7,6 +7,7 @@
 #include "firmware/design/hold_check.h"
 #include "firmware/drive/fault_reason.h"
 #include "firmware/interface/dictionary.h"
+#include "firmware/interface/parts_carried.h"
 #include "firmware/interface/settings.h"
 #include "firmware/drive/interrupt_view.h"
 
@@ -90,7 +91,9 @@ void report_start(struct text *text, const struct application *application)
 
 void report_refused_settings(struct text *text, const struct application *application)
 {
-    text_put(text, "warning: the stored settings are not in force: ");
+    text_put(text, !SETTINGS_CARRIED && application->settings_from == APPLICATION_SETTINGS_STORED
+                       ? "warning: stored, but not of this image:"
+                       : "warning: the stored settings are not in force: ");
     text_put(text, application->stored_refusal);
 }
 

@@ -195,11 +195,11 @@ static double in_base(const struct drive_settings *settings, double value, unsig
     return base == SETTING_RATED ? value * settings->motor.rated_current_A : value;
 }
 
-/* Of a part that this image does not carry: it stays as it is preset. */
-static bool is_left_out(const struct setting *setting)
+bool setting_is_left_out(const struct setting *setting)
 {
 #define IS(member) (setting->offset == offsetof(struct drive_settings, member))
     return (!FINDS_INDUCTANCE && IS(identify_inductance)) ||
+           (!ENCODER_CARRIED && IS(encoder_counts_per_turn)) ||
            (!LINK_CARRIED && (IS(node_id) || IS(modbus_rtu))) ||
            (!MACHINE_IO_CARRIED &&
             (IS(inputs_used) || IS(inputs_low) || IS(outputs_low) || IS(holding_brake_s)));
@@ -208,13 +208,13 @@ static bool is_left_out(const struct setting *setting)
 
 double setting_least(const struct drive_settings *settings, const struct setting *setting)
 {
-    return in_base(settings, is_left_out(setting) ? setting->preset : setting->least,
+    return in_base(settings, setting_is_left_out(setting) ? setting->preset : setting->least,
                    setting->least_base);
 }
 
 double setting_most(const struct drive_settings *settings, const struct setting *setting)
 {
-    return in_base(settings, is_left_out(setting) ? setting->preset : setting->most,
+    return in_base(settings, setting_is_left_out(setting) ? setting->preset : setting->most,
                    setting->most_base);
 }
 

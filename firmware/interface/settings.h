@@ -64,6 +64,9 @@ void setting_put(struct drive_settings *settings, const struct setting *setting,
 void setting_choose(struct drive_settings *settings, const struct setting *setting, size_t element,
                     double value);
 
+/* Of a part that this image does not carry: it stays as it is preset. */
+bool setting_is_left_out(const struct setting *setting);
+
 /* For the motor of these settings. */
 double setting_least(const struct drive_settings *settings, const struct setting *setting);
 double setting_most(const struct drive_settings *settings, const struct setting *setting);

@@ -259,20 +259,24 @@ void settings_with_encoder(const ElfImage &image)
     drive_settings stored;
     drive_settings_default(&stored, &stm32g071::motor);
     stored.motor.rated_current_A = 2.5;
-    stored.identify_inductance = false; /* of this machine's firmware, not of the image */
+    stored.identify_inductance = true; /* of this machine's firmware, not of the image */
+    stored.encoder_counts_per_turn = 4000;
     {
         Powered run(image, &stored);
-        run.run_for(1000 * ms);
-        expect(count(run.board.serial().take_output(), "settings: stored") == 1,
-               "stored settings are in force");
+        run.run_for(1500 * ms);
+        const std::string text = run.board.serial().take_output();
+        expect(count(text, "settings: stored") == 1 && count(text, "rated_current_A=2.5") == 1 &&
+                   count(text, "stored, but not of this image: encoder_counts_per_turn "
+                               "identify_inductance") == 1,
+               "stored settings are in force but for those of parts left out, which are named");
     }
-    stored.encoder_counts_per_turn = 4000;
+    stored.feedback = DRIVE_FEEDBACK_ENCODER;
     Powered run(image, &stored);
     run.run_for(1500 * ms);
     const std::string text = run.board.serial().take_output();
     expect(count(text, "settings: default") == 1 &&
-               count(text, "not in force: encoder_counts_per_turn: this board reads none, "
-                           "expected 0") == 1,
+               count(text, "not in force: feedback = encoder: this image is for a board "
+                           "without one") == 1,
            "stored settings that ask for an encoder are refused");
 }
 
