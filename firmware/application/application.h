@@ -46,7 +46,8 @@ struct application {
     uint32_t heard_in;                     /* period of the last line or command */
     bool unheard;                          /* since then for so long that a motion was stopped */
     bool awaits_enable;                    /* `chosen` does, as it may differ from them */
-    char stored_refusal[DRIVE_ERROR_TEXT]; /* of what is stored: why, or what is passed over */
+    char stored_refusal[DRIVE_ERROR_TEXT]; /* of what is stored, until it is announced: why, or
+                                              what is passed over */
     struct machine_io io;
     struct console console;
     struct link *link; /* NULL: none */

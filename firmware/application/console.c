@@ -161,9 +161,9 @@ static bool announce(struct application *application)
     if (!announced->start) {
         announced->start = true;
         report_start(&text, application);
-    } else if (application->stored_refusal[0] != '\0' && !announced->refused_settings) {
-        announced->refused_settings = true;
+    } else if (application->stored_refusal[0] != '\0') {
         report_refused_settings(&text, application);
+        application->stored_refusal[0] = '\0';
     } else if (application->drive.planner.underruns != announced->underruns) {
         announced->underruns = application->drive.planner.underruns;
         text_put(&text, "warning: the reference rests: what continues it came too late");

@@ -33,7 +33,6 @@ enum {
 /* What of a drive was announced last. */
 struct console_announced {
     bool start;
-    bool refused_settings;
     bool unheard;
     uint8_t stop; /* enum machine_stop */
     uint8_t heat; /* THERMAL_... of drive/thermal_watch.h */

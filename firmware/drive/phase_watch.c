@@ -16,6 +16,7 @@
 #define GAP_PERIODS       14u      /* of one voltage, as it was at the look */
 #define PUSHED_MAX        NUM(1.0) /* twice the rated current */
 #define MISSED            3u
+#define COUNT_MAX         15u
 #define VOLTAGE_ERROR     0.05 /* of the supply */
 #define COUNTS_ERROR      2.0
 #define RESISTANCE_ERROR  NUM(0.6)   /* what a winding that warms up or is not known may have */
@@ -52,10 +53,9 @@ static bool stands(uint16_t at, uint16_t code, const struct phase_watch_params *
     return away <= (int)params->noise_codes && -away <= (int)params->noise_codes;
 }
 
-/* One more, of four bits. */
 static uint8_t counted(uint8_t count)
 {
-    return count < 15u ? (uint8_t)(count + 1u) : count;
+    return (uint8_t)(count + (count < COUNT_MAX));
 }
 
 _Static_assert(DRIVE_FAULT_OPEN_PHASE_A + 1 == (int)DRIVE_FAULT_OPEN_PHASE_B &&
@@ -77,20 +77,20 @@ static bool goes_on(struct phase_watch *watch, const struct phase_watch_params *
     return false;
 }
 
+/* strays: its reference is another one than when it came to stand. */
 static void count_look(struct phase_watch *watch, const struct phase_look *look, int phase,
-                       uint32_t passed)
+                       uint32_t passed, bool strays)
 {
-    const num_t away = num_abs(look->wanted[phase] - watch->wanted[phase]);
     const uint8_t missed = watch->count[phase].missed;
 
-    for (uint32_t k = 0; k < passed && num_abs(watch->pushed[phase]) <= PUSHED_MAX; k++) {
+    for (; passed > 0u && num_abs(watch->pushed[phase]) <= PUSHED_MAX; passed--) {
         watch->pushed[phase] += look->push[phase];
     }
-    watch->count[phase].looks = counted(watch->count[phase].looks) & 15u;
-    if (away > CURRENT_MIN) {
-        watch->count[phase].missed = counted(missed) & 15u;
-    } else if (missed > 0u) {
-        watch->count[phase].missed = (missed - 1u) & 15u;
+    watch->count[phase].looks = counted(watch->count[phase].looks);
+    if (strays) {
+        watch->count[phase].missed = counted(missed);
+    } else {
+        watch->count[phase].missed = (uint8_t)(missed - (missed > 0u));
     }
 }
 
@@ -108,13 +108,17 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
         const uint8_t name = (uint8_t)((look->flows[phase] ? DRIVE_FAULT_CURRENT_SENSOR_A
                                                            : DRIVE_FAULT_OPEN_PHASE_A) +
                                        phase);
-        const bool is_gone =
+        const bool strays = num_abs(look->wanted[phase] - watch->wanted[phase]) > CURRENT_MIN;
+        bool gone =
             look->held && !look->flows[phase] && num_abs(look->wanted[phase]) > CURRENT_GONE;
 
         if (goes_on(watch, params, look, phase, passed)) {
-            count_look(watch, look, phase, passed);
+            count_look(watch, look, phase, passed, strays);
+        } else {
+            gone = gone && !strays && watch->count[phase].followed;
         }
-        if ((is_gone || watch->count[phase].missed >= MISSED) && look->off[phase] >= furthest) {
+        watch->count[phase].followed = look->off[phase] < CURRENT_DEVIATION;
+        if ((gone || watch->count[phase].missed >= MISSED) && look->off[phase] >= furthest) {
             furthest = look->off[phase];
             watch->suspected = name;
         }
@@ -204,18 +208,17 @@ static void look_at(struct phase_look *look, const struct drive *drive)
         measurement_current(&drive->measurement, &drive->params.measurement, code_a, code_b);
     const struct phases emf = back_emf(drive);
     const struct actuation *actuation = &drive->actuation;
-    const bool follow = follows(drive, look, current);
 
     look->code[0] = code_a;
     look->code[1] = code_b;
-    look->push[0] =
-        follow ? NUM(0.0) : push(drive, current.a, actuation->command.a + actuation->loss.a, emf.a);
-    look->push[1] =
-        follow ? NUM(0.0) : push(drive, current.b, actuation->command.b + actuation->loss.b, emf.b);
+    if (!follows(drive, look, current)) {
+        look->push[0] = push(drive, current.a, actuation->command.a + actuation->loss.a, emf.a);
+        look->push[1] = push(drive, current.b, actuation->command.b + actuation->loss.b, emf.b);
+    }
     look->larger = num_abs(current.b) > num_abs(current.a);
     look->flows[0] = num_abs(current.a) > CURRENT_MIN;
     look->flows[1] = num_abs(current.b) > CURRENT_MIN;
-    look->held = drive->hold.active && !drive->hold.leads;
+    look->held = drive->hold.active;
 }
 
 /* A hold whose winding shows a resistance that none has: its current is not what is measured. */

@@ -23,9 +23,10 @@
  * Before that is certain, the rotor may have left the estimate or a comparator have tripped. So it
  * is suspected before, and what else ends the operation and may come of it goes by its name
  * (state_machine.c). Signs: three looks in which a current stands while its
- * reference has gone away by 5 % of the rated current; in a hold at rest, a phase without a current
- * of which 20 % of the rated are asked for. A voltage law has no such reference. Of two phases it
- * is the one that is further off.
+ * reference has gone away by 5 % of the rated current; in a hold, a phase without a current of
+ * which 20 % of the rated are asked for, from one look to the next with the same asked for, or
+ * standing. A rotor that is shaken takes its currents through zero, but with what is asked for, or
+ * behind it. A voltage law has no such reference. Of two phases it is the one that is further off.
  *
  * In the background, by four looks at least; behind fourteen periods that it does not come to it
  * begins anew.
@@ -49,8 +50,9 @@ struct phase_watch {
     uint32_t period;  /* looked at last */
     uint16_t code[2]; /* at which the current stands */
     struct {
-        uint8_t looks : 4;  /* that have found it there */
-        uint8_t missed : 4; /* in which its reference was elsewhere, less the others since */
+        uint8_t looks;  /* that have found it there */
+        uint8_t missed; /* in which its reference was elsewhere, less the others since */
+        bool followed;  /* its reference, at the last look */
     } count[2];
     uint8_t suspected; /* fault: what another one comes of */
     int32_t lag;       /* of the estimate behind the reference of late, 2^-32 turns */

@@ -202,7 +202,11 @@ static void test_a_current_that_stands_while_another_is_asked_for_is_suspected(v
 /* What a hold asks for is there, but for a lead that is not. */
 static void test_a_hold_whose_current_is_gone_is_suspected_at_once(void)
 {
-    look.held = true;
+    look.held = look.flows[1] = true;
+    look.code[1] = ZERO + 900;
+    look_behind(NUM(0.101));
+    look.flows[1] = false;
+    look.code[1] = ZERO;
     look_behind(NUM(0.099));
     TEST_ASSERT_EQUAL_STRING("none", suspected());
     look_behind(NUM(0.101));
@@ -215,11 +219,40 @@ static void test_a_hold_whose_current_is_gone_is_suspected_at_once(void)
     TEST_ASSERT_EQUAL_STRING("none", suspected());
 }
 
+/* Of phase b: the current is zero, behind a look at this one, with this one asked for, which it was
+   off by so much. */
+static const char *suspected_behind(uint16_t code, num_t wanted, num_t off)
+{
+    setUp();
+    look.held = look.flows[1] = true;
+    look.code[1] = code;
+    look.off[1] = off;
+    look_behind(wanted);
+    look.flows[1] = false;
+    look.code[1] = ZERO;
+    look.off[1] = NUM(0.2);
+    look_behind(NUM(0.2));
+    return suspected();
+}
+
+/* A rotor that is shaken takes its currents through zero: what is asked for swings along, or the
+   current has not followed before. */
+static void test_a_current_that_passes_zero_is_no_broken_lead(void)
+{
+    TEST_ASSERT_EQUAL_STRING("open-phase-b", suspected_behind(ZERO + 400, NUM(0.2249), NUM(0.074)));
+    TEST_ASSERT_EQUAL_STRING("none", suspected_behind(ZERO + 400, NUM(0.2251), NUM(0.074)));
+    TEST_ASSERT_EQUAL_STRING("none", suspected_behind(ZERO + 400, NUM(0.2249), NUM(0.076)));
+    look_behind(NUM(0.3)); /* it stays, as one that passes does not */
+    TEST_ASSERT_EQUAL_STRING("open-phase-b", suspected());
+}
+
 /* The other answers what it does to the rotor. */
 static void test_of_two_phases_the_one_that_is_further_off_is_suspected(void)
 {
     for (int furthest = 0; furthest < 2; furthest++) {
+        setUp();
         look.held = true;
+        look_behind(NUM(0.2)); /* it stands */
         look.wanted[0] = NUM(0.2);
         look.off[furthest] = NUM(0.3);
         look.off[1 - furthest] = NUM(0.2);
@@ -250,6 +283,7 @@ int main(void)
     RUN_TEST(test_what_passes_for_noise);
     RUN_TEST(test_a_current_that_stands_while_another_is_asked_for_is_suspected);
     RUN_TEST(test_a_hold_whose_current_is_gone_is_suspected_at_once);
+    RUN_TEST(test_a_current_that_passes_zero_is_no_broken_lead);
     RUN_TEST(test_of_two_phases_the_one_that_is_further_off_is_suspected);
     RUN_TEST(test_what_stands_for_long_goes_on_standing);
     return UNITY_END();
