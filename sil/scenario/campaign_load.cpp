@@ -26,7 +26,7 @@ constexpr double borne = 0.8, vibration = 0.1; /* of the rated torque */
 /* Of the run: when the load begins, the longest it takes to grow, how long it then stays. */
 constexpr double begin = 0.04, longest_ramp = 0.5, stay = 0.1;
 constexpr double shortest_ramp_s = 0.01;
-constexpr double latest_s = 0.1; /* of a fault, behind half an electrical turn */
+constexpr double latest_s = 0.04; /* of a fault, behind half an electrical turn */
 
 enum Stream : std::uint64_t { of_kind, of_plant, of_load };
 enum class Kind { growing, overload, vibration_at_rest, vibration_in_motion };
