@@ -67,12 +67,17 @@ static void add(struct offset_calibration *calibration, const int32_t code[OFFSE
     }
 }
 
+static bool is_too_large(const struct offset_calibration_params *params, int32_t sum)
+{
+    return magnitude(sum) > OFFSET_CODES_MAX / OFFSET_DEVIATION_CODES_MAX * params->deviation_max;
+}
+
 /* Whether what a channel has read is that of a sensor. Leaves the sum that counts, and after stage
    1 what stage 2 is compared with: a voltage may differ by anything, and takes stage 2. */
 static bool judge(struct offset_channel *channel, const struct offset_calibration_params *params,
                   bool is_current, bool bridge_on)
 {
-    if (magnitude(channel->sum) > OFFSET_CODES_MAX * OFFSET_SAMPLES) {
+    if (is_too_large(params, channel->sum)) {
         return false;
     }
     if (bridge_on) {
@@ -111,8 +116,13 @@ static bool end_stage(struct offset_calibration *calibration,
     return true;
 }
 
-__attribute__((noinline)) static num_t mean_offset(int32_t sum, coef_t per_code)
+/* A sum that is too large is shown, in whole codes: as per-unit value it would be too large. */
+__attribute__((noinline)) static num_t mean_offset(const struct offset_calibration_params *params,
+                                                   int32_t sum, coef_t per_code)
 {
+    if (is_too_large(params, sum)) {
+        return num_from_code(sum / OFFSET_SAMPLES, per_code);
+    }
     return num_mul(num_from_code(sum, per_code), NUM(1.0 / OFFSET_SAMPLES));
 }
 
@@ -124,20 +134,20 @@ struct phases offset_calibration_drop_error(const struct offset_calibration *cal
     const num_t error = params->drop_resistance - resistance;
 
     return (struct phases){
-        num_mul(mean_offset(calibration->channel[0].flowing, scales->current), error),
-        num_mul(mean_offset(calibration->channel[1].flowing, scales->current), error)};
+        num_mul(mean_offset(params, calibration->channel[0].flowing, scales->current), error),
+        num_mul(mean_offset(params, calibration->channel[1].flowing, scales->current), error)};
 }
 
 static void find(const struct offset_calibration *calibration,
                  const struct offset_calibration_params *params,
                  const struct measurement_params *scales, struct channels *offset)
 {
-    offset->current.a = mean_offset(calibration->channel[0].sum, scales->current);
-    offset->current.b = mean_offset(calibration->channel[1].sum, scales->current);
-    offset->voltage.a = mean_offset(calibration->channel[2].sum, scales->phase_voltage) -
-                        mean_offset(calibration->channel[0].flowing, params->drop);
-    offset->voltage.b = mean_offset(calibration->channel[3].sum, scales->phase_voltage) -
-                        mean_offset(calibration->channel[1].flowing, params->drop);
+    offset->current.a = mean_offset(params, calibration->channel[0].sum, scales->current);
+    offset->current.b = mean_offset(params, calibration->channel[1].sum, scales->current);
+    offset->voltage.a = mean_offset(params, calibration->channel[2].sum, scales->phase_voltage) -
+                        mean_offset(params, calibration->channel[0].flowing, params->drop);
+    offset->voltage.b = mean_offset(params, calibration->channel[3].sum, scales->phase_voltage) -
+                        mean_offset(params, calibration->channel[1].flowing, params->drop);
 }
 
 enum offset_result offset_calibration_step(struct offset_calibration *calibration,
@@ -157,12 +167,12 @@ enum offset_result offset_calibration_step(struct offset_calibration *calibratio
     if (calibration->samples < OFFSET_SAMPLES) {
         return OFFSETS_PENDING;
     }
-    if (!end_stage(calibration, params)) {
-        return OFFSETS_OUT_OF_RANGE;
-    }
-    if (calibration->samples < OFFSET_SAMPLES) { /* the second stage follows */
+
+    const bool sound = end_stage(calibration, params);
+
+    if (sound && calibration->samples < OFFSET_SAMPLES) { /* the second stage follows */
         return OFFSETS_PENDING;
     }
     find(calibration, params, scales, offset);
-    return OFFSETS_FOUND;
+    return sound ? OFFSETS_FOUND : OFFSETS_OUT_OF_RANGE;
 }

@@ -27,7 +27,7 @@
    twentieth. */
 #define OFFSET_SAMPLES 512
 
-/* An offset above this many codes is a defect, not an offset. */
+/* An offset above this many codes of 12 bits is a defect, not an offset. */
 #define OFFSET_CODES_MAX 64
 
 /* Of stage 2 until amplifiers, filters of the legs and the slowest windings have settled. */
@@ -93,8 +93,9 @@ struct phases offset_calibration_drop_error(const struct offset_calibration *cal
                                             const struct measurement_params *scales,
                                             num_t resistance);
 
-/* One period, unless it is done. The bridge is to be on with all legs at half duty as soon as
-   bridge_on is set. Apart: compiled into its caller, it would be made large. */
+/* One period, unless it is done: `offset` is set unless more are pending, out of range as it was
+   read, to be shown. The bridge is to be on with all legs at half duty as soon as bridge_on is set.
+   Apart: compiled into its caller, it would be made large. */
 __attribute__((noinline)) enum offset_result
 offset_calibration_step(struct offset_calibration *calibration,
                         const struct offset_calibration_params *params,

@@ -353,17 +353,16 @@ static void calibrate_offsets(struct drive *drive, const struct hal_samples *sam
         find_position_or_power_up(drive);
         return;
     }
-    switch (offset_calibration_step(&drive->enabling.calibration,
-                                    &drive->enabling.calibration_params, &drive->params.measurement,
-                                    samples, &offset)) {
-    case OFFSETS_PENDING:
-        break;
-    case OFFSETS_FOUND:
+
+    const enum offset_result result =
+        offset_calibration_step(&drive->enabling.calibration, &drive->enabling.calibration_params,
+                                &drive->params.measurement, samples, &offset);
+
+    if (result != OFFSETS_PENDING) {
         measurement_set_offset(&drive->measurement, offset);
-        break;
-    case OFFSETS_OUT_OF_RANGE:
+    }
+    if (result == OFFSETS_OUT_OF_RANGE) {
         state_machine_fault(drive, DRIVE_FAULT_OFFSET_RANGE);
-        break;
     }
 }
 

@@ -36,10 +36,12 @@
     FAULT(ESTIMATE_RANGE, 0xff01, "estimate-range", "the estimate has lost the rotor", NO_LIMIT,   \
           UNCERTAIN,                                                                               \
           "check the motor's settings, speed_limit_rad_s and the load; move more gently")          \
-    FAULT(OFFSET_RANGE, 0x5210, "offset-range",                                                    \
-          "a sensor's offset is too large to be one, or the rotor is being turned", NO_LIMIT,      \
-          WITH_ENCODER,                                                                            \
-          "let the rotor come to rest before enabling; if it was, check the current sensing")      \
+    FAULT(                                                                                         \
+        OFFSET_RANGE, 0x5210, "offset-range",                                                      \
+        "a sensor's offset is too large to be one, or the rotor is being turned", NO_LIMIT,        \
+        WITH_ENCODER,                                                                              \
+        "let the rotor come to rest before enabling; if it was, current_offset_a_A and the three " \
+        "signals behind it say which sensor to check")                                             \
     FAULT(POSITION_NOT_FOUND, 0x7122, "position-not-found",                                        \
           "no current flows, or the rotor has not followed the alignment, or not come to rest",    \
           NO_LIMIT, UNCERTAIN,                                                                     \

@@ -61,6 +61,16 @@
          "by what share the torque constant that motion shows is above that of the settings")      \
     REAL(0x232a, inductance_change, enabling.inductance_change, "", UNTRACED, ratio, "",           \
          "by what share the inductance found while enabling is above that of the settings")        \
+    REAL(0x232b, current_offset_a_A, measurement.offset.current.a, "", UNTRACED, current_A, "A",   \
+         "what enabling found the sensor of the current of phase a to read where there is none, "  \
+         "and takes off")                                                                          \
+    REAL(0x232c, current_offset_b_A, measurement.offset.current.b, "", UNTRACED, current_A, "A",   \
+         "likewise, that of phase b")                                                              \
+    REAL(0x232d, voltage_offset_a_V, measurement.offset.voltage.a, "", UNTRACED, voltage_V, "V",   \
+         "what enabling found the sensor of the voltage of phase a to read where there is none, "  \
+         "and takes off")                                                                          \
+    REAL(0x232e, voltage_offset_b_V, measurement.offset.voltage.b, "", UNTRACED, voltage_V, "V",   \
+         "likewise, that of phase b")                                                              \
     COUNT(0x2305, reference_underruns, planner.underruns, "underruns", UNTRACED,                   \
           "sines and set-points whose continuation came too late")                                 \
     COUNT(                                                                                         \

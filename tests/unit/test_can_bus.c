@@ -463,7 +463,8 @@ static void test_whatever_comes_the_node_goes_on(void)
     come(0x000, "8200", 4);
     expect_sent(0, (uint16_t)(0x700u + bench_link.node), "00");
     come((uint16_t)bench_link.objects.sdo_request, "4000100000000000", 4);
-    expect_sent(1, (uint16_t)bench_link.objects.sdo_response, "4300100092010400");
+    /* Behind the emergency of a drive that is in fault. */
+    expect_sent(bus.sent_count - 1u, (uint16_t)bench_link.objects.sdo_response, "4300100092010400");
 }
 
 /* An argument is how many inputs there are to be of any content. */

@@ -690,7 +690,8 @@ static void test_state_and_signals_name_all_that_they_show(void)
         "omega_est_rad_s=0 load_torque_est_Nm=0 theta_ref_rad=0 omega_ref_rad_s=0 "
         "reference_moving=no holding=no synchronism=sure i_d_A=0 i_q_A=0 i_d_ref_A=0 i_q_ref_A=0 "
         "u_d_V=0 u_q_V=0 resistance_est_ohm=0.37 bus_V=24 phase_imbalance=0 "
-        "torque_constant_change=0 inductance_change=0 reference_underruns=0 commands_dropped=0 "
+        "torque_constant_change=0 inductance_change=0 current_offset_a_A=0 current_offset_b_A=0 "
+        "voltage_offset_a_V=0 voltage_offset_b_V=0 reference_underruns=0 commands_dropped=0 "
         "dropped_kind=enable "
         "position_reference=assumed "
         "motor_zero_rad=0 motor_heat=0 bridge_derating=0\n",

@@ -263,6 +263,19 @@ static void test_an_offset_too_large_to_be_one_is_a_fault(void)
     }
 }
 
+/* A user sees which sensor it is, and by how much: within half a code, up to the end of its range.
+ */
+static void test_what_is_too_large_is_shown(void)
+{
+    const double current_per_code = 12.0 / 4096.0 / 6.0, voltage_per_code = 62.4 / 4096.0 / 24.0;
+
+    TEST_ASSERT_EQUAL(OFFSETS_OUT_OF_RANGE, calibrate_channel(1, 2047));
+    TEST_ASSERT_NUM_WITHIN(0.5 * current_per_code, 2047 * current_per_code, offset.current.b);
+    TEST_ASSERT_NUM_WITHIN(0.5 * current_per_code, 0.0, offset.current.a);
+    TEST_ASSERT_EQUAL(OFFSETS_OUT_OF_RANGE, calibrate_channel(2, -1500));
+    TEST_ASSERT_NUM_WITHIN(0.5 * voltage_per_code, -1500 * voltage_per_code, offset.voltage.a);
+}
+
 /* A voltage of 60 codes with the bridge off, 65 with it on. */
 static void test_an_offset_that_only_switching_makes_too_large_is_a_fault(void)
 {
@@ -319,6 +332,11 @@ static void test_finer_converters_have_as_many_more_codes(void)
     params = offset_calibration_design(&fine, &small_motor, &base);
     switching_shifts(30.0, 0.0, 0.0, 0.0);
     TEST_ASSERT_EQUAL(OFFSETS_FOUND, calibrate());
+    offsets(0.0, OFFSET_CODES_MAX * 16.0, 0.0, 0.0);
+    TEST_ASSERT_EQUAL(OFFSETS_FOUND, calibrate());
+    offsets(0.0, OFFSET_CODES_MAX * 16.0 + 1.0, 0.0, 0.0);
+    TEST_ASSERT_EQUAL(OFFSETS_OUT_OF_RANGE, calibrate());
+    offsets(0.0, 0.0, 0.0, 0.0);
     params = offset_calibration_design(&bench_facts, &small_motor, &base);
     TEST_ASSERT_EQUAL(OFFSETS_OUT_OF_RANGE, calibrate());
 }
@@ -362,6 +380,7 @@ int main(void)
     RUN_TEST(test_what_delays_make_is_no_rotor_that_turns);
     RUN_TEST(test_the_back_emf_of_a_rotor_that_turns_with_the_bridge_off_is_no_offset);
     RUN_TEST(test_an_offset_too_large_to_be_one_is_a_fault);
+    RUN_TEST(test_what_is_too_large_is_shown);
     RUN_TEST(test_an_offset_that_only_switching_makes_too_large_is_a_fault);
     RUN_TEST(test_the_largest_offset_is_found_to_its_full_size);
     RUN_TEST(test_a_rotor_that_is_turned_is_noticed_by_its_currents);

@@ -631,6 +631,7 @@ static void test_an_offset_out_of_range_is_a_fault(void)
     post_kind(DRIVE_COMMAND_ENABLE);
     run(OFFSET_SAMPLES);
     has_fault(DRIVE_FAULT_OFFSET_RANGE);
+    TEST_ASSERT_TRUE(drive.measurement.offset.current.a > NUM(0.0)); /* shown */
 }
 
 static void test_the_second_stage_of_the_offsets_is_protected_as_operation_is(void)
