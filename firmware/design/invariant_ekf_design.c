@@ -382,6 +382,15 @@ __attribute__((noinline)) void invariant_ekf_bear_offset(double period_s,
     gains->load_step_Nm = larger(gains->load_step_Nm, feigned_Nm);
 }
 
+/* Of that in motion, since a step is over within a swing. */
+#define ANGLE_FOUND_IN_STEP 2.0
+
+void invariant_ekf_find_angle_in_step(const struct invariant_ekf_gains *moving,
+                                      struct invariant_ekf_hold_gains *hold)
+{
+    hold->following.k_angle_d_rad_A = ANGLE_FOUND_IN_STEP * moving->k_angle_d_rad_A;
+}
+
 bool invariant_ekf_settled_hold_design(const struct motor_params *motor, double period_s,
                                        double hold_current_A,
                                        struct invariant_ekf_hold_gains *gains,

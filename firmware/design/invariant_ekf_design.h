@@ -34,12 +34,12 @@
  *   T_settled += load_settle away
  */
 struct invariant_ekf_gains {
-    double k_current_d;              /* A per A */
-    double k_current_q;              /* A per A */
-    double k_speed_q_rad_As;         /* rad/s per A */
-    double k_angle_d_rad_A;          /* mechanical rad per A; odd in the speed; 0 in hold */
-    double k_angle_q_rad_A;          /* mechanical rad per A */
-    double k_load_q_Nm_A;            /* N m per A */
+    double k_current_d;      /* A per A */
+    double k_current_q;      /* A per A */
+    double k_speed_q_rad_As; /* rad/s per A */
+    double k_angle_d_rad_A;  /* mechanical rad per A; odd in the speed; in hold 0 but of a step */
+    double k_angle_q_rad_A;  /* mechanical rad per A */
+    double k_load_q_Nm_A;    /* N m per A */
     double angle_d_full_speed_rad_s; /* |w_est| above which k_angle_d acts in full */
     double k_bias_d_V_A;             /* V per A; odd in the speed; 0 in hold */
     double k_bias_q_V_A;             /* V per A; 0 but in the unloaded hold */
@@ -98,6 +98,11 @@ bool invariant_ekf_hold_design(const struct motor_params *motor, double period_s
  */
 void invariant_ekf_bear_offset(double period_s, double feigned_speed_rad_s,
                                struct invariant_ekf_hold_gains *gains);
+
+/* While a load step is followed nu_d shows the angle, too, where it is the back-EMF's: not with an
+   error of the resistance, nor of the voltage. */
+void invariant_ekf_find_angle_in_step(const struct invariant_ekf_gains *moving,
+                                      struct invariant_ekf_hold_gains *hold);
 
 /* The same in two parts, one behind the other, of half its time each. */
 bool invariant_ekf_settled_hold_design(const struct motor_params *motor, double period_s,

@@ -101,6 +101,14 @@ __attribute__((noinline)) static bool fit_hold(const struct hal_facts *facts,
     return false;
 }
 
+/* As it is sampled, or as it is commanded and what the bridge takes of that. */
+static bool voltage_is_known(const struct drive *drive, const struct drive_settings *settings)
+{
+    return settings->bridge_loss_compensation ||
+           (settings->voltage_source == DRIVE_VOLTAGE_MEASURED &&
+            drive->board->facts->has_phase_voltages);
+}
+
 __attribute__((noinline)) static bool design_invariant_ekf(struct drive *drive,
                                                            const struct drive_settings *settings,
                                                            double period_s,
@@ -128,6 +136,9 @@ __attribute__((noinline)) static bool design_invariant_ekf(struct drive *drive,
     if (settings_ask_for_hold(settings) &&
         !fit_hold(drive->board->facts, settings, &holding, error)) {
         return false;
+    }
+    if (settings->resistance_adaptation && voltage_is_known(drive, settings)) {
+        invariant_ekf_find_angle_in_step(&moving, &holding);
     }
     if (!settings->resistance_adaptation) {
         holding.quiet.k_resistance_ohm_A2 = 0.0;

@@ -120,6 +120,17 @@ __attribute__((noinline)) static void note_swing(struct invariant_ekf *ekf, num_
     ekf->calm_blocks = CALM_BLOCKS;
 }
 
+/* Behind its estimate is a rotor that springs back; of a light one's swing more than that would be
+   too much. */
+num_t invariant_ekf_found_in_step(const struct invariant_ekf *ekf,
+                                  const struct invariant_ekf_params *params, num_t innovation_d)
+{
+    const num_t speed = ekf->estimate.next.speed;
+    const num_t turns = invariant_ekf_odd_turns(params, &params->following, speed, innovation_d);
+
+    return (turns > NUM(0.0)) == (speed > NUM(0.0)) ? turns : num_half(turns);
+}
+
 void invariant_ekf_follow_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params)
 {
     note_swing(ekf, invariant_ekf_away_from_settled_load(ekf));

@@ -10,7 +10,7 @@
  *   predict with the voltage that is expected over the period (motor_model.h); at its end correct,
  *   with i_hat moved by what the voltage was another than expected:
  *   i_hat += k_i (i - i_hat)          w_hat  += k_w nu_q
- *   theta += k_td sat(w/w_s) nu_d + k_tq nu_q
+ *   theta += k_td sat(w/w_s) nu_d + k_tq nu_q          k_td: in hold while a load step is followed
  *   T_L   += k_T nu_q
  *   b     += (k_bd sat(w/w_s) nu_d + k_bq nu_q) q      q: the q axis, in phase coordinates: the
  *                                                     rotor's; in hold the frame's, since what
@@ -30,6 +30,11 @@
  * so that the estimate cannot run away with the current that compensates it. A rotor that is led
  * along a creeping reference passes its detent torque, and a machine may vibrate, which several
  * steps on end show: there what exceeds three times the mean difference of late is a step.
+ *
+ * A rotor that a slow load has displaced is not where the estimate has it, and shows that when it
+ * is released: it swings with a back-EMF along d, too. So while a step is followed nu_d moves the
+ * angle as in motion, and twice as much where the rotor is ahead of the estimate, as under a
+ * growing load.
  *
  * The resistance has some 20 ms to be found, so it need not move in every period: all that nu_d has
  * been since it moved last moves it by as much as if it had done so in each. i_d is its mean of
@@ -149,6 +154,12 @@ static inline num_t invariant_ekf_take_innovation_sum(struct invariant_ekf *ekf,
    Not if the hold leads its rotor, whose lag behind its frame shows in nu_d, too. */
 void invariant_ekf_adapt_resistance(struct invariant_ekf *ekf,
                                     const struct invariant_ekf_params *params, bool leads);
+
+/* While a load step is followed: by how much nu_d moves the angle, electrical turns; half as much
+   against the rotor's direction. */
+__attribute__((noinline)) num_t
+invariant_ekf_found_in_step(const struct invariant_ekf *ekf,
+                            const struct invariant_ekf_params *params, num_t innovation_d);
 
 /* A load step in a settled hold. Of the offset stays what has lasted: the rest may have been
  * motion. */

@@ -14,14 +14,24 @@ struct invariant_ekf_correction {
     num_t load_torque;
 };
 
+/* The angle's correction by nu_d, which is odd in the speed. */
+static inline num_t invariant_ekf_odd_turns(const struct invariant_ekf_params *params,
+                                            const struct invariant_ekf_gain_set *gains, num_t speed,
+                                            num_t innovation_d)
+{
+    const struct invariant_ekf_gain_set *gain = KNOWN(invariant_ekf_gain_set, gains);
+    const num_t full = params->odd_gain_speed;
+    const num_t direction = num_clamp(speed, -full, full);
+
+    return num_mul(innovation_d, num_mul_coef(direction, gain->angle_d));
+}
+
 static inline struct invariant_ekf_correction
 invariant_ekf_correct_in_motion(const struct invariant_ekf_params *params, num_t speed,
                                 struct dq innovation)
 {
     const struct invariant_ekf_gain_set *gain = KNOWN(invariant_ekf_gain_set, &params->moving);
-    const num_t full = params->odd_gain_speed;
-    const num_t direction = num_clamp(speed, -full, full);
-    const num_t odd = num_mul(innovation.d, num_mul_coef(direction, gain->angle_d));
+    const num_t odd = invariant_ekf_odd_turns(params, gain, speed, innovation.d);
 
     return (struct invariant_ekf_correction){
         .turns = odd + num_mul_coef(innovation.q, gain->angle_q),
@@ -122,9 +132,13 @@ invariant_ekf_step_in_hold(struct invariant_ekf *ekf, const struct invariant_ekf
 {
     const struct invariant_ekf_gain_set *gain = invariant_ekf_hold_gains(ekf, params);
     const num_t away = invariant_ekf_away_from_settled_load(ekf);
+    struct invariant_ekf_correction by =
+        invariant_ekf_correct_in_hold(gain, innovation->in_frame, away);
 
-    invariant_ekf_correct(ekf, gain, innovation,
-                          invariant_ekf_correct_in_hold(gain, innovation->in_frame, away), frame);
+    if (RARE(gain == &params->following)) {
+        by.turns += invariant_ekf_found_in_step(ekf, params, innovation->in_frame.d);
+    }
+    invariant_ekf_correct(ekf, gain, innovation, by, frame);
 }
 
 /* From S(k) to S(k+1), under this mean voltage. */

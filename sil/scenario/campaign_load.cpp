@@ -82,10 +82,11 @@ void write_growing(ScenarioText &text, Draw &draw, double km, const RatingScales
 {
     const double ramp_s = draw_ramp(draw, duration_s);
     const double fall_s = rounded(begin_s(duration_s) + ramp_s + stay * duration_s, period_parts);
-    const double share = draw.either_sign(borne), falls_in = draw.between(0, 0.5, 100);
+    const double share = draw.either_sign(borne);
+    const double longest_fall_s = (duration_s - fall_s) / 2;
     write_ramp(text, begin_s(duration_s), torque_of("load_torque_Nm", share, km, ratings), ramp_s);
     write_ramp(text, fall_s, "load_torque_Nm = 0",
-               rounded((duration_s - fall_s) * falls_in, period_parts));
+               rounded(draw.over_octaves(shortest_ramp_s, longest_fall_s), period_parts));
 }
 
 void write_overload(ScenarioText &text, Draw &draw, double km, const RatingScales &ratings,

@@ -35,6 +35,7 @@ void setUp(void)
         TEST_ASSERT_TRUE(invariant_ekf_motion_design(&bench_params, PERIOD_S, &moving, error));
         TEST_ASSERT_TRUE(
             invariant_ekf_hold_design(&bench_params, PERIOD_S, HOLD_A, &holding, error));
+        invariant_ekf_find_angle_in_step(&moving, &holding);
         params = invariant_ekf_scale(&model, &base, &moving, &holding);
         designed = true;
     }
@@ -164,6 +165,8 @@ static struct state corrected(struct state x, struct state y, const struct invar
     const double h = 50.0 * PERIOD_S * x.speed;
     const struct bench_vector nu = bench_to_rotor(i.a - y.i_a, i.b - y.i_b, 50.0 * x.angle + h);
     const double direction = fmin(fmax(y.speed / k->angle_d_full_speed_rad_s, -1.0), 1.0);
+    const double odd = k->k_angle_d_rad_A * direction * nu.a;
+    const bool is_behind = hold_rad != NULL && odd * y.speed < 0.0;
     const double k_current = 0.5 * (k->k_current_d + k->k_current_q);
     const double away = x.load - x.settled;
     const struct bench_vector bias = bench_to_phases(
@@ -173,8 +176,8 @@ static struct state corrected(struct state x, struct state y, const struct invar
 
     y.i_a += k_current * (i.a - y.i_a);
     y.i_b += k_current * (i.b - y.i_b);
-    y.angle += k->k_angle_d_rad_A * direction * nu.a + k->k_angle_q_rad_A * nu.b +
-               k->angle_return_rad_Nm * away;
+    y.angle +=
+        (is_behind ? 0.5 * odd : odd) + k->k_angle_q_rad_A * nu.b + k->angle_return_rad_Nm * away;
     y.speed += k->k_speed_q_rad_As * nu.b;
     y.load += k->k_load_q_Nm_A * nu.b - k->load_return * away;
     y.bias_a += bias.a;
