@@ -107,7 +107,7 @@ static void add_every_law(enum drive_feedback feedback)
 static void test_without_an_encoder_every_law_has_these_gains(void)
 {
     add_every_law(DRIVE_FEEDBACK_SENSORLESS);
-    is(UINT64_C(0xb9e1b4be730273c2), UINT64_C(0x9d203829f7f1afb4));
+    is(UINT64_C(0xe0615998840c2c7c), UINT64_C(0x8ced44d8889f870d));
 }
 
 static void test_with_an_encoder_every_law_has_these_gains(void)
@@ -152,7 +152,7 @@ static void test_another_motor_on_another_board_has_these_gains(void)
         settings.motion_current_A = 0.2;
         add_design();
     }
-    is(UINT64_C(0x23d70d39c0ba0310), UINT64_C(0xde81102c939ada82));
+    is(UINT64_C(0x9d0e07e9209ac48c), UINT64_C(0x8c74ba9de413d405));
 }
 
 int main(void)
