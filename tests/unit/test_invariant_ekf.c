@@ -564,6 +564,21 @@ static void test_a_load_that_vibrates_is_no_load_and_no_resistance(void)
     }
 }
 
+static void test_behind_its_estimate_a_rotor_is_found_half_as_fast_as_ahead_of_it(void)
+{
+    const num_t nu_d = NUM(0.01);
+
+    for (int way = -1; way <= 1; way += 2) {
+        ekf.estimate.next.speed = num_from_double(way * 0.01);
+        const num_t ahead = invariant_ekf_found_in_step(&ekf, &params, nu_d);
+        const num_t behind = invariant_ekf_found_in_step(&ekf, &params, -nu_d);
+
+        TEST_ASSERT_TRUE((ahead > NUM(0.0)) == (way > 0));
+        TEST_ASSERT_NUM_WITHIN(4.0 * NUM_ROUNDING, -0.5 * num_to_double(ahead), behind);
+        TEST_ASSERT_TRUE(num_abs(behind) > NUM(16.0 * NUM_ROUNDING));
+    }
+}
+
 /* Without motion nothing may drift: a minute of hold is 600,000 such periods. */
 static void test_a_settled_hold_stays_where_it_is(void)
 {
@@ -743,6 +758,7 @@ int main(void)
     RUN_TEST(test_a_hold_of_150_ms_calibrates_the_resistance_from_half_to_one_and_a_half);
     RUN_TEST(test_a_load_step_in_hold_is_followed_before_the_rotor_has_turned_far);
     RUN_TEST(test_a_load_that_vibrates_is_no_load_and_no_resistance);
+    RUN_TEST(test_behind_its_estimate_a_rotor_is_found_half_as_fast_as_ahead_of_it);
     RUN_TEST(test_a_settled_hold_stays_where_it_is);
     RUN_TEST(test_a_settled_hold_returns_to_its_load_with_the_angle);
     RUN_TEST(test_in_an_unloaded_hold_an_offset_is_no_load);
