@@ -122,13 +122,16 @@ __attribute__((noinline)) static void note_swing(struct invariant_ekf *ekf, num_
 
 /* Behind its estimate is a rotor that springs back; of a light one's swing more than that would be
    too much. */
-num_t invariant_ekf_found_in_step(const struct invariant_ekf *ekf,
-                                  const struct invariant_ekf_params *params, num_t innovation_d)
+void invariant_ekf_find_in_step(struct invariant_ekf *ekf,
+                                const struct invariant_ekf_params *params, num_t innovation_d)
 {
-    const num_t speed = ekf->estimate.next.speed;
-    const num_t turns = invariant_ekf_odd_turns(params, &params->following, speed, innovation_d);
+    struct outlook *expected = &ekf->estimate.next;
+    const num_t turns =
+        invariant_ekf_odd_turns(params, &params->following, expected->speed, innovation_d);
+    const bool is_ahead = (turns > NUM(0.0)) == (expected->speed > NUM(0.0));
 
-    return (turns > NUM(0.0)) == (speed > NUM(0.0)) ? turns : num_half(turns);
+    expected->position =
+        position_add(expected->position, angle_from_any_turns(is_ahead ? turns : num_half(turns)));
 }
 
 void invariant_ekf_follow_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params)

@@ -155,11 +155,11 @@ static inline num_t invariant_ekf_take_innovation_sum(struct invariant_ekf *ekf,
 void invariant_ekf_adapt_resistance(struct invariant_ekf *ekf,
                                     const struct invariant_ekf_params *params, bool leads);
 
-/* While a load step is followed: by how much nu_d moves the angle, electrical turns; half as much
-   against the rotor's direction. */
-__attribute__((noinline)) num_t
-invariant_ekf_found_in_step(const struct invariant_ekf *ekf,
-                            const struct invariant_ekf_params *params, num_t innovation_d);
+/* While a load step is followed: nu_d moves the angle that was expected; half as much against the
+   rotor's direction. */
+__attribute__((noinline)) void invariant_ekf_find_in_step(struct invariant_ekf *ekf,
+                                                          const struct invariant_ekf_params *params,
+                                                          num_t innovation_d);
 
 /* A load step in a settled hold. Of the offset stays what has lasted: the rest may have been
  * motion. */

@@ -132,13 +132,12 @@ invariant_ekf_step_in_hold(struct invariant_ekf *ekf, const struct invariant_ekf
 {
     const struct invariant_ekf_gain_set *gain = invariant_ekf_hold_gains(ekf, params);
     const num_t away = invariant_ekf_away_from_settled_load(ekf);
-    struct invariant_ekf_correction by =
-        invariant_ekf_correct_in_hold(gain, innovation->in_frame, away);
 
     if (RARE(gain == &params->following)) {
-        by.turns += invariant_ekf_found_in_step(ekf, params, innovation->in_frame.d);
+        invariant_ekf_find_in_step(ekf, params, innovation->in_frame.d);
     }
-    invariant_ekf_correct(ekf, gain, innovation, by, frame);
+    invariant_ekf_correct(ekf, gain, innovation,
+                          invariant_ekf_correct_in_hold(gain, innovation->in_frame, away), frame);
 }
 
 /* From S(k) to S(k+1), under this mean voltage. */
