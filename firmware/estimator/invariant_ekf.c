@@ -120,20 +120,6 @@ __attribute__((noinline)) static void note_swing(struct invariant_ekf *ekf, num_
     ekf->calm_blocks = CALM_BLOCKS;
 }
 
-/* Behind its estimate is a rotor that springs back; of a light one's swing more than that would be
-   too much. */
-void invariant_ekf_find_in_step(struct invariant_ekf *ekf,
-                                const struct invariant_ekf_params *params, num_t innovation_d)
-{
-    struct outlook *expected = &ekf->estimate.next;
-    const num_t turns =
-        invariant_ekf_odd_turns(params, &params->following, expected->speed, innovation_d);
-    const bool is_ahead = (turns > NUM(0.0)) == (expected->speed > NUM(0.0));
-
-    expected->position =
-        position_add(expected->position, angle_from_any_turns(is_ahead ? turns : num_half(turns)));
-}
-
 void invariant_ekf_follow_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params)
 {
     note_swing(ekf, invariant_ekf_away_from_settled_load(ekf));
@@ -172,6 +158,20 @@ void invariant_ekf_watch_hold(struct invariant_ekf *ekf, const struct invariant_
                       (leads || ekf->swings >= VIBRATION_SWINGS ? ekf->usual_change : NUM(0.0));
 }
 
+/* Behind its estimate is a rotor that springs back; of a light one's swing more than that would be
+   too much. */
+static void find_in_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
+                         num_t innovation_d)
+{
+    struct outlook *expected = &ekf->estimate.next;
+    const num_t turns =
+        invariant_ekf_odd_turns(params, &params->following, expected->speed, innovation_d);
+    const bool is_ahead = (turns > NUM(0.0)) == (expected->speed > NUM(0.0));
+
+    expected->position =
+        position_add(expected->position, angle_from_any_turns(is_ahead ? turns : num_half(turns)));
+}
+
 /* More than a sum of nu_d comes to in a few periods of a hold; fixed point multiplies no more. */
 #define ADAPTING_SUM_MAX NUM(8.0)
 
@@ -185,6 +185,9 @@ void invariant_ekf_adapt_resistance(struct invariant_ekf *ekf,
 
     ekf->adapted_at = i_d;
     invariant_ekf_carry_sum(ekf);
+    if (ekf->following_periods > params->rest_periods) {
+        find_in_step(ekf, params, sum);
+    }
     if (!leads) {
         const num_t change = num_mul_coef(num_mul(sum, mean), params->holding.resistance);
 

@@ -133,9 +133,6 @@ invariant_ekf_step_in_hold(struct invariant_ekf *ekf, const struct invariant_ekf
     const struct invariant_ekf_gain_set *gain = invariant_ekf_hold_gains(ekf, params);
     const num_t away = invariant_ekf_away_from_settled_load(ekf);
 
-    if (RARE(gain == &params->following)) {
-        invariant_ekf_find_in_step(ekf, params, innovation->in_frame.d);
-    }
     invariant_ekf_correct(ekf, gain, innovation,
                           invariant_ekf_correct_in_hold(gain, innovation->in_frame, away), frame);
 }
