@@ -26,7 +26,7 @@
 
 enum {
     CONSOLE_LINE_BYTES = 200,   /* longest line, its end not counted */
-    CONSOLE_ANSWER_BYTES = 704, /* longest line that the console writes, its end counted */
+    CONSOLE_ANSWER_BYTES = 688, /* longest line that the console writes, its end counted */
     CONSOLE_PIECE_BYTES = 64    /* read from the board at once */
 };
 

@@ -382,8 +382,9 @@ __attribute__((noinline)) void invariant_ekf_bear_offset(double period_s,
     gains->load_step_Nm = larger(gains->load_step_Nm, feigned_Nm);
 }
 
-/* Of that in motion, since a step is over within a swing. */
-#define ANGLE_FOUND_IN_STEP 2.0
+/* Of that in motion, since a step is over within a swing; with more a load that grows draws the
+   rotor further. */
+#define ANGLE_FOUND_IN_STEP 1.5
 
 void invariant_ekf_find_angle_in_step(const struct invariant_ekf_gains *moving,
                                       struct invariant_ekf_hold_gains *hold)

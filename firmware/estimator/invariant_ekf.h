@@ -33,8 +33,8 @@
  *
  * A rotor that a slow load has displaced is not where the estimate has it, and shows that when it
  * is released: it swings with a back-EMF along d, too. So while a step is followed nu_d moves the
- * angle as in motion, and twice as much where the rotor is ahead of the estimate, as under a
- * growing load.
+ * angle, where the rotor is ahead of the estimate by 1.5 times what it does in motion, else by half
+ * of that.
  *
  * The resistance has some 20 ms to be found, so it need not move in every period: all that nu_d has
  * been since it moved last moves it by as much as if it had done so in each. i_d is its mean of

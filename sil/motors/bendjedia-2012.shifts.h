@@ -13,7 +13,7 @@
 #define COEF_SHIFT_model_admittance_per_resistance (0)   /* 0.0961 */
 #define COEF_SHIFT_ekf_current                     (3)   /* 0.8385 */
 #define COEF_SHIFT_ekf_speed_q                     (1)   /* 0.1457 */
-#define COEF_SHIFT_ekf_angle_d                     (11)  /* 173.7 */
+#define COEF_SHIFT_ekf_angle_d                     (11)  /* 130.3 */
 #define COEF_SHIFT_ekf_angle_q                     (1)   /* 0.2449 */
 #define COEF_SHIFT_ekf_load_q                      (4)   /* 1.919 */
 #define COEF_SHIFT_ekf_bias_per_turn               (-5)  /* 0.002723 */
