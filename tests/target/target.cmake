@@ -40,12 +40,12 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
   # Their courses take more memory, or time, than a core here has.
   list(FILTER unit_tests EXCLUDE REGEX "test_(motion_delay|headroom)\\.c$")
   # An application, its test's board and the stack of the design take more than 16 KB.
-  set(large_tests application axis axis_motion axis_stream axis_torque can_bus canopen cia402 console machine_io modbus node pdo resets sdo
+  set(large_tests application axis axis_homing axis_motion axis_stream axis_torque can_bus canopen cia402 console machine_io modbus node parts_left_out pdo resets sdo
     setting_lines settings_in_motion settings_record torque_constant)
   # In fixed point each test runs on one core: the M4F has the long ones, the M0+ all others.
   # Arithmetic, which knows the core, runs on both. The long ones in fixed point are left to
   # tools/test --full: in float they run, and the replays run their code.
-  set(long_tests "application|axis|axis_motion|axis_stream|axis_torque|can_bus|canopen|cia402|console|machine_io|modbus|node|pdo|resets|sdo|setting_lines|settings_in_motion|settings_record|torque_constant|initial_position|invariant_ekf|motion|sliding_mode")
+  set(long_tests "application|axis|axis_homing|axis_motion|axis_stream|axis_torque|can_bus|canopen|cia402|console|machine_io|modbus|node|parts_left_out|pdo|resets|sdo|setting_lines|settings_in_motion|settings_record|torque_constant|initial_position|invariant_ekf|motion|sliding_mode")
   if(STEADYSTEP_CORE STREQUAL m0plus)
     list(FILTER unit_tests EXCLUDE REGEX "test_(${long_tests})\\.c$")
   elseif(numeric STREQUAL fixed)
