@@ -116,11 +116,11 @@ static bool end_stage(struct offset_calibration *calibration,
     return true;
 }
 
-/* A sum that is too large is shown, in whole codes: as per-unit value it would be too large. */
-__attribute__((noinline)) static num_t mean_offset(const struct offset_calibration_params *params,
-                                                   int32_t sum, coef_t per_code)
+/* In whole codes, if the sum is larger than num_from_code takes: of a finer converter, or as what
+   is too large is shown. */
+__attribute__((noinline)) static num_t mean_offset(int32_t sum, coef_t per_code)
 {
-    if (is_too_large(params, sum)) {
+    if (magnitude(sum) > OFFSET_CODES_MAX * OFFSET_SAMPLES) {
         return num_from_code(sum / OFFSET_SAMPLES, per_code);
     }
     return num_mul(num_from_code(sum, per_code), NUM(1.0 / OFFSET_SAMPLES));
@@ -134,20 +134,20 @@ struct phases offset_calibration_drop_error(const struct offset_calibration *cal
     const num_t error = params->drop_resistance - resistance;
 
     return (struct phases){
-        num_mul(mean_offset(params, calibration->channel[0].flowing, scales->current), error),
-        num_mul(mean_offset(params, calibration->channel[1].flowing, scales->current), error)};
+        num_mul(mean_offset(calibration->channel[0].flowing, scales->current), error),
+        num_mul(mean_offset(calibration->channel[1].flowing, scales->current), error)};
 }
 
 static void find(const struct offset_calibration *calibration,
                  const struct offset_calibration_params *params,
                  const struct measurement_params *scales, struct channels *offset)
 {
-    offset->current.a = mean_offset(params, calibration->channel[0].sum, scales->current);
-    offset->current.b = mean_offset(params, calibration->channel[1].sum, scales->current);
-    offset->voltage.a = mean_offset(params, calibration->channel[2].sum, scales->phase_voltage) -
-                        mean_offset(params, calibration->channel[0].flowing, params->drop);
-    offset->voltage.b = mean_offset(params, calibration->channel[3].sum, scales->phase_voltage) -
-                        mean_offset(params, calibration->channel[1].flowing, params->drop);
+    offset->current.a = mean_offset(calibration->channel[0].sum, scales->current);
+    offset->current.b = mean_offset(calibration->channel[1].sum, scales->current);
+    offset->voltage.a = mean_offset(calibration->channel[2].sum, scales->phase_voltage) -
+                        mean_offset(calibration->channel[0].flowing, params->drop);
+    offset->voltage.b = mean_offset(calibration->channel[3].sum, scales->phase_voltage) -
+                        mean_offset(calibration->channel[1].flowing, params->drop);
 }
 
 enum offset_result offset_calibration_step(struct offset_calibration *calibration,
