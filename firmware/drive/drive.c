@@ -12,7 +12,11 @@
 #include "firmware/drive/law_design.h"
 #include "firmware/drive/phase_balancing.h"
 #include "firmware/drive/synchronism.h"
+#include "firmware/interface/parts_carried.h"
 #include "firmware/interface/simulation_only.h"
+
+_Static_assert((int)ENCODER_CARRIED == (int)ESTIMATORS_READ_ENCODER,
+               "the settings of an encoder are carried where it is read");
 
 /* Up to where the hold takes its frame along; nothing but this estimator knows a led rotor. */
 static struct creep_limits creep_limits(const struct drive_settings *settings)

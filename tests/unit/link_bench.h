@@ -100,6 +100,24 @@ static inline uint32_t link_bench_get(unsigned index, unsigned sub)
     return byte[0] | byte[1] << 8 | byte[2] << 16 | byte[3] << 24;
 }
 
+/* The reference's. */
+static inline double link_bench_reference_rad(void)
+{
+    struct drive_signals now;
+
+    drive_signals_read(&bench.application.drive, &now);
+    return now.theta_ref_rad;
+}
+
+/* Likewise. */
+static inline double link_bench_speed_rad_s(void)
+{
+    struct drive_signals now;
+
+    drive_signals_read(&bench.application.drive, &now);
+    return now.omega_ref_rad_s;
+}
+
 /* How often a frame that begins so stands in what has come. */
 static inline int link_bench_count(const char *begin, const char *heard)
 {

@@ -37,14 +37,6 @@ static const struct axis_homing *homing(void)
     return &bench_link.axis.motion.homing;
 }
 
-static double reference_rad(void)
-{
-    struct drive_signals now;
-
-    drive_signals_read(&bench.application.drive, &now);
-    return now.theta_ref_rad;
-}
-
 /* Where the motor's zero is, of the axis. */
 static double zero_rad(void)
 {
@@ -52,14 +44,6 @@ static double zero_rad(void)
 
     drive_signals_read(&bench.application.drive, &now);
     return now.motor_zero_rad;
-}
-
-static double speed_rad_s(void)
-{
-    struct drive_signals now;
-
-    drive_signals_read(&bench.application.drive, &now);
-    return now.omega_ref_rad_s;
 }
 
 static double rated_Nm(void)
@@ -129,7 +113,7 @@ static void test_it_goes_at_the_homing_speed_down_and_up(void)
     put(0x6099, 1, 4, TURN / 8);
     begin(-1);
     follow(30);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3, -TWO_PI / 8, speed_rad_s());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, -TWO_PI / 8, link_bench_speed_rad_s());
     TEST_ASSERT_EQUAL_HEX32(0, status());
     put(0x6040, 0, 2, 0x0f);
     look(100);
@@ -137,7 +121,7 @@ static void test_it_goes_at_the_homing_speed_down_and_up(void)
     put(0x6098, 0, 1, 0xfe);
     put(0x6040, 0, 2, 0x1f);
     follow(60);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3, TWO_PI / 8, speed_rad_s());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, TWO_PI / 8, link_bench_speed_rad_s());
 }
 
 static void test_a_polarity_turns_it_round(void)
@@ -145,7 +129,7 @@ static void test_a_polarity_turns_it_round(void)
     put(0x607e, 0, 1, 0x80);
     begin(-1);
     follow(30);
-    TEST_ASSERT_TRUE(speed_rad_s() > 0.5);
+    TEST_ASSERT_TRUE(link_bench_speed_rad_s() > 0.5);
 }
 
 static void finds_a_stop(int method, double way, uint32_t polarity)
@@ -167,7 +151,7 @@ static void finds_a_stop(int method, double way, uint32_t polarity)
     const double offset_rad = (polarity != 0u ? -1000.0 : 1000.0) * unit_rad;
 
     TEST_ASSERT_EQUAL_HEX32(REACHED | ATTAINED, status());
-    TEST_ASSERT_DOUBLE_WITHIN(1e-4, offset_rad - way * full_step_rad(), reference_rad());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, offset_rad - way * full_step_rad(), link_bench_reference_rad());
     TEST_ASSERT_DOUBLE_WITHIN(0.2 * full_step_rad(), stop_rad, offset_rad - zero_rad());
 }
 
@@ -228,7 +212,7 @@ static void test_a_load_that_the_rotor_carries_along_is_no_stop(void)
     const double began_rad = rotor_rad;
 
     for (int i = 0; i < 400 && homing()->phase == HOMING_SEARCHES; i++) {
-        rotor_rad = began_rad + 0.7 * (reference_rad() - began_rad);
+        rotor_rad = began_rad + 0.7 * (link_bench_reference_rad() - began_rad);
         look(1);
     }
     TEST_ASSERT_EQUAL(HOMING_LEAVES, homing()->phase);
@@ -285,7 +269,7 @@ static void test_the_travel_ends_it(void)
     TEST_ASSERT_EQUAL(HOMING_LEAVES, homing()->phase);
     look(400);
     TEST_ASSERT_EQUAL_HEX32(REACHED | FAILED, status());
-    TEST_ASSERT_DOUBLE_WITHIN(0.1, -TWO_PI / 8, reference_rad());
+    TEST_ASSERT_DOUBLE_WITHIN(0.1, -TWO_PI / 8, link_bench_reference_rad());
 }
 
 static void test_the_torque_is_in_thousandths_of_the_rated_one(void)
@@ -314,7 +298,7 @@ static void test_a_law_that_follows_nothing_refuses_it(void)
     bench.application.drive.settings.law = POSITION_LAW_MICROSTEPPING;
     begin(-2);
     TEST_ASSERT_EQUAL_HEX32(REACHED | FAILED, status());
-    TEST_ASSERT_EQUAL_DOUBLE(0.0, speed_rad_s());
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, link_bench_speed_rad_s());
 }
 
 static void test_an_observer_of_counts_alone_refuses_it(void)

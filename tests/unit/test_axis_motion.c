@@ -48,22 +48,6 @@ static void enable(int mode)
     TEST_ASSERT_EQUAL_HEX32(0x27, status(0x6f));
 }
 
-static double speed_rad_s(void)
-{
-    struct drive_signals now;
-
-    drive_signals_read(&bench.application.drive, &now);
-    return now.omega_ref_rad_s;
-}
-
-static double reference_rad(void)
-{
-    struct drive_signals now;
-
-    drive_signals_read(&bench.application.drive, &now);
-    return now.theta_ref_rad;
-}
-
 static bool rests(void)
 {
     return axis_motion_rests(&bench.application);
@@ -73,19 +57,19 @@ static bool rests(void)
    for 20 ms; how long that takes in `periods`. */
 static double greatest_acceleration(int *periods)
 {
-    double before = speed_rad_s();
+    double before = link_bench_speed_rad_s();
     double most = 0.0;
     int constant = 0;
 
     *periods = 0;
     while (constant < 200) {
         bench_period();
-        const double change = fabs(speed_rad_s() - before) / PERIOD_S;
+        const double change = fabs(link_bench_speed_rad_s() - before) / PERIOD_S;
 
         most = fmax(most, change);
         constant = change == 0.0 ? constant + 1 : 0;
         *periods += change == 0.0 ? 0 : 1;
-        before = speed_rad_s();
+        before = link_bench_speed_rad_s();
     }
     return most;
 }
@@ -131,7 +115,8 @@ static void test_gear_and_feed_say_what_a_unit_is(void)
     control(0x1f);
     bench_periods(12000);
     TEST_ASSERT_TRUE(rests());
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 30.0 * TWO_PI * 7.0 * 3.0 / (1000.0 * 2.0), reference_rad());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 30.0 * TWO_PI * 7.0 * 3.0 / (1000.0 * 2.0),
+                              link_bench_reference_rad());
     TEST_ASSERT_EQUAL_INT(30, (int)get(0x6062));
 }
 
@@ -146,8 +131,8 @@ static void test_quantities_are_shown_in_units_rounded(void)
     TEST_ASSERT_INT_WITHIN(1, -3000, (int32_t)get(0x606b));
     put(0x60ff, 0, 4, 0);
     bench_periods(3000);
-    TEST_ASSERT_INT_WITHIN(1, lround(reference_rad() / unit_rad), (int32_t)get(0x6062));
-    TEST_ASSERT_TRUE(reference_rad() < -0.05);
+    TEST_ASSERT_INT_WITHIN(1, lround(link_bench_reference_rad() / unit_rad), (int32_t)get(0x6062));
+    TEST_ASSERT_TRUE(link_bench_reference_rad() < -0.05);
 
     struct drive_signals now;
 
@@ -173,7 +158,7 @@ static void test_a_speed_is_reached_by_its_acceleration_and_jerk(void)
     bench_periods(1); /* beside this line of the bus */
     TEST_ASSERT_DOUBLE_WITHIN(0.7, 10.0 * TWO_PI, greatest_acceleration(&periods));
     TEST_ASSERT_INT_WITHIN(6, 1250, periods);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-4, TWO_PI, speed_rad_s());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, TWO_PI, link_bench_speed_rad_s());
     put(0x60ff, 0, 4, (uint32_t)-TURN);
     TEST_ASSERT_DOUBLE_WITHIN(0.7, 10.0 * TWO_PI, greatest_acceleration(&periods));
     TEST_ASSERT_INT_WITHIN(6, 2250, periods);
@@ -204,13 +189,13 @@ static void test_a_quick_stop_ends_a_much_steeper_acceleration_at_once(void)
     put(0x6083, 0, 4, 300 * TURN);
     put(0x6085, 0, 4, 20 * TURN);
     put(0x60ff, 0, 4, 8 * TURN);
-    while (speed_rad_s() < 4.0 * TWO_PI) {
+    while (link_bench_speed_rad_s() < 4.0 * TWO_PI) {
         bench_period();
     }
     control(0x0b);
     for (int i = 0; i < 3000; i++) {
         bench_period();
-        most = fmax(most, speed_rad_s());
+        most = fmax(most, link_bench_speed_rad_s());
     }
     TEST_ASSERT_TRUE(most < 6.0 * TWO_PI);
 }
@@ -226,11 +211,11 @@ static void test_speed_and_acceleration_beyond_what_the_drive_can_are_cut_and_sa
     const double most = greatest_acceleration(&periods);
 
     TEST_ASSERT_DOUBLE_WITHIN(0.01 * most, acceleration_limit_rad_s2(), most);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3, speed_limit_rad_s(), speed_rad_s());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, speed_limit_rad_s(), link_bench_speed_rad_s());
     TEST_ASSERT_EQUAL_HEX32(LIMITED | REACHED, status(LIMITED | REACHED));
     put(0x60ff, 0, 4, 0x80000001);
     bench_periods(4000);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3, -speed_limit_rad_s(), speed_rad_s());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, -speed_limit_rad_s(), link_bench_speed_rad_s());
     TEST_ASSERT_EQUAL_HEX32(LIMITED, status(LIMITED));
     put(0x60ff, 0, 4, TURN);
     bench_periods(4000);
@@ -246,7 +231,7 @@ static void test_the_speed_counts_as_reached_within_a_thousandth(void)
     put(0x60ff, 0, 4, TURN);
     bench_periods(200);
     TEST_ASSERT_EQUAL_HEX32(0, status(REACHED | OF_MODE));
-    while (speed_rad_s() < 0.9985 * TWO_PI) {
+    while (link_bench_speed_rad_s() < 0.9985 * TWO_PI) {
         bench_period();
     }
     TEST_ASSERT_EQUAL_HEX32(0, status(REACHED));
@@ -255,7 +240,7 @@ static void test_the_speed_counts_as_reached_within_a_thousandth(void)
     put(0x60ff, 0, 4, (uint32_t)-TURN);
     bench_periods(10);
     TEST_ASSERT_EQUAL_HEX32(0, status(REACHED));
-    while (speed_rad_s() > -0.9985 * TWO_PI) {
+    while (link_bench_speed_rad_s() > -0.9985 * TWO_PI) {
         bench_period();
     }
     TEST_ASSERT_EQUAL_HEX32(0, status(REACHED));
@@ -276,7 +261,7 @@ static void test_a_halt_of_a_speed_brakes_and_lets_it_go_on(void)
     TEST_ASSERT_TRUE(rests());
     control(0x0f);
     bench_periods(4000);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 2.0 * TWO_PI, speed_rad_s());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 2.0 * TWO_PI, link_bench_speed_rad_s());
 }
 
 /* ---- a speed and the software limits ---- */
@@ -295,7 +280,7 @@ static void test_a_speed_ends_at_either_software_limit_and_goes_back_from_it(voi
     put(0x607d, 2, 4, 3 * TURN);
     begin_speed(4 * TURN, 4000);
     TEST_ASSERT_EQUAL_HEX32(0, status(LIMITED));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 4 * TWO_PI, speed_rad_s());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 4 * TWO_PI, link_bench_speed_rad_s());
     bench_periods(8000);
     TEST_ASSERT_TRUE(rests());
     TEST_ASSERT_EQUAL_INT(3 * TURN, (int)get(0x6062));
@@ -303,7 +288,7 @@ static void test_a_speed_ends_at_either_software_limit_and_goes_back_from_it(voi
     begin_speed(TURN, 2000); /* still beyond */
     TEST_ASSERT_EQUAL_INT(3 * TURN, (int)get(0x6062));
     begin_speed(-TURN, 8000);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3, -TWO_PI, speed_rad_s());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, -TWO_PI, link_bench_speed_rad_s());
     TEST_ASSERT_EQUAL_HEX32(REACHED, status(LIMITED | REACHED));
     begin_speed(-8 * TURN, 20000);
     TEST_ASSERT_TRUE(rests());
@@ -326,7 +311,8 @@ static void test_no_speed_passes_a_software_limit(void)
 
         for (int n = 0; n < 30000; n++) {
             bench_period();
-            const double past = (reference_rad() / unit_rad - limit) * (limit < 0 ? -1 : 1);
+            const double past =
+                (link_bench_reference_rad() / unit_rad - limit) * (limit < 0 ? -1 : 1);
 
             furthest = n == 0 ? past : fmax(furthest, past);
         }
@@ -346,7 +332,7 @@ static void test_a_limit_that_moves_is_gone_to_and_one_that_is_passed_stops(void
     TEST_ASSERT_EQUAL_INT(TURN + 300, (int)get(0x6062));
     put(0x607d, 2, 4, INT32_MAX);
     bench_periods(8000);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3, TWO_PI / 2, speed_rad_s());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, TWO_PI / 2, link_bench_speed_rad_s());
     put(0x607d, 2, 4, 0);
     bench_periods(8000);
     TEST_ASSERT_TRUE(rests());
@@ -381,19 +367,19 @@ static void test_polarity_turns_positions_and_speeds_each_for_itself(void)
     control(0x1f);
     bench_periods(6000);
     control(0x0f);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -1000 * unit_rad, reference_rad());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -1000 * unit_rad, link_bench_reference_rad());
     TEST_ASSERT_EQUAL_INT(1000, (int)get(0x6062));
     put(0x607a, 0, 4, 500);
     control(0x5f); /* relative */
     bench_periods(6000);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -1500 * unit_rad, reference_rad());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -1500 * unit_rad, link_bench_reference_rad());
     put(0x6060, 0, 1, 3);
     put(0x607d, 1, 4, (uint32_t)-TURN);
     begin_speed(TURN / 2, 20);
     TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x607e, 0, 1, 0)); /* in operation */
     bench_periods(30000);
     TEST_ASSERT_EQUAL_INT(-TURN, (int32_t)get(0x6062)); /* the motor's way up */
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, TWO_PI, reference_rad());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, TWO_PI, link_bench_reference_rad());
     control(0x00);
     bench_periods(20);
     TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x607e, 0, 1, 0x20));
@@ -401,7 +387,7 @@ static void test_polarity_turns_positions_and_speeds_each_for_itself(void)
     enable(3);
     put(0x607d, 1, 4, (uint32_t)INT32_MIN);
     begin_speed(TURN / 2, 6000);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3, -TWO_PI / 2, speed_rad_s());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, -TWO_PI / 2, link_bench_speed_rad_s());
     TEST_ASSERT_INT_WITHIN(1, TURN / 2, (int32_t)get(0x606b));
 }
 
@@ -413,7 +399,7 @@ static void test_homing_has_the_polarity_too(void)
     control(0x1f);
     bench_periods(20);
     TEST_ASSERT_EQUAL_INT(1000, (int)get(0x6062));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -1000 * unit_rad, reference_rad());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -1000 * unit_rad, link_bench_reference_rad());
 }
 
 /* ---- set-points ---- */
@@ -431,9 +417,9 @@ static void test_a_move_has_the_profile_s_speed_and_acceleration(void)
     control(0x1f);
     for (int i = 0; i < 8000; i++) {
         bench_period();
-        most = fmax(most, speed_rad_s());
-        steepest = fmax(steepest, fabs(speed_rad_s() - before) / PERIOD_S);
-        before = speed_rad_s();
+        most = fmax(most, link_bench_speed_rad_s());
+        steepest = fmax(steepest, fabs(link_bench_speed_rad_s() - before) / PERIOD_S);
+        before = link_bench_speed_rad_s();
     }
     TEST_ASSERT_DOUBLE_WITHIN(0.01, TWO_PI, most);
     TEST_ASSERT_DOUBLE_WITHIN(0.7, 10.0 * TWO_PI, steepest);
@@ -508,7 +494,7 @@ static void test_a_target_that_is_asked_for_at_once_preempts_and_without_a_rise_
     put(0x607a, 0, 4, 0);
     control(0x3f); /* no rise of the bit */
     bench_periods(500);
-    TEST_ASSERT_TRUE(speed_rad_s() > 1.0);
+    TEST_ASSERT_TRUE(link_bench_speed_rad_s() > 1.0);
     control(0x2f);
     control(0x3f);
     bench_periods(12000);

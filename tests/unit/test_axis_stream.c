@@ -48,14 +48,6 @@ static double reference_units(void)
     return now.theta_ref_rad / unit_rad;
 }
 
-static double speed_rad_s(void)
-{
-    struct drive_signals now;
-
-    drive_signals_read(&bench.application.drive, &now);
-    return now.omega_ref_rad_s;
-}
-
 /* Sent in the present period. */
 static void send(int32_t position)
 {
@@ -108,7 +100,7 @@ static void test_targets_are_passed_some_intervals_later(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 3.325, lag(400));
     stream(50, 400);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 3.325, lag(400));
-    TEST_ASSERT_DOUBLE_WITHIN(0.01, 400 * unit_rad / 4e-3, speed_rad_s());
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 400 * unit_rad / 4e-3, link_bench_speed_rad_s());
     TEST_ASSERT_EQUAL_UINT32(0, underruns());
     TEST_ASSERT_EQUAL_HEX32(OF_MODE, status(OF_MODE | LIMITED));
 }
@@ -130,7 +122,7 @@ static void test_an_interval_is_its_value_by_its_power_of_ten(void)
     put(0x60c2, 2, 1, 0xfc); /* 1e-4 s */
     stream(50, 400);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 3.325, lag(400));
-    TEST_ASSERT_DOUBLE_WITHIN(0.01, 400 * unit_rad / 4e-3, speed_rad_s());
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 400 * unit_rad / 4e-3, link_bench_speed_rad_s());
 }
 
 static void test_targets_that_stay_move_nothing_and_the_same_twice_ends_a_motion(void)
@@ -227,12 +219,13 @@ static void test_a_jump_is_followed_at_the_speed_that_the_drive_can(void)
         send(100 * TURN);
         for (int k = 0; k < CYCLE; k++) {
             pass(1);
-            most = fmax(most, speed_rad_s());
+            most = fmax(most, link_bench_speed_rad_s());
         }
-        steepest = fmax(steepest, (speed_rad_s() - before[0]) / (3.0 * CYCLE * PERIOD_S));
+        steepest =
+            fmax(steepest, (link_bench_speed_rad_s() - before[0]) / (3.0 * CYCLE * PERIOD_S));
         before[0] = before[1];
         before[1] = before[2];
-        before[2] = speed_rad_s();
+        before[2] = link_bench_speed_rad_s();
     }
     TEST_ASSERT_DOUBLE_WITHIN(0.02 * speed_limit_rad_s(), speed_limit_rad_s(), most);
     TEST_ASSERT_DOUBLE_WITHIN(0.07 * acceleration, acceleration, steepest);
@@ -312,7 +305,7 @@ static void test_a_target_of_a_sync_is_passed_four_intervals_and_1_3_ms_behind_i
     by_sync();
     sync_stream(50, 400, CYCLE);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 4.325, lag_of_sync(400));
-    TEST_ASSERT_DOUBLE_WITHIN(0.001, 400 * unit_rad / 4e-3, speed_rad_s());
+    TEST_ASSERT_DOUBLE_WITHIN(0.001, 400 * unit_rad / 4e-3, link_bench_speed_rad_s());
     TEST_ASSERT_EQUAL_HEX32(OF_MODE, status(OF_MODE | LIMITED));
     sync_stream(10, 0, CYCLE);
     TEST_ASSERT_DOUBLE_WITHIN(1.0, target, reference_units());
@@ -339,7 +332,7 @@ static void test_jitter_of_sync_is_none_of_the_reference(void)
     sync_stream(50, 400, CYCLE);
     for (int i = 0; i < 400; i++) {
         sync_stream(1, 400, CYCLE + late[(i + 1) % 8] / 2 - late[i % 8] / 2);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 400 * unit_rad / 4e-3, speed_rad_s());
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 400 * unit_rad / 4e-3, link_bench_speed_rad_s());
     }
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 4.325, lag_of_sync(400));
     TEST_ASSERT_EQUAL_UINT32(0, underruns());
@@ -354,7 +347,7 @@ static void follows_a_clock_that_is_off(int by)
     sync_stream(50, 400, CYCLE);
     for (int i = 0; i < 2000; i++) {
         sync_stream(1, 400, CYCLE + (i % 10 == 0 ? by : 0));
-        TEST_ASSERT_DOUBLE_WITHIN(6e-3 * speed, speed, speed_rad_s());
+        TEST_ASSERT_DOUBLE_WITHIN(6e-3 * speed, speed, link_bench_speed_rad_s());
     }
     TEST_ASSERT_DOUBLE_WITHIN(1.0, 4.325, lag_of_sync(400));
     TEST_ASSERT_EQUAL_UINT32(0, underruns());
@@ -407,7 +400,7 @@ static void test_a_sync_without_a_target_is_an_interval_too(void)
         target += 400 * missing;
         sync_stream(1, 400, CYCLE);
         TEST_ASSERT_DOUBLE_WITHIN(0.01, 4.325, lag_of_sync(400));
-        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 400 * unit_rad / 4e-3, speed_rad_s());
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 400 * unit_rad / 4e-3, link_bench_speed_rad_s());
         sync_stream(5, 400, CYCLE);
     }
     TEST_ASSERT_EQUAL_UINT32(0, underruns());
@@ -434,10 +427,11 @@ static void test_syncs_that_come_late_and_in_a_heap_are_counted(void)
     shows(0, OF_MODE);
     sync_stream(4, 400, 1);
     pass(CYCLE - 4);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 400 * unit_rad / 4e-3, speed_rad_s());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 400 * unit_rad / 4e-3, link_bench_speed_rad_s());
     sync_stream(20, 400, CYCLE);
     TEST_ASSERT_DOUBLE_WITHIN(0.06, 4.325, lag_of_sync(400));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * speed_rad_s(), 400 * unit_rad / 4e-3, speed_rad_s());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * link_bench_speed_rad_s(), 400 * unit_rad / 4e-3,
+                              link_bench_speed_rad_s());
     TEST_ASSERT_EQUAL_HEX32(OF_MODE, status(OF_MODE));
     TEST_ASSERT_EQUAL_UINT32(0, underruns());
 }
@@ -466,7 +460,8 @@ static void test_lost_syncs_are_made_up_for_slowly(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.05, 3.325, lag_of_sync(400));
     for (int i = 0; i < 1000; i++) {
         sync_stream(1, 400, CYCLE);
-        TEST_ASSERT_DOUBLE_WITHIN(0.02 * speed_rad_s(), 400 * unit_rad / 4e-3, speed_rad_s());
+        TEST_ASSERT_DOUBLE_WITHIN(0.02 * link_bench_speed_rad_s(), 400 * unit_rad / 4e-3,
+                                  link_bench_speed_rad_s());
     }
     TEST_ASSERT_DOUBLE_WITHIN(0.3, 4.325, lag_of_sync(400));
     TEST_ASSERT_EQUAL_UINT32(0, underruns());
