@@ -8,6 +8,7 @@
 /* In looks of the following error, 1 ms each. */
 #define SWING_LOOKS 100u
 #define STAND_LOOKS 30u
+#define AWAY_LOOKS  125u
 #define DENIALS     50 /* samples */
 #define STANDS      3u /* looks of phase_watch */
 
@@ -52,6 +53,11 @@ bool rotor_watch_swings(struct rotor_swing *swing, num_t error, num_t limit, uin
         swing->extreme = size;
     }
     return swing->times >= SWINGS;
+}
+
+bool rotor_watch_stays_away(const struct rotor_swing *swing, uint32_t period, uint32_t longer)
+{
+    return swing->side != 0 && period - swing->turned > longer;
 }
 
 bool rotor_watch_jumps(struct rotor_watch *watch, struct position reference, num_t limit)
@@ -153,8 +159,10 @@ static enum drive_fault look(struct drive *drive, uint32_t period)
     if (rotor_watch_jumps(&drive->rotor_watch, drive->reference.now.position, limit)) {
         rotor_watch_reset_swing(&drive->rotor_watch.swing);
     }
-    if (watched && rotor_watch_swings(&drive->rotor_watch.swing, error, limit, period,
-                                      SWING_LOOKS * following->periods)) {
+    if (watched && (rotor_watch_swings(&drive->rotor_watch.swing, error, limit, period,
+                                       SWING_LOOKS * following->periods) ||
+                    (encoder && rotor_watch_stays_away(&drive->rotor_watch.swing, period,
+                                                       AWAY_LOOKS * following->periods)))) {
         return encoder ? DRIVE_FAULT_FOLLOWING_ERROR : DRIVE_FAULT_STALLED;
     }
     return encoder && (winding_denies(drive, period) ||

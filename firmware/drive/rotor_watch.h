@@ -7,6 +7,10 @@
  * each within 0.1 s of the last. It may be off by the following error, or without an encoder, where
  * the monitor's policy is to end in faults, by an electrical turn.
  *
+ * The following error spares a rotor that comes back within 0.25 s. One that trembles seems to come
+ * back at each look or the next. The sign: it is further off than it may be, and has not come back
+ * by half of that in 0.125 s.
+ *
  * With an encoder, a count that stands still at rest looks like a rotor at rest, and the observer
  * takes the torque that does not move it for the load's. The law answers it, and both rise to the
  * limit; a load beyond the limit moves the rotor by a count within milliseconds. The sign: for 30
@@ -50,6 +54,9 @@ void rotor_watch_reset(struct rotor_watch *watch, uint32_t period);
 
 /* Where the rotor swings from now on is another thing. */
 void rotor_watch_reset_swing(struct rotor_swing *swing);
+
+/* Whether a rotor that was thrown for longer has not come back; of what rotor_watch_swings saw. */
+bool rotor_watch_stays_away(const struct rotor_swing *swing, uint32_t period, uint32_t longer);
 
 /* Whether the reference is further than this from where it was at the last look: a step, whose
    rotor may swing about it. */

@@ -121,6 +121,32 @@ static void test_a_rotor_that_is_not_back_or_is_thrown_seldom_does_not_swing(voi
     TEST_ASSERT_EQUAL_INT(3 * 90 + 81, periods_until_thrown(1.01, 0.0, 90));
 }
 
+/* Periods until it is said to stay away, of an error that is this, and back by so much behind half
+   of them; NEVER. */
+static int periods_until_away(double turns, double back)
+{
+    setUp();
+    for (int n = 1; n < NEVER; n++) {
+        const double error = n > WITHIN / 2 ? turns - back : turns;
+
+        (void)rotor_watch_swings(&watch.swing, num_from_double(error), NUM(1.0), ++period, WITHIN);
+        if (rotor_watch_stays_away(&watch.swing, period, WITHIN)) {
+            return n;
+        }
+    }
+    return NEVER;
+}
+
+/* As it trembles, it comes back by its speed, but not by its place. */
+static void test_a_rotor_that_does_not_come_back_is_said(void)
+{
+    TEST_ASSERT_EQUAL_INT(WITHIN + 2, periods_until_away(1.01, 0.0));
+    TEST_ASSERT_EQUAL_INT(WITHIN + 2, periods_until_away(-1.4, -0.49));
+    TEST_ASSERT_EQUAL_INT(NEVER, periods_until_away(1.01, 0.51));
+    TEST_ASSERT_EQUAL_INT(NEVER, periods_until_away(-1.4, -0.51));
+    TEST_ASSERT_EQUAL_INT(NEVER, periods_until_away(0.99, 0.0));
+}
+
 /* ---- the winding ---- */
 
 static const double resistance = 0.05, reactance_per_speed = 0.3, margin = 0.1, rate = 0.5;
@@ -227,6 +253,7 @@ int main(void)
     RUN_TEST(test_a_rotor_that_is_thrown_further_and_further_is_said_too);
     RUN_TEST(test_a_rotor_that_is_not_back_or_is_thrown_seldom_does_not_swing);
     RUN_TEST(test_fifty_denials_in_a_row_are_an_encoders_fault);
+    RUN_TEST(test_a_rotor_that_does_not_come_back_is_said);
     RUN_TEST(test_a_winding_denies_a_count_that_stands_beyond_the_margin);
     RUN_TEST(test_half_of_the_counted_back_emf_may_be_wrong);
     RUN_TEST(test_half_of_the_voltages_of_the_currents_may_be_wrong);
