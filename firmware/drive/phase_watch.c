@@ -16,8 +16,17 @@
 #define GAP_PERIODS       14u      /* of one voltage, as it was at the look */
 #define PUSHED_MAX        NUM(1.0) /* twice the rated current */
 #define MISSED            3u
-#define COUNT_MAX         15u
-#define VOLTAGE_ERROR     0.05 /* of the supply */
+#define GONE_LOOKS        2u
+#define PUSHED_GONE       NUM(0.25)
+#define LOOKS_MAX         7u
+#define MISSED_MAX        15u
+#define SAME_MAX          128u
+#define SAME_MISSED       16u
+#define MISSED_SAME       2u /* one may be of the period in which it moved */
+#define SAME_OTHER_MAX    8u /* of a converter that is alive */
+#define SLOW_TURNS        NUM(1.0 / (LOOK_PERIODS * SAME_MAX))
+#define VOLTAGE_WRONG     NUM(0.075) /* a bridge takes a third of it */
+#define VOLTAGE_ERROR     0.05       /* of the supply */
 #define COUNTS_ERROR      2.0
 #define RESISTANCE_ERROR  NUM(0.6)   /* what a winding that warms up or is not known may have */
 #define CURRENT_DEVIATION NUM(0.075) /* of twice the rated current */
@@ -53,11 +62,6 @@ static bool stands(uint16_t at, uint16_t code, const struct phase_watch_params *
     return away <= (int)params->noise_codes && -away <= (int)params->noise_codes;
 }
 
-static uint8_t counted(uint8_t count)
-{
-    return (uint8_t)(count + (count < COUNT_MAX));
-}
-
 _Static_assert(DRIVE_FAULT_OPEN_PHASE_A + 1 == (int)DRIVE_FAULT_OPEN_PHASE_B &&
                    DRIVE_FAULT_CURRENT_SENSOR_A + 1 == (int)DRIVE_FAULT_CURRENT_SENSOR_B,
                "phase b behind phase a");
@@ -78,19 +82,65 @@ static bool goes_on(struct phase_watch *watch, const struct phase_watch_params *
 }
 
 /* strays: its reference is another one than when it came to stand. */
-static void count_look(struct phase_watch *watch, const struct phase_look *look, int phase,
-                       uint32_t passed, bool strays)
+static void count_look(struct phase_count *count, bool strays)
 {
-    const uint8_t missed = watch->count[phase].missed;
-
-    for (; passed > 0u && num_abs(watch->pushed[phase]) <= PUSHED_MAX; passed--) {
-        watch->pushed[phase] += look->push[phase];
+    if (count->looks < LOOKS_MAX) {
+        count->looks++;
     }
-    watch->count[phase].looks = counted(watch->count[phase].looks);
-    if (strays) {
-        watch->count[phase].missed = counted(missed);
-    } else {
-        watch->count[phase].missed = (uint8_t)(missed - (missed > 0u));
+    if (strays && count->missed < MISSED_MAX) {
+        count->missed++;
+    } else if (!strays && count->missed > 0u) {
+        count->missed--;
+    }
+}
+
+/* What its voltage would have changed since the last look. */
+static num_t pushed_on(num_t pushed, num_t push, uint32_t passed)
+{
+    for (; passed > 0u && num_abs(pushed) <= PUSHED_MAX; passed--) {
+        pushed += push;
+    }
+    return pushed;
+}
+
+/* Looks in a row with the very same code, up to SAME_MAX; of a rotor that rests without a hold
+   none. Returns whether it begins anew. */
+static bool count_same(struct phase_count *count, uint8_t code, bool says)
+{
+    if (code == count->last && count->same < SAME_MAX && says) {
+        count->same++;
+        return false;
+    }
+    count->last = code;
+    count->same = 0u;
+    return true;
+}
+
+/* Whether a converter that gives one code is dead, as the motor does not stand. */
+static bool goes_elsewhere(const struct phase_look *look, uint8_t resistance)
+{
+    const uint8_t moved = (uint8_t)(look->resistance - resistance + look->eighth);
+
+    return look->held ? look->settled && moved > 2u * look->eighth : look->turns;
+}
+
+/* gone: a hold's current that is asked for; flows: there is one. */
+static bool is_sure(const struct phase_count *count, num_t pushed, bool gone, bool flows)
+{
+    return (count->looks >= LOOKS && pushed > PUSHED_MAX) ||
+           (count->looks >= GONE_LOOKS && pushed > PUSHED_GONE && gone) ||
+           (count->same >= SAME_MISSED && count->missed >= MISSED_SAME && flows);
+}
+
+/* Takes the code; keeps the resistance while both codes change, and where a row begins anew. */
+static void take_code(struct phase_watch *watch, const struct phase_look *look, int phase,
+                      bool alive)
+{
+    struct phase_count *count = &watch->count[phase];
+    const bool counts_anew = alive || count->same == SAME_MAX;
+
+    if (count_same(count, (uint8_t)look->code[phase], look->held || look->turns) && counts_anew) {
+        watch->resistance = (uint8_t)look->resistance;
     }
 }
 
@@ -103,26 +153,32 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
     num_t furthest = NUM(0.0);
 
     watch->period = look->period;
-    watch->suspected = DRIVE_FAULT_NONE;
+    watch->suspected = look->voltage_wrong ? DRIVE_FAULT_LOST_SYNCHRONISM : DRIVE_FAULT_NONE;
     for (int phase = 0; phase < 2; phase++) {
-        const uint8_t name = (uint8_t)((look->flows[phase] ? DRIVE_FAULT_CURRENT_SENSOR_A
-                                                           : DRIVE_FAULT_OPEN_PHASE_A) +
-                                       phase);
+        struct phase_count *count = &watch->count[phase];
+        const bool alive = watch->count[1 - phase].same < SAME_OTHER_MAX; /* the other one */
+        const bool flows = look->flows[phase];
         const bool strays = num_abs(look->wanted[phase] - watch->wanted[phase]) > CURRENT_MIN;
-        bool gone =
-            look->held && !look->flows[phase] && num_abs(look->wanted[phase]) > CURRENT_GONE;
+        bool gone = look->held && !flows && num_abs(look->wanted[phase]) > CURRENT_GONE;
 
+        take_code(watch, look, phase, alive);
         if (goes_on(watch, params, look, phase, passed)) {
-            count_look(watch, look, phase, passed, strays);
+            watch->pushed[phase] = pushed_on(watch->pushed[phase], look->push[phase], passed);
+            count_look(count, strays);
         } else {
-            gone = gone && !strays && watch->count[phase].followed;
+            gone = gone && !strays && count->followed;
         }
-        watch->count[phase].followed = look->off[phase] < CURRENT_DEVIATION;
-        if ((gone || watch->count[phase].missed >= MISSED) && look->off[phase] >= furthest) {
+        count->followed = look->off[phase] < CURRENT_DEVIATION;
+
+        const uint8_t name =
+            (uint8_t)((flows ? DRIVE_FAULT_CURRENT_SENSOR_A : DRIVE_FAULT_OPEN_PHASE_A) + phase);
+
+        if ((gone || count->missed >= MISSED) && look->off[phase] >= furthest) {
             furthest = look->off[phase];
             watch->suspected = name;
         }
-        if (watch->count[phase].looks >= LOOKS && num_abs(watch->pushed[phase]) > PUSHED_MAX) {
+        if (is_sure(count, num_abs(watch->pushed[phase]), gone, flows) ||
+            (count->same == SAME_MAX && alive && goes_elsewhere(look, watch->resistance))) {
             fault = (enum drive_fault)name;
         }
     }
@@ -200,6 +256,18 @@ static void track_lag(struct phase_watch *watch, const struct drive *drive)
     watch->lag = (int32_t)((angle_t)watch->lag + (angle_t)nearer);
 }
 
+/* Electrical turns in a period. */
+static bool is_faster(const struct drive *drive, num_t turns)
+{
+    return num_abs(num_mul_coef(drive->estimator.estimate.rotor.speed,
+                                drive->params.model.turns_per_speed)) > turns;
+}
+
+static uint16_t counts_of(num_t resistance)
+{
+    return (uint16_t)((angle_t)angle_from_turns(resistance) >> 22);
+}
+
 static void look_at(struct phase_look *look, const struct drive *drive)
 {
     const uint16_t code_a = drive->current_codes.a;
@@ -218,7 +286,13 @@ static void look_at(struct phase_look *look, const struct drive *drive)
     look->larger = num_abs(current.b) > num_abs(current.a);
     look->flows[0] = num_abs(current.a) > CURRENT_MIN;
     look->flows[1] = num_abs(current.b) > CURRENT_MIN;
+    look->voltage_wrong =
+        num_abs(actuation->loss.a) > VOLTAGE_WRONG || num_abs(actuation->loss.b) > VOLTAGE_WRONG;
     look->held = drive->hold.active;
+    look->settled = drive->synchronism.monitor.held >= drive->synchronism.params.settled_blocks;
+    look->turns = is_faster(drive, SLOW_TURNS);
+    look->resistance = counts_of(drive->estimator.estimate.winding.resistance);
+    look->eighth = counts_of(drive->params.model.nominal_resistance) / 8u;
 }
 
 /* A hold whose winding shows a resistance that none has: its current is not what is measured. */
@@ -234,18 +308,11 @@ static enum drive_fault judge_resistance(const struct drive *drive, const struct
     return look->larger == 0 ? DRIVE_FAULT_CURRENT_SENSOR_A : DRIVE_FAULT_CURRENT_SENSOR_B;
 }
 
-/* A sixteenth of an electrical turn and more in a period: from look to look half a turn may pass,
-   and a current that goes through zero stands. */
-static bool turns_fast(const struct drive *drive)
-{
-    return num_abs(num_mul_coef(drive->estimator.estimate.rotor.speed,
-                                drive->params.model.turns_per_speed)) > FAST_TURNS;
-}
-
-/* Never at the same place of what repeats itself. */
+/* Never at the same place of what repeats itself. From a sixteenth of an electrical turn in a
+   period on half a turn may pass from look to look, and a current that goes through zero stands. */
 static uint32_t interval(const struct drive *drive)
 {
-    return phase_watch_chatters(drive) || turns_fast(drive)
+    return phase_watch_chatters(drive) || is_faster(drive, FAST_TURNS)
                ? LOOK_PERIODS + drive->phase_watch.period / LOOK_PERIODS % 2u
                : LOOK_PERIODS;
 }

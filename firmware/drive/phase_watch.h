@@ -20,6 +20,15 @@
  * In a hold a stuck sensor lets the true current drift away, and the resistance that is found with
  * it: at the end of its range it is the sensor of the larger current.
  *
+ * A phase of a hold that stands at no current in three looks is open, with 20 % of the rated asked
+ * for and a voltage that would have changed it by half of the rated. More is no sign there: the
+ * bridge's dead time keeps the current of a rotor that is shaken at zero for as long.
+ *
+ * A converter that is alive is so by its noise, if by nothing else. It is dead that gives the very
+ * same code of a current in 16 looks with a reference that has left it; or any code in 128 while
+ * the other phase's changes, and the rotor turns by an electrical turn, in which no current stays
+ * within a code, or a settled hold's resistance moves by an eighth, as no winding's does so soon.
+ *
  * Before that is certain, the rotor may have left the estimate or a comparator have tripped. So it
  * is suspected before, and what else ends the operation and may come of it goes by its name
  * (state_machine.c). Signs: three looks in which a current stands while its
@@ -27,6 +36,8 @@
  * which 20 % of the rated are asked for, from one look to the next with the same asked for, or
  * standing. A rotor that is shaken takes its currents through zero, but with what is asked for, or
  * behind it. A voltage law has no such reference. Of two phases it is the one that is further off.
+ * With none of these, a voltage that is measured three quarters of the largest loss of a bridge
+ * beside what was commanded: of it an estimate was made that is lost, and not the rotor stalled.
  *
  * In the background, by four looks at least; behind fourteen periods that it does not come to it
  * begins anew.
@@ -45,19 +56,24 @@ struct phase_watch_params {
     uint16_t noise_codes; /* within which a current stands */
 };
 
+struct phase_count {
+    uint8_t looks : 3;    /* that have found its current where it stands */
+    uint8_t followed : 1; /* its reference, at the last look */
+    uint8_t missed : 4;   /* looks in which its reference was elsewhere, less the others since */
+    uint8_t same;         /* looks in a row with the very code of the one before */
+    uint8_t last;         /* the low byte of that */
+};
+
 /* Of phase a, then b. */
 struct phase_watch {
     uint32_t period;  /* looked at last */
     uint16_t code[2]; /* at which the current stands */
-    struct {
-        uint8_t looks;  /* that have found it there */
-        uint8_t missed; /* in which its reference was elsewhere, less the others since */
-        bool followed;  /* its reference, at the last look */
-    } count[2];
-    uint8_t suspected; /* fault: what another one comes of */
-    int32_t lag;       /* of the estimate behind the reference of late, 2^-32 turns */
-    num_t wanted[2];   /* current, when it came to stand there */
-    num_t pushed[2];   /* by how much its voltage would have changed it since */
+    struct phase_count count[2];
+    uint8_t suspected;  /* fault: what another one comes of */
+    uint8_t resistance; /* likewise, its low byte, when a code last changed of two that do */
+    int32_t lag;        /* of the estimate behind the reference of late, 2^-32 turns */
+    num_t wanted[2];    /* current, when it came to stand there */
+    num_t pushed[2];    /* by how much its voltage would have changed it since */
 };
 
 /* What is seen of both in a period. */
@@ -68,8 +84,13 @@ struct phase_look {
     bool flows[2];   /* there is a current worth the name */
     num_t wanted[2]; /* current; by a voltage law 0 */
     num_t off[2];    /* by how much the current is another one */
+    uint16_t resistance; /* 2^-10 per unit */
+    uint16_t eighth;     /* of the nominal one */
     bool held;
-    bool larger; /* the phase of the larger one */
+    bool settled;       /* and for so long that its resistance is found */
+    bool turns;         /* by an electrical turn within the looks of one code */
+    bool larger;        /* the phase of the larger one */
+    bool voltage_wrong; /* what is measured of a leg is not what was commanded */
 };
 
 struct drive;

@@ -159,10 +159,14 @@ __attribute__((noinline)) static void disable(struct drive *drive)
      1u << DRIVE_FAULT_ESTIMATE_RANGE | 1u << DRIVE_FAULT_LOST_SYNCHRONISM |                       \
      1u << DRIVE_FAULT_FOLLOWING_ERROR)
 
-/* Too much current is none of a phase that is open; of a sensor stuck at zero it may be. */
+/* Too much current is none of a phase that is open; of a sensor stuck at zero it may be. An
+   estimate that was made of a wrong voltage stalls without a rotor that does. */
 static bool comes_of(enum drive_fault suspected, enum drive_fault fault)
 {
-    return suspected != DRIVE_FAULT_NONE && (COMES_OF_PHASE >> fault & 1u) != 0u &&
+    if (suspected < DRIVE_FAULT_OPEN_PHASE_A) {
+        return suspected != DRIVE_FAULT_NONE && fault == DRIVE_FAULT_STALLED;
+    }
+    return (COMES_OF_PHASE >> fault & 1u) != 0u &&
            (fault > DRIVE_FAULT_HARDWARE_OVERCURRENT || suspected >= DRIVE_FAULT_CURRENT_SENSOR_A);
 }
 

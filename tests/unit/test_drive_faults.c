@@ -130,8 +130,8 @@ static void test_without_an_encoder(void)
     static const struct row rows[] = {
         {LEAD_A, true, "open-phase-a", 150, 260, 0},
         {LEAD_B, true, "open-phase-b", 150, 260, 0},
-        {SENSOR_B, true, "current-sensor-b", 200, 350, 0},
-        {SENSOR_A, true, "current-sensor-a", 200, 350, 11},
+        {SENSOR_B, true, "current-sensor-b", 55, 75, 0},
+        {SENSOR_A, true, "current-sensor-a", 55, 75, 11},
         {LEG_VOLTAGE, true, "lost-synchronism", 20, 50, 0},
         {LEG_VOLTAGE, true, "lost-synchronism", 70, 110, 11},
         {HELD_ROTOR, false, "stalled", 205, 245, 0},
@@ -152,7 +152,7 @@ static void test_with_an_encoder_and_its_default_law(void)
         {LEAD_A, false, "open-phase-a", 90, 150, 0},
         {LEAD_B, false, "open-phase-b", 10, 50, 0},
         {LEAD_A, true, "open-phase-a", 500, 900, 0},
-        {LEAD_B, true, "open-phase-b", 600, 1100, 0},
+        {LEAD_B, true, "open-phase-b", 500, 900, 0},
         {SENSOR_B, true, "current-sensor-b", 20, 90, 0},
         {SENSOR_A, true, "current-sensor-a", 20, 90, 11},
         {FROZEN_ENCODER, false, "following-error", 365, 395, 0},
@@ -180,8 +180,8 @@ static void test_with_an_encoder_and_state_feedback(void)
         {LEAD_A, false, "open-phase-a", 120, 180, 0},
         {LEAD_B, false, "open-phase-b", 30, 70, 0},
         {SENSOR_A, false, "open-phase-a", 150, 230, 0}, /* at rest it shows nothing to flow */
-        {SENSOR_B, true, "current-sensor-b", 90, 140, 0},
-        {SENSOR_A, true, "current-sensor-a", 90, 150, 11},
+        {SENSOR_B, true, "current-sensor-b", 55, 75, 0},
+        {SENSOR_A, true, "current-sensor-a", 55, 75, 11},
         {REVERSED_ENCODER, true, "estimate-range", 7, 18, 0},
     };
 

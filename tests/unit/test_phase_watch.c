@@ -267,7 +267,132 @@ static void test_what_stands_for_long_goes_on_standing(void)
     for (int n = 0; n < 300; n++) {
         look_behind(NUM(0.0));
     }
-    TEST_ASSERT_EQUAL_UINT8(15, watch.count[0].looks);
+    TEST_ASSERT_EQUAL_UINT8(7, watch.count[0].looks);
+}
+
+/* A lead of a hold that breaks: its voltage would change the current by so much in each period. */
+static int looks_until_gone(num_t push)
+{
+    setUp();
+    look.held = look.flows[1] = true;
+    look.code[1] = ZERO + 400;
+    look_behind(NUM(0.2));
+    look.flows[1] = false;
+    look.code[1] = ZERO;
+    look.push[1] = push;
+    for (int n = 1; n < NEVER; n++) {
+        look.period += 4u;
+        if (phase_watch_step(&watch, &params, &look) != DRIVE_FAULT_NONE) {
+            return n;
+        }
+    }
+    return NEVER;
+}
+
+/* Eight periods of push are two looks; dead time keeps a current at zero, too, but not against
+   that. */
+static void test_a_hold_whose_current_stands_at_zero_against_its_voltage_is_open(void)
+{
+    TEST_ASSERT_EQUAL_INT(3, looks_until_gone(NUM(0.9)));
+    TEST_ASSERT_EQUAL_INT(3, looks_until_gone(NUM(0.032)));
+    TEST_ASSERT_EQUAL_INT(4, looks_until_gone(NUM(0.031)));
+    TEST_ASSERT_EQUAL_INT(NEVER, looks_until_gone(NUM(0.0)));
+}
+
+/* ---- a converter that gives one code ---- */
+
+/* Looks until phase b's is said to be dead, whose code changes every so many, as does that of phase
+   a, and the resistance by a step; 0: not at all. */
+static int looks_until_dead(int changes_a, int changes_b, int warms, enum drive_fault fault)
+{
+    static const uint16_t noise[2] = {0, 1};
+
+    look.eighth = 40;
+    for (int n = 1; n < 1000; n++) {
+        look.period += 4u;
+        look.code[0] = (uint16_t)(ZERO + 300 + (changes_a > 0 ? noise[n / changes_a % 2] : 0));
+        look.code[1] = (uint16_t)(ZERO + 300 + (changes_b > 0 ? noise[n / changes_b % 2] : 0));
+        look.resistance = (uint16_t)(251 + (warms != 0 ? n / warms : 0));
+        const enum drive_fault now = phase_watch_step(&watch, &params, &look);
+
+        if (now != DRIVE_FAULT_NONE) {
+            TEST_ASSERT_EQUAL_STRING(drive_fault_name(fault), drive_fault_name(now));
+            return n;
+        }
+    }
+    return NEVER;
+}
+
+static int looks_until_dead_in_motion(int changes_a, int changes_b)
+{
+    setUp();
+    look.turns = look.flows[1] = true;
+    return looks_until_dead(changes_a, changes_b, 0, DRIVE_FAULT_CURRENT_SENSOR_B);
+}
+
+/* The first shows the code. */
+static void test_a_converter_without_noise_is_dead_while_the_rotor_turns(void)
+{
+    TEST_ASSERT_EQUAL_INT(129, looks_until_dead_in_motion(1, 0));
+    TEST_ASSERT_EQUAL_INT(129, looks_until_dead_in_motion(8, 0));
+    TEST_ASSERT_EQUAL_INT(NEVER, looks_until_dead_in_motion(1, 128)); /* it is alive */
+    TEST_ASSERT_EQUAL_INT(NEVER, looks_until_dead_in_motion(0, 0));   /* no noise at all */
+    setUp();
+    TEST_ASSERT_EQUAL_INT(NEVER, looks_until_dead(1, 0, 0, DRIVE_FAULT_NONE)); /* it rests */
+}
+
+/* 64 in 128 looks are more than 40 and 32 are less; a low byte wraps. */
+static void test_in_a_hold_it_is_dead_as_the_resistance_moves_by_an_eighth(void)
+{
+    setUp();
+    look.held = look.settled = look.flows[1] = true;
+    TEST_ASSERT_EQUAL_INT(129, looks_until_dead(1, 0, 2, DRIVE_FAULT_CURRENT_SENSOR_B));
+    setUp();
+    look.held = look.settled = look.flows[1] = true;
+    TEST_ASSERT_EQUAL_INT(129, looks_until_dead(1, 0, -2, DRIVE_FAULT_CURRENT_SENSOR_B));
+    setUp();
+    look.held = look.settled = look.flows[1] = true;
+    TEST_ASSERT_EQUAL_INT(NEVER, looks_until_dead(1, 0, 4, DRIVE_FAULT_NONE));
+    setUp();
+    look.held = look.settled = look.flows[1] = true;
+    TEST_ASSERT_EQUAL_INT(NEVER, looks_until_dead(1, 64, 2, DRIVE_FAULT_NONE));
+    setUp();
+    look.held = look.flows[1] = true; /* it is still being found */
+    TEST_ASSERT_EQUAL_INT(NEVER, looks_until_dead(1, 0, 2, DRIVE_FAULT_NONE));
+}
+
+/* Of a current that is asked for, 16 are enough; none may be held by the bridge's dead time. */
+static void test_a_code_that_its_reference_has_left_is_a_dead_sensors(void)
+{
+    for (int flows = 0; flows < 2; flows++) {
+        setUp();
+        look.held = true;
+        look.flows[1] = flows == 1;
+        look.code[1] = ZERO + 300;
+        look_behind(NUM(0.3));
+        for (int n = 1; n < 16; n++) {
+            look_behind(NUM(0.3251));
+        }
+        look.period += 4u;
+        TEST_ASSERT_EQUAL_STRING(
+            drive_fault_name(flows == 1 ? DRIVE_FAULT_CURRENT_SENSOR_B : DRIVE_FAULT_NONE),
+            drive_fault_name(phase_watch_step(&watch, &params, &look)));
+    }
+    setUp();
+    look.held = look.flows[1] = true;
+    look.code[1] = ZERO + 300;
+    look_behind(NUM(0.3));
+    for (int n = 1; n < 100; n++) {
+        look_behind(NUM(0.3249));
+    }
+    look_behind(NUM(0.3251)); /* the current may follow in the next look */
+    setUp();
+    look.held = look.flows[1] = true;
+    look_behind(NUM(0.3));
+    for (int n = 1; n < 100; n++) { /* it stands, but not at one code */
+        look.code[1] = (uint16_t)(ZERO + 300 + n / 15 % 2);
+        look_behind(NUM(0.3251));
+    }
 }
 
 int main(void)
@@ -286,5 +411,9 @@ int main(void)
     RUN_TEST(test_a_current_that_passes_zero_is_no_broken_lead);
     RUN_TEST(test_of_two_phases_the_one_that_is_further_off_is_suspected);
     RUN_TEST(test_what_stands_for_long_goes_on_standing);
+    RUN_TEST(test_a_hold_whose_current_stands_at_zero_against_its_voltage_is_open);
+    RUN_TEST(test_a_converter_without_noise_is_dead_while_the_rotor_turns);
+    RUN_TEST(test_in_a_hold_it_is_dead_as_the_resistance_moves_by_an_eighth);
+    RUN_TEST(test_a_code_that_its_reference_has_left_is_a_dead_sensors);
     return UNITY_END();
 }
