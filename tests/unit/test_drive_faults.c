@@ -319,6 +319,18 @@ static void test_a_phase_that_breaks_at_rest_is_named_and_not_what_comes_of_it(v
     }
 }
 
+/* And nothing else is renamed by it. */
+static void test_a_stall_of_an_estimate_made_of_a_wrong_voltage_is_called_lost(void)
+{
+    for (int fault = 1; fault < DRIVE_FAULTS; fault++) {
+        drive.phase_watch.suspected = DRIVE_FAULT_LOST_SYNCHRONISM;
+        state_machine_fault(&drive, (enum drive_fault)fault);
+        TEST_ASSERT_EQUAL_INT(fault == DRIVE_FAULT_STALLED ? (int)DRIVE_FAULT_LOST_SYNCHRONISM
+                                                           : fault,
+                              drive.supervision.fault);
+    }
+}
+
 static void test_what_a_phase_cannot_cause_keeps_its_name(void)
 {
     static const enum drive_fault causes[] = {
@@ -362,6 +374,7 @@ int main(void)
     RUN_TEST(test_a_sound_drive_says_nothing);
     RUN_TEST(test_a_policy_warns_or_looks_away_instead);
     RUN_TEST(test_a_phase_that_breaks_at_rest_is_named_and_not_what_comes_of_it);
+    RUN_TEST(test_a_stall_of_an_estimate_made_of_a_wrong_voltage_is_called_lost);
     RUN_TEST(test_what_a_phase_cannot_cause_keeps_its_name);
     RUN_TEST(test_too_much_current_is_none_of_an_open_phase);
     return UNITY_END();

@@ -261,6 +261,19 @@ static void test_of_two_phases_the_one_that_is_further_off_is_suspected(void)
     }
 }
 
+static void test_a_wrong_voltage_is_suspected_where_no_phase_is(void)
+{
+    look.voltage_wrong = look.held = true;
+    look_behind(NUM(0.0));
+    TEST_ASSERT_EQUAL_STRING("lost-synchronism", suspected());
+    look_behind(NUM(0.0));
+    look_behind(NUM(0.2));
+    TEST_ASSERT_EQUAL_STRING("open-phase-b", suspected());
+    look.voltage_wrong = false;
+    look_behind(NUM(0.0));
+    TEST_ASSERT_EQUAL_STRING("none", suspected());
+}
+
 /* A count that wraps would be a look that begins. */
 static void test_what_stands_for_long_goes_on_standing(void)
 {
@@ -410,6 +423,7 @@ int main(void)
     RUN_TEST(test_a_hold_whose_current_is_gone_is_suspected_at_once);
     RUN_TEST(test_a_current_that_passes_zero_is_no_broken_lead);
     RUN_TEST(test_of_two_phases_the_one_that_is_further_off_is_suspected);
+    RUN_TEST(test_a_wrong_voltage_is_suspected_where_no_phase_is);
     RUN_TEST(test_what_stands_for_long_goes_on_standing);
     RUN_TEST(test_a_hold_whose_current_stands_at_zero_against_its_voltage_is_open);
     RUN_TEST(test_a_converter_without_noise_is_dead_while_the_rotor_turns);
