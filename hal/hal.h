@@ -75,6 +75,7 @@ struct hal_facts {
                         period of delay of the diagram */
     bool has_brake;  /* a resistor that the board's control interrupt connects to the bus as
                         application_brake says, for S(k)...S(k+1); off after a reset */
+    bool has_encoder_index; /* the encoder's index is wired; of a board that reads an encoder */
     double bridge_resistance_ohm; /* both conducting switches in series with a phase */
     double bridge_ntc_beta_K;     /* of the NTC resistor that measures the bridge's temperature:
                                      drive/thermal_model.h; 0: none is fitted */
@@ -101,6 +102,9 @@ enum hal_output {
     HAL_OUTPUTS = (1u << 3) - 1u
 };
 
+/* What is asked of an encoder's index. */
+enum hal_index { HAL_INDEX_PASSED, HAL_INDEX_RISES, HAL_INDEX_FALLS };
+
 /* Words that a board with follow_control has for what is captured. */
 enum { HAL_CAPTURE_WORDS = 8 * 1024 };
 
@@ -125,6 +129,16 @@ struct hal {
        nothing drives is high. Both NULL: the board has none. < 1 us. */
     uint32_t (*inputs_read)(void *context);
     void (*outputs_write)(void *context, uint32_t levels);
+    /*
+     * An edge of the encoder's index, if facts.has_encoder_index; NULL otherwise, or if nothing
+     * asks. HAL_INDEX_RISES, HAL_INDEX_FALLS: from now on hardware keeps the count at that edge,
+     * each time it passes; what was kept until now is forgotten; false. The rising edge of a rotor
+     * that goes up is the falling one of a rotor that goes down. HAL_INDEX_PASSED: whether it has
+     * passed since, or since this was asked last; then `count` is hal_samples.encoder_count at the
+     * last passage, where A or B changes with the index the one before or behind. To be asked until
+     * the rotor has gone on by 32,767 counts. < 1 us.
+     */
+    bool (*encoder_index)(void *context, enum hal_index ask, int32_t *count);
     /* Free-running, wraps at 2^32, facts.cycle_counter_Hz. < 1 us. */
     uint32_t (*cycle_count)(void *context);
     /* Time since start-up, never runs backwards. < 1 us. */

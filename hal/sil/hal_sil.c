@@ -45,6 +45,19 @@ static void outputs_write(void *context, uint32_t levels)
     ((struct hal_sil *)context)->outputs = levels;
 }
 
+static bool encoder_index(void *context, enum hal_index ask, int32_t *count)
+{
+    struct hal_sil *sil = context;
+    if (ask != HAL_INDEX_PASSED) {
+        sil->index_awaited = ask;
+        sil->index_passed = false;
+    }
+    const bool passed = sil->index_passed;
+    *count = sil->index_count;
+    sil->index_passed = false;
+    return passed;
+}
+
 static void watchdog_feed(void *context)
 {
     struct hal_sil *sil = context;
@@ -171,6 +184,9 @@ void hal_sil_init(struct hal_sil *sil, const struct hal_facts *facts)
     sil->board.bridge_temperature = bridge_temperature;
     sil->board.inputs_read = inputs_read;
     sil->board.outputs_write = outputs_write;
+    if (facts->has_encoder_index) {
+        sil->board.encoder_index = encoder_index;
+    }
     sil->board.cycle_count = cycle_count;
     sil->board.time_us = time_us;
     sil->board.watchdog_feed = watchdog_feed;
@@ -198,6 +214,8 @@ void hal_sil_restart(struct hal_sil *sil)
     sil->bridge_allowed = false;
     sil->trip_latched = false;
     sil->watchdog_running = false;
+    sil->index_awaited = HAL_INDEX_PASSED;
+    sil->index_passed = false;
     empty(&sil->to_drive);
     empty(&sil->to_host);
 }
@@ -210,6 +228,14 @@ void hal_sil_control_begins(struct hal_sil *sil)
 void hal_sil_next_period(struct hal_sil *sil)
 {
     sil->period++;
+}
+
+void hal_sil_index_edge(struct hal_sil *sil, bool rises, int32_t count)
+{
+    if (sil->index_awaited == (rises ? HAL_INDEX_RISES : HAL_INDEX_FALLS)) {
+        sil->index_passed = true;
+        sil->index_count = count;
+    }
 }
 
 void hal_sil_trip(struct hal_sil *sil)

@@ -40,8 +40,11 @@ struct hal_sil {
     bool bridge_allowed;      /* between bridge_enable and bridge_disable */
     bool trip_latched;        /* by hal_sil_trip, until bridge_disable */
     uint32_t inputs, outputs; /* levels of the machine's */
-    uint16_t bridge_temperature; /* code of its sensor */
-    bool restarted;              /* by hal_sil_restart */
+    uint16_t bridge_temperature;  /* code of its sensor */
+    enum hal_index index_awaited; /* HAL_INDEX_PASSED: no edge of it */
+    bool index_passed;
+    int32_t index_count;
+    bool restarted; /* by hal_sil_restart */
     bool watchdog_running;
     uint64_t watchdog_fed_us;
     struct hal_sil_stream to_drive, to_host;
@@ -64,6 +67,9 @@ void hal_sil_control_begins(struct hal_sil *sil);
 
 /* One PWM period passes. */
 void hal_sil_next_period(struct hal_sil *sil);
+
+/* An edge of the encoder's index has passed, at this count. */
+void hal_sil_index_edge(struct hal_sil *sil, bool rises, int32_t count);
 
 /* The board's overcurrent comparator: opens the bridge and keeps it open until bridge_disable. */
 void hal_sil_trip(struct hal_sil *sil);

@@ -37,6 +37,8 @@ hal_facts facts_of(const plant::Config &config)
     facts.has_brake = config.supply.brake_by_drive && config.supply.brake_ohm > 0.0;
     facts.encoder_counts_per_turn =
         static_cast<std::uint32_t>(config.sensors.encoder_counts_per_turn);
+    facts.has_encoder_index =
+        config.sensors.encoder_counts_per_turn > 0 && config.sensors.encoder_index_rad >= 0.0;
     return facts;
 }
 
@@ -50,6 +52,13 @@ struct Board::Impl {
 
     void receive();
     void send();
+
+    /* The counter's, of the encoder's; may wrap. */
+    std::int32_t counted(std::int32_t encoder_count) const
+    {
+        return static_cast<std::int32_t>(static_cast<std::uint32_t>(encoder_count) -
+                                         static_cast<std::uint32_t>(encoder_origin));
+    }
 
     plant::Plant plant;
     const firmware_image &image;
@@ -145,9 +154,13 @@ void Board::sample()
     board.samples.phase_voltage_a = codes.phase_voltage_a;
     board.samples.phase_voltage_b = codes.phase_voltage_b;
     board.hal.bridge_temperature = codes.bridge_temperature;
-    board.samples.encoder_count =
-        static_cast<std::int32_t>(static_cast<std::uint32_t>(codes.encoder_count) -
-                                  static_cast<std::uint32_t>(board.encoder_origin)); /* may wrap */
+    board.samples.encoder_count = board.counted(codes.encoder_count);
+    if (codes.index_rise.passed) {
+        hal_sil_index_edge(&board.hal, true, board.counted(codes.index_rise.count));
+    }
+    if (codes.index_fall.passed) {
+        hal_sil_index_edge(&board.hal, false, board.counted(codes.index_fall.count));
+    }
     if (board.hardware_trip_A > 0.0) {
         const plant::State &state = board.plant.state();
         const double limit = board.hardware_trip_A;

@@ -125,6 +125,7 @@ struct SensorConfig {
     int encoder_counts_per_turn = 0;       /* quadrature counts; 0: no encoder */
     double encoder_eccentricity_rad = 0.0; /* amplitude of an error that repeats every turn, */
     double encoder_phase_rad = 0.0;        /* sin(theta + phase) less its value at angle 0 */
+    double encoder_index_rad = 1.0; /* where its index begins, a count long; below 0: it has none */
 };
 
 struct Config {
@@ -157,12 +158,19 @@ struct Duties {
     bool brake_on = false; /* at once, with SupplyConfig::brake_by_drive */
 };
 
+/* An edge of an encoder's index, and the count there. */
+struct IndexEdge {
+    bool passed = false; /* since S(k-1) */
+    std::int32_t count = 0;
+};
+
 /* Raw codes at S(k); the fields and scales are those of hal_samples, and of hal's
    bridge_temperature. */
 struct Samples {
     std::uint16_t current_a = 0, current_b = 0, bus_voltage = 0, bridge_temperature = 0;
     std::int16_t phase_voltage_a = 0, phase_voltage_b = 0;
     std::int32_t encoder_count = 0; /* 0 at angle 0, wraps at 2^31 */
+    IndexEdge index_rise, index_fall;
 };
 
 /* True values at S(k). Voltages: means over S(k-1)...S(k). */

@@ -46,6 +46,13 @@ void require_mismatch(double share, const char *field)
     require(magnitude(share) <= 0.1, field, share, "-0.1...0.1");
 }
 
+/* Not above a number within 64 bits. */
+std::int64_t whole(double number)
+{
+    const auto towards_zero = static_cast<std::int64_t>(number);
+    return towards_zero - (static_cast<double>(towards_zero) > number ? 1 : 0);
+}
+
 bool is_signed(Channel channel)
 {
     return channel == Channel::phase_voltage_a || channel == Channel::phase_voltage_b;
@@ -174,11 +181,14 @@ void Sensors::set(const SensorConfig &config)
             config.encoder_eccentricity_rad, "-0.1...0.1 rad");
     require(magnitude(config.encoder_phase_rad) <= 2.0 * pi, "encoder_phase_rad",
             config.encoder_phase_rad, "-2 pi...2 pi");
+    require(config.encoder_index_rad <= 2.0 * pi, "encoder_index_rad", config.encoder_index_rad,
+            "0...2 pi, or below 0: none");
     encoder_error_at_zero_rad_ =
         config.encoder_eccentricity_rad * unit_vector(config.encoder_phase_rad)[1];
 }
 
-std::int32_t Sensors::encoder_edges(double theta_rad) const
+/* In counts, their fractions too. */
+double Sensors::encoder_travel(double theta_rad) const
 {
     double seen_rad = theta_rad;
     if (config_.encoder_eccentricity_rad != 0.0) {
@@ -189,18 +199,24 @@ std::int32_t Sensors::encoder_edges(double theta_rad) const
     }
     constexpr double limit = 9e18; /* of what 64 bits hold */
     const double counts = seen_rad * (0.5 / pi) * config_.encoder_counts_per_turn;
-    const double clamped = counts > -limit ? (counts < limit ? counts : limit) : -limit;
-    const std::int64_t towards_zero = static_cast<std::int64_t>(clamped);
-    const std::int64_t whole = towards_zero - (static_cast<double>(towards_zero) > clamped ? 1 : 0);
-    return static_cast<std::int32_t>(static_cast<std::uint32_t>(whole));
+    return counts > -limit ? (counts < limit ? counts : limit) : -limit;
+}
+
+std::int32_t Sensors::encoder_edges(double theta_rad) const
+{
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(whole(encoder_travel(theta_rad))));
+}
+
+std::int32_t Sensors::encoder_count(double theta_rad) const
+{
+    return encoder_counted(encoder_edges(theta_rad));
 }
 
 /* Wraps as its edges do. */
-std::int32_t Sensors::encoder_count(double theta_rad) const
+std::int32_t Sensors::encoder_counted(std::int32_t edges) const
 {
     const auto from = static_cast<std::uint32_t>(encoder_.edges);
-    const auto passed =
-        static_cast<std::int32_t>(static_cast<std::uint32_t>(encoder_edges(theta_rad)) - from);
+    const auto passed = static_cast<std::int32_t>(static_cast<std::uint32_t>(edges) - from);
     std::uint32_t counted = 0;
     switch (encoder_.condition) {
     case EncoderCondition::sound:
@@ -250,6 +266,25 @@ void Sensors::miscount(std::uint64_t period, double theta_rad)
                                                static_cast<std::uint32_t>(wrong));
 }
 
+/* On the way from the last sample to this one: what begins upwards ends downwards. */
+void Sensors::pass_index(Samples &samples, double travel) const
+{
+    const double turn = config_.encoder_counts_per_turn;
+    const double begins = config_.encoder_index_rad * (0.5 / pi) * turn;
+    for (const bool lower : {true, false}) {
+        const double edge = begins + (lower ? 0.0 : 1.0);
+        const std::int64_t before = whole((index_travel_ - edge) / turn);
+        const std::int64_t now = whole((travel - edge) / turn);
+        if (now == before) {
+            continue;
+        }
+        const double at = edge + static_cast<double>(now > before ? now : before) * turn;
+        const auto edges = static_cast<std::int32_t>(static_cast<std::uint32_t>(whole(at)));
+        IndexEdge &passed = (now > before) == lower ? samples.index_rise : samples.index_fall;
+        passed = {true, encoder_counted(edges)};
+    }
+}
+
 Samples Sensors::sample(std::uint64_t period, const True &now)
 {
     Phases current_A = now.current_A;
@@ -291,6 +326,12 @@ Samples Sensors::sample(std::uint64_t period, const True &now)
             miscount(period, now.theta_rad);
         }
         samples.encoder_count = encoder_count(now.theta_rad);
+        const double travel = encoder_travel(now.theta_rad);
+        if (index_followed_ && config_.encoder_index_rad >= 0.0) {
+            pass_index(samples, travel);
+        }
+        index_travel_ = travel;
+        index_followed_ = true;
     }
     if (faulty_) {
         apply_faults(samples, period);

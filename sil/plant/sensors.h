@@ -3,7 +3,8 @@
  * faulty converter sticks at a code, or has more noise than its kind; a faulty encoder's count goes
  * another way than its rotor.
  * Rounding is to the nearest code, ties upwards; codes clamp at the ends of their range. An encoder
- * counts whole steps: the floor of the angle.
+ * counts whole steps: the floor of the angle. Its index is on the same disc, high for a count a
+ * turn; what a timer would capture at its edges is in the samples.
  */
 #ifndef STEADYSTEP_PLANT_SENSORS_H
 #define STEADYSTEP_PLANT_SENSORS_H
@@ -59,8 +60,11 @@ class Sensors
     void apply_faults(Samples &samples, std::uint64_t period) const;
     void write(Samples &samples, Channel channel, int code) const;
     void miscount(std::uint64_t period, double theta_rad);
+    double encoder_travel(double theta_rad) const;
     std::int32_t encoder_edges(double theta_rad) const;
+    std::int32_t encoder_counted(std::int32_t edges) const;
     std::int32_t encoder_count(double theta_rad) const;
+    void pass_index(Samples &samples, double travel) const;
 
     SensorConfig config_;
     std::uint64_t seed_, current_noise_, phase_voltage_noise_; /* the latter two are keys of it */
@@ -84,6 +88,8 @@ class Sensors
         double share = 0.0;
     };
     Encoder encoder_;
+    double index_travel_ = 0.0; /* of the encoder at the last sample */
+    bool index_followed_ = false;
     bool faulty_ = false;
     std::uint16_t bridge_temperature_code_ = 0;
 };

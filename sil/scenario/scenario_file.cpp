@@ -377,6 +377,7 @@ void read_plant(const Value &table, Scenario &scenario)
     reader.integer("encoder_counts_per_turn", encoder_counts_per_turn, 0, 1 << 30);
     reader.number("encoder_eccentricity_rad", sensors.encoder_eccentricity_rad, -0.1, 0.1);
     reader.number("encoder_phase_rad", sensors.encoder_phase_rad, -6.28, 6.28);
+    reader.number("encoder_index_rad", sensors.encoder_index_rad, -1, 6.28);
     reader.number("initial_theta_rad", plant.initial_theta_rad, -largest_position_rad,
                   largest_position_rad);
     reader.number("initial_omega_rad_s", plant.initial_omega_rad_s, -1e4, 1e4);

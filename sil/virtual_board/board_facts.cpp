@@ -65,6 +65,7 @@ hal_facts facts_of(const plant::Config &config, int half_period_counts)
     facts.has_brake = true;
     facts.encoder_counts_per_turn =
         static_cast<std::uint32_t>(config.sensors.encoder_counts_per_turn);
+    facts.has_encoder_index = true;
     facts.cycle_counter_Hz = 170'000'000;
     facts.parameter_page_bytes = 2048;
     facts.parameter_word_bytes = 8;

@@ -103,7 +103,7 @@ Recording record(const replay_case &which)
     return recording;
 }
 
-/* Of a board that does not measure its temperature. */
+/* Of a board that does not measure its temperature, nor asks for an index. */
 void write_header(const replay_case &which, const Recording &recording)
 {
     const hal_facts &facts = recording.facts;
@@ -112,18 +112,18 @@ void write_header(const replay_case &which, const Recording &recording)
     std::printf("static const char replay_case_name[] = \"%s\";\n", which.name);
     std::printf("static const uint64_t replay_drive_hash = UINT64_C(0x%016" PRIx64 ");\n",
                 recording.drive_hash);
-    std::printf("static const struct hal_facts replay_facts = {\n"
-                "    \"%s\", %a, %" PRIu32 "u, %a, %a, %a,\n    %" PRIu32
-                "u, %a, %uu, %a, %a, %a,\n    %s, %" PRIu32 "u, %s, %s, %a, 0.0, %" PRIu32 "u,\n"
-                "    %" PRIu32 "u, %" PRIu32 "u};\n",
-                facts.board_name, facts.control_period_s, facts.pwm_half_period_counts,
-                facts.dead_time_s, facts.leg_delay_s, facts.low_state_s, facts.converter_codes,
-                facts.current_A_per_code, unsigned{facts.current_zero_code},
-                facts.current_offset_codes, facts.bus_V_per_code, facts.phase_voltage_V_per_code,
-                facts.has_phase_voltages ? "true" : "false", facts.encoder_counts_per_turn,
-                facts.zero_delay ? "true" : "false", facts.has_brake ? "true" : "false",
-                facts.bridge_resistance_ohm, facts.cycle_counter_Hz, facts.parameter_page_bytes,
-                facts.parameter_word_bytes);
+    std::printf(
+        "static const struct hal_facts replay_facts = {\n"
+        "    \"%s\", %a, %" PRIu32 "u, %a, %a, %a,\n    %" PRIu32
+        "u, %a, %uu, %a, %a, %a,\n    %s, %" PRIu32 "u, %s, %s, %s, %a, 0.0, %" PRIu32 "u,\n"
+        "    %" PRIu32 "u, %" PRIu32 "u};\n",
+        facts.board_name, facts.control_period_s, facts.pwm_half_period_counts, facts.dead_time_s,
+        facts.leg_delay_s, facts.low_state_s, facts.converter_codes, facts.current_A_per_code,
+        unsigned{facts.current_zero_code}, facts.current_offset_codes, facts.bus_V_per_code,
+        facts.phase_voltage_V_per_code, facts.has_phase_voltages ? "true" : "false",
+        facts.encoder_counts_per_turn, facts.zero_delay ? "true" : "false",
+        facts.has_brake ? "true" : "false", "false", facts.bridge_resistance_ohm,
+        facts.cycle_counter_Hz, facts.parameter_page_bytes, facts.parameter_word_bytes);
     std::printf("static const struct replay_samples replay_input[REPLAY_PERIODS] = {\n");
     for (const replay_samples &s : recording.input)
         std::printf("{%d,%d,%d,%d,%d,%d},\n", s.current_a, s.current_b, s.bus_voltage,

@@ -133,6 +133,53 @@ void test_an_eccentric_encoder_errs_once_per_turn()
     }
 }
 
+/* What is seen of the index on the way from one angle to another. */
+plant::Samples passage(const plant::SensorConfig &config, double from_rad, double to_rad)
+{
+    plant::Sensors sensors(config, 1);
+    (void)sensors.sample(0, {plant::Phases(), plant::Phases(), 24.0, from_rad, false});
+    return sensors.sample(1, {plant::Phases(), plant::Phases(), 24.0, to_rad, false});
+}
+
+void expect_edge(bool passed, std::int32_t count, const plant::IndexEdge &edge)
+{
+    TEST_ASSERT_EQUAL(passed, edge.passed);
+    TEST_ASSERT_EQUAL_INT32(count, edge.count);
+}
+
+void test_the_edges_of_an_index_change_places_with_the_direction()
+{
+    plant::SensorConfig config;
+    config.encoder_counts_per_turn = 1000;
+    const double count_rad = 2.0 * bench::pi / 1000, turn_rad = 2.0 * bench::pi;
+    config.encoder_index_rad = 100.5 * count_rad;
+    const plant::Samples up = passage(config, 99.0 * count_rad, 110.0 * count_rad);
+    expect_edge(true, 100, up.index_rise);
+    expect_edge(true, 101, up.index_fall);
+    const plant::Samples down = passage(config, 110.0 * count_rad, 99.0 * count_rad);
+    expect_edge(true, 101, down.index_rise);
+    expect_edge(true, 100, down.index_fall);
+    const plant::Samples within = passage(config, 100.6 * count_rad, 101.4 * count_rad);
+    expect_edge(false, 0, within.index_rise);
+    expect_edge(false, 0, within.index_fall);
+    const plant::Samples onto = passage(config, 100.4 * count_rad, 100.6 * count_rad);
+    expect_edge(true, 100, onto.index_rise);
+    expect_edge(false, 0, onto.index_fall);
+    const plant::Samples before =
+        passage(config, 99.0 * count_rad - 3.0 * turn_rad, 110.0 * count_rad - 3.0 * turn_rad);
+    expect_edge(true, 100 - 3000, before.index_rise);
+}
+
+void test_an_encoder_without_an_index_has_no_edges()
+{
+    plant::SensorConfig config;
+    config.encoder_counts_per_turn = 1000;
+    config.encoder_index_rad = -1.0;
+    const plant::Samples samples = passage(config, -7.0, 7.0);
+    expect_edge(false, 0, samples.index_rise);
+    expect_edge(false, 0, samples.index_fall);
+}
+
 void test_offsets_shift_the_codes_of_their_own_channel()
 {
     plant::SensorConfig config = noiseless();
@@ -266,6 +313,8 @@ int main()
     RUN_TEST(test_an_encoder_counts_whole_steps_from_angle_zero);
     RUN_TEST(test_the_count_of_an_encoder_wraps_at_32_bits);
     RUN_TEST(test_an_eccentric_encoder_errs_once_per_turn);
+    RUN_TEST(test_the_edges_of_an_index_change_places_with_the_direction);
+    RUN_TEST(test_an_encoder_without_an_index_has_no_edges);
     RUN_TEST(test_offsets_shift_the_codes_of_their_own_channel);
     RUN_TEST(test_noise_in_the_codes_has_the_stated_rms);
     RUN_TEST(test_converters_disturb_each_others_currents_by_the_stated_codes);

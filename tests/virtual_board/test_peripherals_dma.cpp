@@ -176,6 +176,68 @@ void test_the_encoder_counts_from_where_it_was_enabled()
     TEST_ASSERT_EQUAL_INT16(moved, static_cast<std::int16_t>(bench.chip.read(tim4 + 0x24)));
 }
 
+/* The count is 0 at the encoder's 10; channel 4 is its input, the index begins at count 100. */
+struct IndexBench : Bench {
+    IndexBench() : Bench(config())
+    {
+        start_clocks();
+        route('B', 6, 2);
+        route('B', 7, 2);
+        chip.write(tim4 + 0x2c, 0xffff);
+        chip.write(tim4 + 0x18, 0x101);
+        chip.write(tim4 + 0x1c, 0x3100);
+        chip.write(tim4 + 0x08, 3);
+        chip.write(tim4, 1);
+    }
+    static Stm32g474Config config()
+    {
+        Stm32g474Config config = Bench::make_config();
+        config.power_stage.plant.initial_theta_rad = 10.5 * 2 * bench::pi / 4000;
+        return config;
+    }
+    void edge(bool rising, std::int32_t position)
+    {
+        device.power_stage().on_index(rising, position);
+    }
+    std::uint32_t flags()
+    {
+        return chip.read(tim4 + 0x10) & 0x1010;
+    }
+};
+
+void test_an_edge_of_the_index_captures_the_count()
+{
+    IndexBench bench;
+    bench.chip.write(tim4 + 0x20, 0x1000);
+    bench.edge(true, 100);
+    TEST_ASSERT_EQUAL_HEX32(0, bench.flags()); /* the pin is not its */
+    bench.route('B', 9, 2);
+    bench.edge(false, 100);
+    TEST_ASSERT_EQUAL_HEX32(0, bench.flags());
+    bench.edge(true, 100);
+    TEST_ASSERT_EQUAL_HEX32(0x10, bench.flags());
+    bench.edge(true, 5);
+    TEST_ASSERT_EQUAL_HEX32(0x1010, bench.flags()); /* one that nobody has read is lost */
+    TEST_ASSERT_EQUAL_HEX32(65536 - 5, bench.chip.read(tim4 + 0x40));
+    TEST_ASSERT_EQUAL_HEX32(0x1000, bench.flags());
+}
+
+void test_a_capture_has_its_edge_and_is_off_until_it_is_on()
+{
+    IndexBench bench;
+    bench.route('B', 9, 2);
+    bench.edge(true, 100);
+    bench.chip.write(tim4 + 0x20, 0x2000);
+    bench.edge(false, 100);
+    TEST_ASSERT_EQUAL_HEX32(0, bench.flags());
+    bench.chip.write(tim4 + 0x20, 0x3000);
+    bench.edge(true, 100);
+    TEST_ASSERT_EQUAL_HEX32(0, bench.flags());
+    bench.edge(false, 100);
+    TEST_ASSERT_EQUAL_HEX32(0x10, bench.flags());
+    TEST_ASSERT_EQUAL_HEX32(90, bench.chip.read(tim4 + 0x40));
+}
+
 } // namespace
 
 int main()
@@ -190,5 +252,7 @@ int main()
     RUN_TEST(test_a_text_goes_out_by_dma_whole);
     RUN_TEST(test_an_unread_byte_is_overrun_and_a_wrong_speed_is_refused);
     RUN_TEST(test_the_encoder_counts_from_where_it_was_enabled);
+    RUN_TEST(test_an_edge_of_the_index_captures_the_count);
+    RUN_TEST(test_a_capture_has_its_edge_and_is_off_until_it_is_on);
     return UNITY_END();
 }

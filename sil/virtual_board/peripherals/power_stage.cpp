@@ -88,6 +88,13 @@ void PowerStage::peak()
         duties.brake_on = pins_.port(brake.port).drives_high(brake.number);
         plant_.step(duties);
         period_++;
+        const plant::Samples &samples = plant_.samples();
+        if (samples.index_rise.passed && on_index) {
+            on_index(true, samples.index_rise.count);
+        }
+        if (samples.index_fall.passed && on_index) {
+            on_index(false, samples.index_fall.count);
+        }
     }
     changes_++;
     if (!bridge_on()) {

@@ -54,6 +54,9 @@ class PowerStage : public AnalogInputs
     /* Called at each S(k), plant and converters up to date, k as period(). */
     std::function<void(std::int64_t k)> on_sample;
 
+    /* An edge of the encoder's index has passed since the last S(k), the encoder at this count. */
+    std::function<void(bool rising, std::int32_t count)> on_index;
+
     bool bridge_on() const;
 
     /* The chip has been reset: the plant stays where it is, period() restarts from below 0. */

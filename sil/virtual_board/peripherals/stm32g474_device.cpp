@@ -90,6 +90,11 @@ Stm32g474Device::Stm32g474Device(Chip &chip, const Stm32g474Config &config)
     encoder.encoder_routed = [this] {
         return pins_.routed({'B', 6}, 2) && pins_.routed({'B', 7}, 2);
     };
+    power_stage_.on_index = [this, &encoder](bool rising, std::int32_t count) {
+        if (encoder.clocked() && pins_.routed({'B', 9}, 2)) {
+            encoder.capture(4, rising, count);
+        }
+    };
     lpuart_.tx_routed = [this] { return pins_.routed({'A', 2}, 12); };
     lpuart_.rx_routed = [this] { return pins_.routed({'A', 3}, 12); };
     fdcan_.tx_routed = [this] { return pins_.routed({'A', 15}, 11); };

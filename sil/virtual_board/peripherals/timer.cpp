@@ -20,10 +20,12 @@ enum : std::uint32_t {
     PSC = 0x28,
     ARR = 0x2c,
     CCR1 = 0x34,
+    CCR3 = 0x3c,
     CCR4 = 0x40
 };
 enum : std::uint32_t { CEN = 1u << 0, UDIS = 1u << 1, URS = 1u << 2, OPM = 1u << 3 };
 enum : std::uint32_t { ARPE = 1u << 7, UIF = 1u << 0, TIF = 1u << 6 };
+enum : std::uint32_t { CC3IF = 1u << 3, CC3OF = 1u << 11 };
 
 std::vector<Register> registers(const TimerKind &kind)
 {
@@ -41,12 +43,12 @@ std::vector<Register> registers(const TimerKind &kind)
     if (kind.general) {
         table.push_back({SMCR, "SMCR", 0x3100f7});
         table.push_back({CCMR1, "CCMR1", 0xfbfb});
-        table.push_back({CCMR2, "CCMR2", 0x7878});
+        table.push_back({CCMR2, "CCMR2", 0xfbfb});
         for (std::uint32_t i = 0; i < 4; i++) {
             static const char *const names[4] = {"CCR1", "CCR2", "CCR3", "CCR4"};
             table.push_back({CCR1 + 4 * i, names[i], top});
         }
-        table.push_back({CCER, "CCER", 0xbb});
+        table.push_back({CCER, "CCER", 0xbbbb});
         table.push_back({0x5c, "TISEL", 0});
     }
     return table;
@@ -109,12 +111,17 @@ std::uint32_t Timer::count() const
         return frozen_;
     }
     if (kind_.general && encoder_mode()) {
-        const std::int64_t turns = std::int64_t{top()} + 1;
-        const std::int64_t moved = std::int64_t{encoder()} - encoder_origin_;
-        const std::int64_t position = (std::int64_t{frozen_} + moved) % turns;
-        return static_cast<std::uint32_t>(position < 0 ? position + turns : position);
+        return count_at(encoder());
     }
     return static_cast<std::uint32_t>((chip_.now() - origin_) / count_ticks() % (Ticks{top()} + 1));
+}
+
+std::uint32_t Timer::count_at(std::int32_t position) const
+{
+    const std::int64_t turns = std::int64_t{top()} + 1;
+    const std::int64_t moved = std::int64_t{position} - encoder_origin_;
+    const std::int64_t within = (std::int64_t{frozen_} + moved) % turns;
+    return static_cast<std::uint32_t>(within < 0 ? within + turns : within);
 }
 
 std::uint32_t Timer::fetch(std::uint32_t offset, Master)
@@ -122,6 +129,10 @@ std::uint32_t Timer::fetch(std::uint32_t offset, Master)
     if (offset == SR) {
         catch_up(chip_.now());
         take_flags();
+    }
+    if (kind_.general && (offset == CCR3 || offset == CCR4) && !output(offset == CCR3 ? 2 : 3)) {
+        at(SR) &= ~(offset == CCR3 ? CC3IF : CC3IF << 1);
+        interrupt();
     }
     require(offset != CNT || !counting() || !kind_.general || !encoder_mode() || !encoder_routed ||
                 encoder_routed(),

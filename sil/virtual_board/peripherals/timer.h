@@ -1,9 +1,10 @@
 /*
  * General and basic timers (TIM2, 3, 4, 6, 7, 15): up-counting with prescaler and auto-reload,
  * update event, compare flags and their interrupt, TRGO on reset, enable or update, slave modes
- * reset and trigger from another timer, encoder mode 3. Time between events is computed, not
- * stepped, and overflows that nobody can see but by registers and by triggers that may come late
- * cost no event each. RM0440, chapters "General-purpose timers" and "Basic timers".
+ * reset and trigger from another timer, encoder mode 3 and captures of its count by channels 3
+ * and 4. Time between events is computed, not stepped, and overflows that nobody can see but by
+ * registers and by triggers that may come late cost no event each. RM0440, chapters
+ * "General-purpose timers" and "Basic timers".
  */
 #ifndef STEADYSTEP_VIRTUAL_BOARD_TIMER_H
 #define STEADYSTEP_VIRTUAL_BOARD_TIMER_H
@@ -35,9 +36,12 @@ class Timer : public RegisterBlock, private LatePulses
        timer's pins. */
     std::function<std::int32_t()> encoder;
     std::function<bool()> encoder_routed;
+    /* An edge at the input of a channel, 3 or 4, while the encoder was at this position. */
+    void capture(unsigned channel, bool rising, std::int32_t position);
 
     Ticks count_ticks() const; /* duration of one count */
     std::uint32_t count() const;
+    std::uint32_t count_at(std::int32_t position) const; /* of the encoder */
     bool counting() const
     {
         return bit(at(0x00), 0);

@@ -1,4 +1,4 @@
-/* General timers: compare flags. */
+/* General timers: compare flags, and captures of an encoder's count. */
 #include "sil/virtual_board/peripherals/timer.h"
 
 #include <algorithm>
@@ -9,7 +9,15 @@ namespace virtual_board
 namespace
 {
 
-enum : std::uint32_t { DIER = 0x0c, SR = 0x10, CCMR1 = 0x18, CCMR2 = 0x1c };
+enum : std::uint32_t {
+    DIER = 0x0c,
+    SR = 0x10,
+    CCMR1 = 0x18,
+    CCMR2 = 0x1c,
+    CCER = 0x20,
+    CCR3 = 0x3c
+};
+enum : std::uint32_t { CC3IF = 1u << 3, CC3OF = 1u << 11 };
 
 } // namespace
 
@@ -17,6 +25,23 @@ bool Timer::output(int channel) const
 {
     const std::uint32_t mode = at(channel < 2 ? CCMR1 : CCMR2);
     return field(mode, channel % 2 == 0 ? 0 : 8, 2) == 0;
+}
+
+void Timer::capture(unsigned channel, bool rising, std::int32_t position)
+{
+    const unsigned upper = channel - 3; /* of CCMR2's two */
+    const std::uint32_t enables = at(CCER) >> 4 * (channel - 1);
+    const bool falls = bit(enables, 1), both = bit(enables, 3);
+    if (!counting() || !encoder_mode() || field(at(CCMR2), 8 * upper, 2) != 1 || !bit(enables, 0)) {
+        return;
+    }
+    require(!both, CCER, enables, "both edges: not modelled");
+    if (rising == falls) {
+        return;
+    }
+    at(SR) |= (bit(at(SR), channel) ? CC3OF << upper : 0u) | CC3IF << upper;
+    at(CCR3 + 4 * upper) = count_at(position);
+    interrupt();
 }
 
 /* Sets the compare flags of all matches up to a time. */
