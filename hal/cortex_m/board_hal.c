@@ -38,6 +38,14 @@ static void outputs_write(void *context, uint32_t levels)
 }
 #endif
 
+#ifndef STEADYSTEP_WITHOUT_LINK
+static bool encoder_index(void *context, enum hal_index ask, int32_t *count)
+{
+    (void)context;
+    return port_encoder_index(ask, count);
+}
+#endif
+
 static uint32_t cycle_count(void *context)
 {
     (void)context;
@@ -115,6 +123,9 @@ const struct hal board_hal = {
 #ifndef STEADYSTEP_WITHOUT_MACHINE_IO
     .inputs_read = inputs_read,
     .outputs_write = outputs_write,
+#endif
+#ifndef STEADYSTEP_WITHOUT_LINK
+    .encoder_index = encoder_index,
 #endif
     .cycle_count = cycle_count,
     .time_us = time_us,

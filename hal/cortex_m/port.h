@@ -19,6 +19,7 @@ void port_bridge_disable(void);
 uint16_t port_bridge_temperature(void);
 uint32_t port_inputs_read(void); /* of ports that carry the machine's */
 void port_outputs_write(uint32_t levels);
+bool port_encoder_index(enum hal_index ask, int32_t *count); /* of ports that carry the link */
 uint32_t port_cycle_count(void);
 uint64_t port_time_us(void);
 void port_watchdog_feed(void);

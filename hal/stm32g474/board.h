@@ -44,6 +44,7 @@
  *                         of three: alarm, in position, holding brake; pulled down, here and
  *                         outside
  *   ENCODER_TIMER         4, 5 or 8: its channels 1 and 2; 0: none
+ *   ENCODER_INDEX_CHANNEL 3 or 4: that channel's pin has the encoder's index; 0 or not given: none
  *   BAUD                  of LPUART1
  *   CAN_BIT_Hz            bit rate of FDCAN3: 125000, 250000, 500000, 1000000; 0 or not given: no
  * bus LED_PORT, LED_PIN
@@ -59,6 +60,9 @@
 
 #include STEADYSTEP_PIN_MAP
 
+#ifndef ENCODER_INDEX_CHANNEL
+#define ENCODER_INDEX_CHANNEL 0
+#endif
 #ifndef CAN_BIT_Hz
 #define CAN_BIT_Hz 0
 #endif

@@ -28,6 +28,11 @@ uint16_t control_bridge_temperature(void)
     return control.bridge_temperature;
 }
 
+int32_t control_encoder_count(void)
+{
+    return control.samples.encoder_count;
+}
+
 bool control_allow_bridge(void)
 {
     control.allowed = !pwm_break_latched();

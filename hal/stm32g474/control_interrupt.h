@@ -12,6 +12,9 @@ extern struct application application;
 /* hal.h's, code of the last S(k). */
 uint16_t control_bridge_temperature(void);
 
+/* Of the last S(k), since start-up. */
+int32_t control_encoder_count(void);
+
 /* Whether the gates may follow the outputs; hal.h. */
 bool control_allow_bridge(void);
 void control_forbid_bridge(void);

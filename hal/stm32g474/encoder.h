@@ -1,4 +1,7 @@
-/* Quadrature encoder on the timer of the pin map, every edge counted; without one it counts none.
+/*
+ * Quadrature encoder on the timer of the pin map, every edge counted; without one it counts none.
+ * Its index, if the pin map has one, captures the count by another channel of the timer. It is
+ * filtered as A and B are, so that all three are late alike.
  */
 #ifndef STEADYSTEP_STM32G474_ENCODER_H
 #define STEADYSTEP_STM32G474_ENCODER_H

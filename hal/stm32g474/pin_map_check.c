@@ -91,6 +91,9 @@ REQUIRE(MACHINE_INPUTS_PIN >= 0 && MACHINE_INPUTS_PIN <= 11 && MACHINE_OUTPUTS_P
 /* ---- Encoder, serial line ---- */
 REQUIRE(ENCODER_TIMER == 0 || ENCODER_TIMER == 4 || ENCODER_TIMER == 5 || ENCODER_TIMER == 8,
         "ENCODER_TIMER must be 4, 5 or 8 (TIM4, TIM5, TIM8), or 0: none");
+REQUIRE(ENCODER_INDEX_CHANNEL == 0 ||
+            (ENCODER_TIMER != 0 && (ENCODER_INDEX_CHANNEL == 3 || ENCODER_INDEX_CHANNEL == 4)),
+        "ENCODER_INDEX_CHANNEL must be 3 or 4, of ENCODER_TIMER, or 0: none");
 REQUIRE(ENCODER_TIMER != 0 || ENCODER_COUNTS_PER_TURN == 0,
         "the build names an encoder (STEADYSTEP_ENCODER_COUNTS), the map of none");
 REQUIRE(BAUD >= 9600 && BAUD <= 3000000, "BAUD must be 9600...3000000");

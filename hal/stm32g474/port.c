@@ -26,6 +26,7 @@ const struct hal_facts port_facts = {
     .phase_voltage_V_per_code = PHASE_VOLTAGE_V_PER_CODE,
     .has_phase_voltages = true,
     .has_brake = HAS_BRAKE,
+    .has_encoder_index = ENCODER_INDEX_CHANNEL != 0,
     .bridge_resistance_ohm = BRIDGE_RESISTANCE_OHM,
     .bridge_ntc_beta_K = BRIDGE_NTC_BETA_K,
     .encoder_counts_per_turn = ENCODER_COUNTS_PER_TURN, /* by the build; 0: settings may say */

@@ -284,7 +284,9 @@ def check_pin_map(path, facts):
         if not seen:
             yield f"COMPARATOR({number}, {given}): no analog pin leads to COMP{number} INP{given}"
     timer = chosen["ENCODER_TIMER"]
-    for signal in ("CH1", "CH2") if timer != "0" else ():
+    index = chosen.defined.get("ENCODER_INDEX_CHANNEL", "0")
+    signals = ["CH1", "CH2"] if timer != "0" else []
+    for signal in signals + ([f"CH{index}"] if index != "0" else []):
         if (f"TIM{timer}", signal) not in chosen.at:
             yield f"ENCODER_TIMER: no pin leads to TIM{timer} {signal}"
     if chosen.integrated() and ("TIM1", "BKIN") not in chosen.at:
@@ -376,6 +378,8 @@ PLANTED = [
     (PIN_MAP, "#define LEGS_A_CONVERTER 3", "#define LEGS_A_CONVERTER 5"),
     (PIN_MAP, "#define BUS_CHANNEL 14", "#define BUS_CHANNEL 13"),
     (PIN_MAP, "#define ENCODER_TIMER 4", "#define ENCODER_TIMER 8"),
+    (PIN_MAP, "#define ENCODER_INDEX_CHANNEL 4", "#define ENCODER_INDEX_CHANNEL 3"),
+    (PIN_MAP, "PIN(B, 9, ALTERNATE, 2, UP, TIM4, CH4)", "PIN(B, 9, ALTERNATE, 3, UP, TIM4, CH4)"),
     (PIN_MAP, "#define LED_PIN 5", "#define LED_PIN 6"),
     ("memory.ld", "ORIGIN = 0x10000000", "ORIGIN = 0x10001000"),
     ("memory.ld", "ORIGIN = 0x20016340, LENGTH = 7360", "ORIGIN = 0x20016340, LENGTH = 8K"),

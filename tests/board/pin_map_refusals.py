@@ -51,6 +51,7 @@ REFUSED = [
     (GATES, "MACHINE_OUTPUTS_PIN", "14", "of three"),
     (GATES, "#define MACHINE_INPUTS_PIN   8", "", "the machine needs"),
     (GATES, "ENCODER_TIMER", "3", "must be 4, 5 or 8"),
+    (GATES, "ENCODER_INDEX_CHANNEL", "2", "must be 3 or 4, of ENCODER_TIMER"),
     (GATES, "BAUD", "300", "must be 9600...3000000"),
     (GATES, "CAN_BIT_Hz", "800000", "CAN_BIT_Hz must be 125000"),
 ]

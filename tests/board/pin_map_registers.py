@@ -201,6 +201,11 @@ def expected_rest(chosen):
     if timer:
         yield f"TIM{timer} counts an encoder", TIMER[timer] + 0x08, 0, 3, 3
         yield f"TIM{timer} runs", TIMER[timer], 0, 1, 1
+    index = int(chosen.defined.get("ENCODER_INDEX_CHANNEL", "0"))
+    if index:
+        mode = TIMER[timer] + 0x1C
+        yield f"TIM{timer} CC{index}S: its pin", mode, 8 * (index - 3), 2, 1
+        yield f"TIM{timer} IC{index}F", mode, 8 * (index - 3) + 4, 4, 3
     yield "LPUART1 BRR", LPUART + 0x0C, 0, 20, round(256 * CORE_HZ / chosen.number("BAUD"))
     can = int(chosen.defined.get("CAN_BIT_Hz", "0"))
     yield "FDCANEN", RCC + 0x58, 25, 1, int(can > 0)

@@ -31,9 +31,10 @@
     /* bus voltage, temperature of the bridge */                                                   \
     PIN(B, 11, ANALOG, 0, NONE, ADC1, IN14)                                                        \
     PIN(C, 4, ANALOG, 0, NONE, ADC2, IN5)                                                          \
-    /* encoder A, B */                                                                             \
+    /* encoder A, B, index */                                                                      \
     PIN(B, 6, ALTERNATE, 2, UP, TIM4, CH1)                                                         \
     PIN(B, 7, ALTERNATE, 2, UP, TIM4, CH2)                                                         \
+    PIN(B, 9, ALTERNATE, 2, UP, TIM4, CH4)                                                         \
     /* serial line, through the debugger's virtual port */                                         \
     PIN(A, 2, ALTERNATE, 12, NONE, LPUART1, TX)                                                    \
     PIN(A, 3, ALTERNATE, 12, UP, LPUART1, RX)                                                      \
@@ -105,7 +106,8 @@
 #define MACHINE_OUTPUTS_PORT GPIOA
 #define MACHINE_OUTPUTS_PIN  8
 
-#define ENCODER_TIMER 4
+#define ENCODER_TIMER         4
+#define ENCODER_INDEX_CHANNEL 4
 
 #define BAUD 921600
 

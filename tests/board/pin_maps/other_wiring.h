@@ -28,6 +28,7 @@
     PIN(C, 4, ANALOG, 0, NONE, ADC2, IN5)                                                          \
     PIN(C, 6, ALTERNATE, 4, UP, TIM8, CH1)                                                         \
     PIN(C, 7, ALTERNATE, 4, UP, TIM8, CH2)                                                         \
+    PIN(C, 8, ALTERNATE, 4, UP, TIM8, CH3)                                                         \
     PIN(A, 2, ALTERNATE, 12, NONE, LPUART1, TX)                                                    \
     PIN(A, 3, ALTERNATE, 12, UP, LPUART1, RX)                                                      \
     PIN(B, 2, INPUT, 0, UP, GPIOB, LIMIT_MINUS)                                                    \
@@ -85,7 +86,8 @@
 #define MACHINE_OUTPUTS_PORT GPIOA
 #define MACHINE_OUTPUTS_PIN  4
 
-#define ENCODER_TIMER 8
+#define ENCODER_TIMER         8
+#define ENCODER_INDEX_CHANNEL 3
 
 #define BAUD 115200
 
