@@ -228,3 +228,16 @@ void drive_signals_read(const struct drive *drive, struct drive_signals *signals
 {
     DRIVE_SIGNALS_TABLE(READ, READ, READ_ANGLE, READ, READ_REAL)
 }
+
+double drive_position_at_count_rad(const struct drive *drive, int32_t count)
+{
+    const struct encoder now = interrupt_view_encoder(drive);
+    const struct position here = {now.turns, (angle_t)(now.fraction >> 32)};
+    const float counts = (float)(int32_t)((uint32_t)count - (uint32_t)now.count);
+    const float ahead_rad =
+        counts * (6.2831853f / (float)drive->board->facts->encoder_counts_per_turn);
+
+    return position_to_rad(position_plus(here, drive->axis.offset),
+                           drive->settings.motor.rotor_teeth) +
+           (double)ahead_rad;
+}

@@ -293,4 +293,8 @@ void drive_background(struct drive *drive);
 /* Background: what the drive shows of the last period. */
 void drive_signals_read(const struct drive *drive, struct drive_signals *signals);
 
+/* Background, with an encoder, in operation: the position, in its middle, of a count that is
+   not long ago. */
+double drive_position_at_count_rad(const struct drive *drive, int32_t count);
+
 #endif

@@ -123,4 +123,20 @@ static inline uint32_t interrupt_view_reference(const struct drive *drive, struc
     return period;
 }
 
+/* The encoder likewise, of an estimator that has one. */
+static inline struct encoder interrupt_view_encoder(const struct drive *drive)
+{
+    const struct encoder *encoder = estimator_encoder(&drive->estimator, &drive->params.estimator);
+    struct encoder copy;
+    uint32_t period;
+
+    do {
+        period = interrupt_view_period(drive);
+        atomic_signal_fence(memory_order_seq_cst);
+        copy = *encoder;
+        atomic_signal_fence(memory_order_seq_cst);
+    } while (period != interrupt_view_period(drive));
+    return copy;
+}
+
 #endif

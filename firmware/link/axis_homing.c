@@ -5,7 +5,7 @@
 #include "firmware/link/axis_motion.h"
 #include "firmware/link/link.h"
 
-enum { STOP_DOWN = -1, STOP_UP = -2, HERE_BEFORE = 35, HERE = 37 };
+enum { STOP_DOWN = -1, STOP_UP = -2, INDEX_DOWN = 33, INDEX_UP = 34, HERE_BEFORE = 35, HERE = 37 };
 
 enum { START = 0x10 }; /* bit of the controlword */
 
@@ -18,9 +18,12 @@ static const float follows_share = 0.5f;
 static const float leave_steps = 1.0f;
 static const float growing_share = 0.75f; /* of the torque */
 
+static const float index_travel_rad = 1.125f * 6.2831853f;
+
 bool axis_homing_is_method(int8_t method)
 {
-    return method == HERE || method == HERE_BEFORE || method == STOP_DOWN || method == STOP_UP;
+    return method == STOP_DOWN || method == STOP_UP || method == INDEX_DOWN || method == INDEX_UP ||
+           method == HERE_BEFORE || method == HERE;
 }
 
 static float full_step_rad(const struct application *application)
@@ -53,23 +56,31 @@ static bool shows_load(const struct drive_settings *settings)
             settings->observer != DRIVE_OBSERVER_HIGH_GAIN);
 }
 
-static void search(struct application *application, bool up)
+static bool shows_index(const struct drive *drive)
+{
+    return drive->settings.feedback == DRIVE_FEEDBACK_ENCODER &&
+           drive->board->facts->has_encoder_index;
+}
+
+static void search(struct application *application, int8_t method)
 {
     const struct link_objects *objects = &application->link->objects;
     struct axis_motion *motion = &application->link->axis.motion;
     const double unit_rad = cia402_turned_unit_rad(objects, CIA402_POSITION_TURNED);
+    const bool up = method == STOP_UP || method == INDEX_UP;
+    const bool index = method > 0;
     const float way = up == (unit_rad > 0.0) ? 1.0f : -1.0f;
     struct drive_command velocity = {.kind = DRIVE_COMMAND_VELOCITY};
 
     motion->not_homed =
-        !shows_load(&application->drive.settings) ||
+        !(index ? shows_index(&application->drive) : shows_load(&application->drive.settings)) ||
         !axis_motion_post(application, &velocity,
                           way * axis_motion_speed(application, objects->homing_speed),
                           objects->homing_acceleration);
     if (!motion->not_homed) {
         motion->homing = (struct axis_homing){
             .way = way,
-            .phase = HOMING_SEARCHES,
+            .phase = index ? HOMING_SETS_OUT : HOMING_SEARCHES,
             .began_rad = cia402_signals(application)->theta_ref_rad,
         };
     }
@@ -84,21 +95,28 @@ void axis_homing_start(struct application *application)
         return;
     }
     motion->homed = false;
-    if (method > 0) {
+    if (method >= HERE_BEFORE) {
         set_position(application, offset_rad(application));
     } else {
-        search(application, method == STOP_UP);
+        search(application, method);
     }
 }
 
-static void leave(struct application *application, bool found)
+static void give_up(struct application *application)
+{
+    axis_motion_brake(application, false);
+    application->link->axis.motion.not_homed = true;
+}
+
+/* By so many full steps from where the stop or the index is. */
+static void leave(struct application *application, float steps, bool found)
 {
     const struct link_objects *objects = &application->link->objects;
     struct axis_homing *homing = &application->link->axis.motion.homing;
     struct drive_command back = {
         .kind = DRIVE_COMMAND_RETARGET,
         .position_rad =
-            homing->bears_rad - (double)(homing->way * leave_steps * full_step_rad(application)),
+            homing->bears_rad - (double)(homing->way * steps * full_step_rad(application)),
     };
 
     homing->phase = HOMING_LEAVES;
@@ -107,8 +125,7 @@ static void leave(struct application *application, bool found)
     if (!axis_motion_post(application, &back,
                           axis_motion_speed(application, objects->homing_zero_speed),
                           objects->quick_stop_deceleration)) {
-        axis_motion_brake(application, false);
-        application->link->axis.motion.not_homed = true;
+        give_up(application);
     }
 }
 
@@ -143,11 +160,34 @@ static void look_for_stop(struct application *application)
 
     if (on_rad > yield_rad || (homing->ms == 0u && !is_sure(application)) ||
         gone_rad > (float)cia402_unit_rad(objects) * (float)objects->homing_travel) {
-        leave(application, false);
+        leave(application, leave_steps, false);
     } else if (homing->ms == BEARS_ms && torque_Nm > stop_Nm &&
                led_rad > led_steps * full_step_rad(application) &&
                on_rad < follows_share * led_rad) {
-        leave(application, true);
+        leave(application, leave_steps, true);
+    }
+}
+
+/* A rotor that rests on the index may cross its edges either way before it is under way. */
+static void look_for_index(struct application *application)
+{
+    const struct hal *board = application->drive.board;
+    struct axis_homing *homing = &application->link->axis.motion.homing;
+    const float gone_rad =
+        homing->way * (float)(cia402_signals(application)->theta_ref_rad - homing->began_rad);
+    int32_t count;
+
+    if (homing->phase == HOMING_SETS_OUT) {
+        if (gone_rad > leave_steps * full_step_rad(application)) {
+            homing->phase = HOMING_AWAITS_INDEX;
+            (void)board->encoder_index(
+                board->context, homing->way > 0.0f ? HAL_INDEX_RISES : HAL_INDEX_FALLS, &count);
+        }
+    } else if (board->encoder_index(board->context, HAL_INDEX_PASSED, &count)) {
+        homing->bears_rad = drive_position_at_count_rad(&application->drive, count);
+        leave(application, 0.0f, true);
+    } else if (gone_rad > index_travel_rad) {
+        give_up(application);
     }
 }
 
@@ -180,6 +220,8 @@ void axis_homing_look(struct application *application)
         axis_motion_brake(application, false); /* interrupted */
     } else if (phase == HOMING_SEARCHES) {
         look_for_stop(application);
+    } else if (phase == HOMING_SETS_OUT || phase == HOMING_AWAITS_INDEX) {
+        look_for_index(application);
     } else if (phase == HOMING_LEAVES) {
         settle(application);
     }

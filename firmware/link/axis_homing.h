@@ -1,7 +1,11 @@
 /*
- * Homing, mode 6. Methods 35 and 37: the axis is at 607ch where it stands. Methods -1 and -2: it
- * goes down, or up, until a hard stop bears it. There is 607ch, and the rotor comes to rest a full
- * step before it, where the hold draws it even if the stop has thrown it off.
+ * Homing, mode 6. Methods 35 and 37: the axis is at 607ch where it stands. Methods 33 and 34: it
+ * goes down, or up, until the encoder's index passes. There is 607ch, and the rotor comes to rest
+ * there. The place is one edge of the index, whichever the direction: the one that rises upwards
+ * and falls downwards, at the count that hardware has kept. It is looked for from a full step on,
+ * and for 9/8 of a turn in all; then there is none, a homing error. Methods -1 and -2: it goes
+ * down, or up, until a hard stop bears it. There is 607ch, and the rotor comes to rest a full step
+ * before it, where the hold draws it even if the stop has thrown it off.
  *
  * A stop is where the rotor ceases to follow. All of these have to show:
  * - the estimated load against the motion is beyond the torque 2403h, 1;
@@ -23,14 +27,16 @@
 struct application;
 
 enum homing_phase {
-    HOMING_ENDED, /* or not begun */
-    HOMING_SEARCHES,
-    HOMING_LEAVES /* the stop, or gives up */
+    HOMING_ENDED,        /* or not begun */
+    HOMING_SEARCHES,     /* a stop */
+    HOMING_SETS_OUT,     /* for the index */
+    HOMING_AWAITS_INDEX, /* to pass */
+    HOMING_LEAVES        /* for a stop's or the index's place, or gives up */
 };
 
 struct axis_homing {
     double began_rad;               /* of the reference, in the search */
-    double bears_rad, at_bears_rad; /* rotor and reference as the load grew: the stop */
+    double bears_rad, at_bears_rad; /* rotor and reference as the load grew: the stop; the index */
     float way;                      /* 1 up, -1 down, of the motor */
     uint8_t phase;                  /* enum homing_phase */
     uint8_t ms;                     /* for which it stands */

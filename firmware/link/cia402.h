@@ -55,7 +55,7 @@ struct axis_motion {
     bool limited; /* a limit has cut what was asked for */
     bool off;     /* beyond the following error window */
     bool homed;
-    bool not_homed; /* refused, or no stop was found */
+    bool not_homed; /* refused, or nothing was found */
     bool halted;
     bool at_limit; /* of profile velocity and torque: goes to a software limit, or is there */
 };

@@ -287,6 +287,30 @@ MUTANTS = [
         "can-bus-off",
         "then it says that it is back, first",
     ),
+    Mutant(
+        "the index captures nothing",
+        "encoder.c",
+        "ENCODER->ccer = edge | INDEX_ON;",
+        "ENCODER->ccer = edge;",
+        "homing-on-index",
+        "homing is attained",
+    ),
+    Mutant(
+        "what the index has captured before counts",
+        "encoder.c",
+        "    ENCODER->sr = ~(uint32_t)INDEX_CAPTURED;\n",
+        "",
+        "homing-on-index",
+        "on the index",
+    ),
+    Mutant(
+        "a count that the index has captured is not extended",
+        "encoder.c",
+        "near + (int16_t)(ENCODER->ccr[INDEX] - (uint32_t)near)",
+        "(int32_t)ENCODER->ccr[INDEX] + 0 * near",
+        "homing-on-index",
+        "homing is attained",
+    ),
 ]
 
 

@@ -197,6 +197,7 @@ void supply_fails_beside_weak_cell(Expectations &expectations, const std::string
 void simulation_is_asked_for(Expectations &expectations, const std::string &image);
 void encoder_is_asked_for(Expectations &expectations, const std::string &image);
 void encoder_counts(Expectations &expectations, const std::string &image);
+void homing_on_index(Expectations &expectations, const std::string &image);
 
 /* stm32g474_settings.cpp */
 void settings_act(Expectations &expectations, const std::string &image);

@@ -183,6 +183,7 @@ const Case cases[] = {
     {"supply-fails-beside-weak-cell", supply_fails_beside_weak_cell},
     {"simulation-is-asked-for", simulation_is_asked_for},
     {"no-encoder", encoder_is_asked_for},
+    {"homing-on-index", homing_on_index},
     {"settings-act", settings_act},
     {"can-registers", can_registers},
     {"can-flood", can_flood},

@@ -201,4 +201,43 @@ void encoder_counts(Expectations &expectations, const std::string &image)
     expectations.expect(std::fabs(moved - 3.0) < 0.02, "as far as its counts per turn make it");
 }
 
+/* By CANopen on the serial line; the rotor rests on the index each time, that of the turn behind
+   where it was. */
+void homing_on_index(Expectations &expectations, const std::string &image)
+{
+    constexpr double turn_rad = 2 * 3.141592653589793, count_rad = turn_rad / counts_per_turn;
+    Stm32g474Config config = board_config();
+    plant::SensorConfig &sensors = config.power_stage.plant.sensors;
+    sensors.encoder_counts_per_turn = counts_per_turn;
+    Powered run(image, config, put_learning);
+    const auto put = [&run](const char *object_and_value, Ticks time) {
+        (void)run.type(std::string("t6018") + object_and_value + "\r", time);
+    };
+    const auto homes = [&](const char *method, int turns) {
+        put("2F60600006000000", 5 * ms);
+        put(method, 5 * ms);
+        put("2B4060001F000000", 3000 * ms);
+        const std::string said = run.type("t60184041600000000000\r", 5 * ms);
+        const double theta_rad = run.device.power_stage().plant().state().theta_rad;
+        const double off_rad = theta_rad - sensors.encoder_index_rad - turns * turn_rad;
+        std::printf("  %.2f counts off that of turn %d\n", off_rad / count_rad, turns);
+        expectations.expect(count(said, "t58184B416000371600") == 1, "homing is attained");
+        expectations.expect(std::fabs(off_rad) < 2 * count_rad, "on the index");
+        put("2B4060000F000000", 5 * ms);
+    };
+    (void)run.start();
+    (void)run.type("O\rt00020101\r", 20 * ms);
+    put("2B40600006000000", 5 * ms);
+    put("2B4060000F000000", 500 * ms);
+    homes("2F98600022000000", 0);
+    put("2F60600001000000", 5 * ms); /* one and a half turns up: it passes what is still captured */
+    put("237A600000800100", 5 * ms);
+    put("2B4060001F000000", 2000 * ms);
+    put("2B4060000F000000", 5 * ms);
+    homes("2F98600022000000", 2);
+    for (const int turns : {1, 0, -1}) { /* the count is below 0 in the end */
+        homes("2F98600021000000", turns);
+    }
+}
+
 } // namespace stm32g474_bench

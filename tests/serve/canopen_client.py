@@ -4,6 +4,7 @@ usage: canopen_client.py SIL
 """
 import contextlib
 import logging
+import math
 import pathlib
 import struct
 import time
@@ -12,7 +13,7 @@ from canopen_bus import EDS, Bus, as_it_comes, canopen, wait_for
 from served import Checks, Line, Served
 
 CHECKS = Checks()
-TURN = 65536
+TURN, COUNTS = 65536, 4000
 
 
 def every_object_is_served_as_the_sheet_says(node):
@@ -176,6 +177,20 @@ def it_homes_on_a_stop(node, knobs):
     node.state = "SWITCH ON DISABLED"
 
 
+def it_homes_on_the_index(node, knobs):
+    """Both ways, where the index begins: at 1 rad of the rotor."""
+    for method in (34, 33):
+        node.op_mode = "HOMING"
+        node.state = "OPERATION ENABLED"
+        node.sdo[0x6098].raw = method
+        node.sdo[0x607C].raw = 1000
+        node.homing(timeout=20)
+        CHECKS.that(node.sdo[0x6041].raw & 0x3400 == 0x1400, f"method {method} homes")
+        CHECKS.that(abs(node.sdo[0x6064].raw - 1000) < 2 * TURN / COUNTS, f"it rests there: {node.sdo[0x6064].raw}")
+        truth = math.remainder(true_position(knobs) - 1, 2 * math.pi) / (2 * math.pi) * COUNTS
+        CHECKS.that(abs(truth) < 2, f"on the index: {truth:.2f} counts")
+
+
 def a_fault_is_seen_and_reset(node, knobs):
     node.state = "OPERATION ENABLED"
     knobs.ask("plant.bus_V = 8")
@@ -214,5 +229,13 @@ with Served() as served:
         what_is_stored_survives(bus.node, KNOBS)
     with Bus(served.link) as bus:
         CHECKS.that(bus.node.sdo["law_bandwidth_rad_s"].raw == 180.0, "what was stored is in force")
+    KNOBS.close()
+ENCODER = ("drive.feedback=encoder", "drive.encoder_zero_known=true", f"plant.encoder_counts_per_turn={COUNTS}")
+with Served(*[word for setting in ENCODER for word in ("--set", setting)]) as served:
+    KNOBS = Line(str(served.knobs_link))
+    with Bus(served.link) as bus:
+        bus.node.setup_402_state_machine(read_pdos=False)
+        bus.node.nmt.state = "OPERATIONAL"
+        it_homes_on_the_index(bus.node, KNOBS)
     KNOBS.close()
 CHECKS.end()

@@ -1,4 +1,5 @@
-/* Homing on a hard stop, of a drive that is shown where its rotor is and what bears on it. */
+/* Homing on a hard stop, of a drive that is shown where its rotor is and what bears on it; and on
+   the index of its encoder, which the test turns. */
 #include "firmware/link/axis_homing.h"
 #include "firmware/link/axis_motion.h"
 #include "tests/unit/link_bench.h"
@@ -325,14 +326,229 @@ static void test_a_rotor_that_may_have_lost_step_is_not_homed(void)
 
 static void test_what_cannot_be_is_refused(void)
 {
-    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x6098, 0, 1, 33));
-    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x6098, 0, 1, 34));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x6098, 0, 1, 32));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x6098, 0, 1, 36));
     TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x6098, 0, 1, 0xfd));
     TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x6099, 1, 4, 0));
     TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x6099, 2, 4, 0));
     TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x609a, 0, 4, 0));
     TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x2403, 1, 2, 0));
     TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x2403, 2, 4, 0));
+}
+
+/* ---- on the index ---- */
+
+enum { COUNTS = 4000, INDEX_COUNTS = 3 };
+
+static const double count_rad = TWO_PI / COUNTS;
+
+/* The index is high from lower_rad on, for so many counts. */
+static struct {
+    double lower_rad, rotor_rad; /* of the motor */
+    bool awaited, rising, passed;
+    int32_t count;
+} encoder;
+
+static bool index_of_board(void *context, enum hal_index ask, int32_t *count)
+{
+    (void)context;
+    if (ask != HAL_INDEX_PASSED) {
+        encoder.awaited = true;
+        encoder.rising = ask == HAL_INDEX_RISES;
+        encoder.passed = false;
+    }
+    const bool passed = encoder.passed;
+
+    *count = encoder.count;
+    encoder.passed = false;
+    return passed;
+}
+
+static void start_with_encoder(double rotor_rad, double lower_rad, bool has_index)
+{
+    static struct hal_facts facts;
+    struct drive_settings settings = bench_quick_settings();
+    char error[DRIVE_ERROR_TEXT] = "";
+
+    bench_power_up();
+    facts = bench_stored_facts();
+    facts.encoder_counts_per_turn = COUNTS;
+    facts.has_encoder_index = has_index;
+    drive_settings_select_feedback(&settings, DRIVE_FEEDBACK_ENCODER);
+    settings.encoder_zero_known = true;
+    struct hal board = bench_board(&facts);
+
+    board.encoder_index = index_of_board;
+    memset(&encoder, 0, sizeof encoder);
+    encoder.lower_rad = lower_rad;
+    encoder.rotor_rad = rotor_rad;
+    bench.samples.encoder_count = (int32_t)floor(rotor_rad / count_rad);
+    TEST_ASSERT_TRUE_MESSAGE(application_init_with(&bench.application, &board, &settings, error),
+                             error);
+    application_put_link(&bench.application, &bench_link);
+    bench_periods(3);
+    (void)bench_heard();
+    link_bench_open();
+    (void)link_bench_say("t00020101", 1);
+    put(0x6099, 1, 4, TURN / 2); /* a winding without a voltage denies a faster one */
+    put(0x6099, 2, 4, TURN / 2);
+}
+
+/* What a timer's capture does on the way to an angle. */
+static void turn_to(double rotor_rad)
+{
+    for (int end = 0; end < 2; end++) {
+        const double edge_rad = encoder.lower_rad + end * INDEX_COUNTS * count_rad;
+        const double before = floor((encoder.rotor_rad - edge_rad) / TWO_PI);
+        const double now = floor((rotor_rad - edge_rad) / TWO_PI);
+        const bool rises = (now > before) == (end == 0);
+
+        if (now != before && encoder.awaited && rises == encoder.rising) {
+            encoder.passed = true;
+            encoder.count =
+                (int32_t)floor((edge_rad + TWO_PI * fmax(before, now)) / count_rad + 1e-6);
+        }
+    }
+    encoder.rotor_rad = rotor_rad;
+    bench.samples.encoder_count = (int32_t)floor(rotor_rad / count_rad);
+}
+
+static uint16_t current_code(num_t current)
+{
+    const double current_A = num_to_double(current) * bench.application.drive.base.current_A;
+
+    return (uint16_t)(2048.5 + current_A / bench_facts.current_A_per_code);
+}
+
+/* The rotor follows, and trembles; the currents are those that the drive expects. */
+static void turn(int ms)
+{
+    for (int i = 0; i < 10 * ms; i++) {
+        const double trembles_rad = bench.period / 50u % 2u == 0u ? 0.6 * count_rad : 0.0;
+        const struct phases current = bench.application.drive.estimator.estimate.next.current;
+
+        bench.samples.current_a = current_code(current.a);
+        bench.samples.current_b = current_code(current.b);
+        turn_to(link_bench_reference_rad() - zero_rad() + trembles_rad);
+        bench_period();
+    }
+    TEST_ASSERT_EQUAL_STRING("none", drive_fault_name(bench.application.drive.supervision.fault));
+}
+
+static void begin_with_encoder(int method)
+{
+    put(0x6060, 0, 1, 6);
+    put(0x6098, 0, 1, (uint32_t)method);
+    put(0x6040, 0, 2, 0x06);
+    bench_periods(20);
+    put(0x6040, 0, 2, 0x0f);
+    bench_periods(20);
+    TEST_ASSERT_EQUAL_HEX32(REACHED, status());
+    put(0x6040, 0, 2, 0x1f);
+    turn(3);
+}
+
+static void turn_until_homed(void)
+{
+    for (int i = 0; i < 300 && status() == 0u; i++) {
+        turn(10);
+    }
+}
+
+/* Whether the axis is at the offset where the index begins. */
+static void is_homed(int method, double start_rad, double lower_rad, uint32_t polarity)
+{
+    start_with_encoder(start_rad, lower_rad, true);
+    put(0x607e, 0, 1, polarity);
+    put(0x607c, 0, 4, 1000);
+    put(0x609a, 0, 4, 4 * TURN); /* slowly enough to tremble about where it sets out */
+    begin_with_encoder(method);
+    turn_until_homed();
+    const double offset_rad = (polarity != 0u ? -1000.0 : 1000.0) * unit_rad;
+    const double off_rad = remainder(zero_rad() + lower_rad - offset_rad, TWO_PI);
+
+    TEST_ASSERT_EQUAL_HEX32(REACHED | ATTAINED, status());
+    TEST_ASSERT_DOUBLE_WITHIN(count_rad, 0.0, off_rad);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, offset_rad, link_bench_reference_rad());
+    TEST_ASSERT_DOUBLE_WITHIN(1.1 * TWO_PI, start_rad, encoder.rotor_rad);
+}
+
+static void test_the_index_is_where_the_offset_says_from_below_and_above(void)
+{
+    for (int n = 0; n < 5; n++) {
+        is_homed(34, 1.3 * n, 1.0, 0);
+        is_homed(33, 1.3 * n, 1.0, 0);
+    }
+}
+
+static void test_the_index_of_an_axis_that_is_turned_round(void)
+{
+    is_homed(33, 0.3, 1.0, 0x80);
+    TEST_ASSERT_TRUE(encoder.rising);
+    is_homed(34, 0.3, 1.0, 0x80);
+    TEST_ASSERT_FALSE(encoder.rising);
+}
+
+static void test_an_index_at_which_the_rotor_rests_is_that_of_the_next_turn(void)
+{
+    is_homed(34, 1.0 + (INDEX_COUNTS - 0.3) * count_rad, 1.0, 0);
+    TEST_ASSERT_DOUBLE_WITHIN(0.1, 1.0 + TWO_PI, encoder.rotor_rad);
+    is_homed(33, 1.0 - 0.3 * count_rad, 1.0, 0);
+    TEST_ASSERT_DOUBLE_WITHIN(0.1, 1.0 - TWO_PI, encoder.rotor_rad);
+}
+
+static void test_an_index_is_not_looked_for_before_a_full_step(void)
+{
+    start_with_encoder(0.0, 1.0, true);
+    put(0x6099, 1, 4, (uint32_t)(10.0 * full_step_rad() / unit_rad)); /* a second */
+    begin_with_encoder(34);
+    for (int i = 0; i < 500 && !encoder.awaited; i++) {
+        turn(1);
+    }
+    TEST_ASSERT_TRUE(encoder.rotor_rad > full_step_rad());
+    TEST_ASSERT_TRUE(encoder.rotor_rad < 1.1 * full_step_rad());
+}
+
+static void test_an_index_that_does_not_come_in_a_turn_ends_it(void)
+{
+    start_with_encoder(0.0, 1e300, true);
+    begin_with_encoder(33);
+    turn_until_homed();
+    TEST_ASSERT_EQUAL_HEX32(FAILED, status() & (ATTAINED | FAILED));
+    turn(100);
+    TEST_ASSERT_EQUAL_HEX32(REACHED | FAILED, status());
+    TEST_ASSERT_DOUBLE_WITHIN(0.3, -1.125 * TWO_PI, encoder.rotor_rad);
+}
+
+static void test_a_halt_interrupts_the_search_for_an_index(void)
+{
+    start_with_encoder(0.0, 3.0, true);
+    begin_with_encoder(34);
+    turn(100);
+    bench_type("t60182B4060001F010000\r"); /* the rotor turns on meanwhile */
+    turn(100);
+    TEST_ASSERT_EQUAL_HEX32(REACHED, status());
+    TEST_ASSERT_TRUE(axis_motion_rests(&bench.application));
+}
+
+static void is_refused(void)
+{
+    begin_with_encoder(34);
+    TEST_ASSERT_EQUAL_HEX32(REACHED | FAILED, status());
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, link_bench_speed_rad_s());
+}
+
+static void test_without_an_index_it_is_refused(void)
+{
+    start_with_encoder(0.0, 1.0, false);
+    is_refused();
+}
+
+static void test_a_sensorless_drive_refuses_an_index(void)
+{
+    start_with_encoder(0.0, 1.0, true);
+    bench.application.drive.settings.feedback = DRIVE_FEEDBACK_SENSORLESS;
+    is_refused();
 }
 
 int main(void)
@@ -357,5 +573,13 @@ int main(void)
     RUN_TEST(test_an_observer_of_counts_alone_refuses_it);
     RUN_TEST(test_a_rotor_that_may_have_lost_step_is_not_homed);
     RUN_TEST(test_what_cannot_be_is_refused);
+    RUN_TEST(test_the_index_is_where_the_offset_says_from_below_and_above);
+    RUN_TEST(test_the_index_of_an_axis_that_is_turned_round);
+    RUN_TEST(test_an_index_at_which_the_rotor_rests_is_that_of_the_next_turn);
+    RUN_TEST(test_an_index_is_not_looked_for_before_a_full_step);
+    RUN_TEST(test_an_index_that_does_not_come_in_a_turn_ends_it);
+    RUN_TEST(test_a_halt_interrupts_the_search_for_an_index);
+    RUN_TEST(test_without_an_index_it_is_refused);
+    RUN_TEST(test_a_sensorless_drive_refuses_an_index);
     return UNITY_END();
 }

@@ -1,6 +1,7 @@
 /*
- * Homing on a hard stop, through CANopen: every motor of the library that the board can drive,
- * parts as built. A motor that is not homed says so, by its statusword; none is homed elsewhere.
+ * Homing through CANopen. On a hard stop: every motor of the library that the board can drive,
+ * parts as built. A motor that is not homed says so, by its statusword; none is homed elsewhere. On
+ * the encoder's index: from all around, both ways.
  */
 #include <cmath>
 #include <cstdio>
@@ -87,6 +88,37 @@ class Machine
         outcome.yields_rad = 0.7 * rated_Nm_ / std::fmax(asked_.stiffness_Nm_rad, 1e-9);
         return outcome;
     }
+
+    /* On the index, both ways: where the axis has the motor's zero. */
+    struct Place {
+        unsigned status = 0;
+        double zero_rad = 0;
+        double off_counts = 0; /* the axis, of where the index makes it */
+    };
+    Place at_index(int method)
+    {
+        const int offset = 3000;
+        say("O");
+        say("t00020101");
+        put(0x6060, 0, 1, 6);
+        put(0x6098, 0, 1, static_cast<unsigned>(method));
+        put(0x607c, 0, 4, offset);
+        put(0x6099, 1, 4, 65536);
+        put(0x6040, 0, 2, 0x06);
+        put(0x6040, 0, 2, 0x0f);
+        run_until(0x6f, 0x27, 60000);
+        put(0x6040, 0, 2, 0x1f);
+        run(200);
+        run_until(reached, reached, 60000);
+        put(0x6040, 0, 2, 0x0f);
+        const plant::SensorConfig sensors;
+        const double count_rad = 2 * pi / counts_per_turn;
+        const double from_index_rad = board_->plant().state().theta_rad - sensors.encoder_index_rad;
+        const double shown_rad = board_->signals().theta_est_rad - offset * 2 * pi / 65536;
+        return {status_, board_->signals().motor_zero_rad,
+                std::remainder(shown_rad - from_index_rad, 2 * pi) / count_rad};
+    }
+    static constexpr int counts_per_turn = 4000;
 
   private:
     void period()
@@ -238,6 +270,40 @@ void test_what_gives_way_is_no_stop()
     }
 }
 
+void test_the_index_is_one_place_from_all_around_and_both_ways()
+{
+    for (const char *numeric : {"float", "fixed"}) {
+        double most_counts = 0;
+        for (int n = 0; n < 8; n++) {
+            const std::string more =
+                scenario::format("drive.feedback = \"encoder\"\ndrive.encoder_zero_known = true\n"
+                                 "plant.encoder_counts_per_turn = %d\n"
+                                 "plant.initial_theta_rad = %g\n",
+                                 Machine::counts_per_turn, 0.8 * n - 2.0);
+            Machine machine({"bendjedia-2012", numeric, more, 0, 0, 0, 65536});
+            const Machine::Place up = machine.at_index(n % 2 == 0 ? 34 : 33);
+            const Machine::Place down = machine.at_index(n % 2 == 0 ? 33 : 34);
+            for (const Machine::Place &place : {up, down}) {
+                TEST_ASSERT_EQUAL_HEX(reached | attained, place.status & outcome);
+                most_counts = std::fmax(most_counts, std::fabs(place.off_counts));
+            }
+            TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.0,
+                                      std::remainder(up.zero_rad - down.zero_rad, 2 * pi));
+        }
+        std::printf("%s: on the index, within %.2f counts\n", numeric, most_counts);
+        TEST_ASSERT_TRUE(most_counts < 1.0);
+    }
+}
+
+void test_without_an_index_it_is_not_homed()
+{
+    Machine machine({"bendjedia-2012", "fixed",
+                     "drive.feedback = \"encoder\"\ndrive.encoder_zero_known = true\n"
+                     "plant.encoder_counts_per_turn = 4000\nplant.encoder_index_rad = -1\n",
+                     0, 0, 0, 65536});
+    TEST_ASSERT_EQUAL_HEX(reached | failed, machine.at_index(34).status & outcome);
+}
+
 } // namespace
 
 void setUp()
@@ -256,5 +322,7 @@ int main()
     RUN_TEST(test_with_an_encoder);
     RUN_TEST(test_a_load_is_no_stop);
     RUN_TEST(test_what_gives_way_is_no_stop);
+    RUN_TEST(test_the_index_is_one_place_from_all_around_and_both_ways);
+    RUN_TEST(test_without_an_index_it_is_not_homed);
     return UNITY_END();
 }

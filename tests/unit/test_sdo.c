@@ -192,17 +192,17 @@ static void test_what_would_make_no_sense_is_refused(void)
         uint32_t value;
         bool accepted;
     } all[] = {
-        {0x6098, 0, 1, 35, true},   {0x6098, 0, 1, 37, true},     {0x6098, 0, 1, 34, false},
-        {0x6098, 0, 1, 0xff, true}, {0x6098, 0, 1, 0xfe, true},   {0x6098, 0, 1, 36, false},
-        {0x6098, 0, 1, 38, false},  {0x605a, 0, 2, 2, true},      {0x605a, 0, 2, 6, true},
-        {0x605a, 0, 2, 3, false},   {0x605a, 0, 2, 0x102, false}, {0x60c2, 1, 1, 0, false},
-        {0x60c2, 1, 1, 1, true},    {0x60c2, 2, 1, 0xfa, true},   {0x60c2, 2, 1, 0xf9, false},
-        {0x60c2, 2, 1, 0, true},    {0x60c2, 2, 1, 1, false},     {0x6081, 0, 4, 0, false},
-        {0x6083, 0, 4, 0, false},   {0x6085, 0, 4, 0, false},     {0x6081, 0, 4, 1, true},
-        {0x6083, 0, 4, 1, true},    {0x6085, 0, 4, 1, true},      {0x6091, 1, 4, 0, false},
-        {0x6091, 2, 4, 0, false},   {0x6092, 1, 4, 0, false},     {0x6092, 2, 4, 0, false},
-        {0x6091, 1, 4, 2, true},    {0x607c, 0, 4, 0, true},      {0x1017, 0, 2, 0, true},
-        {0x6085, 0, 4, 0x100, true}};
+        {0x6098, 0, 1, 35, true},     {0x6098, 0, 1, 37, true},    {0x6098, 0, 1, 34, true},
+        {0x6098, 0, 1, 0xff, true},   {0x6098, 0, 1, 0xfe, true},  {0x6098, 0, 1, 36, false},
+        {0x6098, 0, 1, 38, false},    {0x6098, 0, 1, 32, false},   {0x6098, 0, 1, 33, true},
+        {0x605a, 0, 2, 2, true},      {0x605a, 0, 2, 6, true},     {0x605a, 0, 2, 3, false},
+        {0x605a, 0, 2, 0x102, false}, {0x60c2, 1, 1, 0, false},    {0x60c2, 1, 1, 1, true},
+        {0x60c2, 2, 1, 0xfa, true},   {0x60c2, 2, 1, 0xf9, false}, {0x60c2, 2, 1, 0, true},
+        {0x60c2, 2, 1, 1, false},     {0x6081, 0, 4, 0, false},    {0x6083, 0, 4, 0, false},
+        {0x6085, 0, 4, 0, false},     {0x6081, 0, 4, 1, true},     {0x6083, 0, 4, 1, true},
+        {0x6085, 0, 4, 1, true},      {0x6091, 1, 4, 0, false},    {0x6091, 2, 4, 0, false},
+        {0x6092, 1, 4, 0, false},     {0x6092, 2, 4, 0, false},    {0x6091, 1, 4, 2, true},
+        {0x607c, 0, 4, 0, true},      {0x1017, 0, 2, 0, true},     {0x6085, 0, 4, 0x100, true}};
 
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         TEST_ASSERT_EQUAL_HEX32(
