@@ -324,7 +324,7 @@ IN_PLACE bool hold_works(const struct drive *drive)
 __attribute__((noinline)) static void work_on_hold(struct drive *drive)
 {
     state_machine_claim_period(drive);
-    estimator_adapt_resistance(&drive->estimator, &drive->params.estimator, drive->hold.leads);
+    estimator_work_on_hold(&drive->estimator, &drive->params.estimator, drive->hold.leads);
     if (drive->hold.leads) {
         lead_rotor(drive);
     }

@@ -95,11 +95,11 @@ static inline void estimator_begin_hold(struct estimator *estimator,
 
 /* Held, every few periods: what a hold shows of the resistance. Only this one leaves it until then.
  */
-static inline void estimator_adapt_resistance(struct estimator *estimator,
-                                              const struct estimator_params *params, bool leads)
+static inline void estimator_work_on_hold(struct estimator *estimator,
+                                          const struct estimator_params *params, bool leads)
 {
     if (estimator_is(params, ESTIMATOR_INVARIANT_EKF)) {
-        invariant_ekf_adapt_resistance(&estimator->invariant_ekf, &params->invariant_ekf, leads);
+        invariant_ekf_work_on_hold(&estimator->invariant_ekf, &params->invariant_ekf, leads);
     }
 }
 

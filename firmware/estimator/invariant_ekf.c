@@ -175,8 +175,8 @@ static void find_in_step(struct invariant_ekf *ekf, const struct invariant_ekf_p
 /* More than a sum of nu_d comes to in a few periods of a hold; fixed point multiplies no more. */
 #define ADAPTING_SUM_MAX NUM(8.0)
 
-void invariant_ekf_adapt_resistance(struct invariant_ekf *ekf,
-                                    const struct invariant_ekf_params *params, bool leads)
+void invariant_ekf_work_on_hold(struct invariant_ekf *ekf,
+                                const struct invariant_ekf_params *params, bool leads)
 {
     struct estimate *x = &ekf->estimate;
     const num_t sum = num_headroom(ekf->innovation_sum, ADAPTING_SUM_MAX);

@@ -153,8 +153,8 @@ static inline num_t invariant_ekf_take_innovation_sum(struct invariant_ekf *ekf,
 /* In hold, every few periods, at their end: by the innovations since the last call while a load
    step is followed the angle that is expected, half as much against the rotor's direction; and the
    resistance. Not if the hold leads its rotor, whose lag behind its frame shows in nu_d, too. */
-void invariant_ekf_adapt_resistance(struct invariant_ekf *ekf,
-                                    const struct invariant_ekf_params *params, bool leads);
+void invariant_ekf_work_on_hold(struct invariant_ekf *ekf,
+                                const struct invariant_ekf_params *params, bool leads);
 
 /* A load step in a settled hold. Of the offset stays what has lasted: the rest may have been
  * motion. */

@@ -88,7 +88,7 @@ static void correct(struct bench_vector current, struct phases surprise, bool in
 
     (void)invariant_ekf_observe(&ekf, &params, &input);
     if (in_hold && ++periods_held % ADAPTING_PERIODS == 0u) {
-        invariant_ekf_adapt_resistance(&ekf, &params, false);
+        invariant_ekf_work_on_hold(&ekf, &params, false);
     }
 }
 
@@ -279,7 +279,7 @@ static double resistance_after(struct state start, int sums, bool leads)
         ekf.innovation_sum += nu_d;
     }
     ekf.adapted_at = park(ekf.estimate.next.current, ekf.estimate.next.frame).d;
-    invariant_ekf_adapt_resistance(&ekf, &params, leads);
+    invariant_ekf_work_on_hold(&ekf, &params, leads);
     TEST_ASSERT_TRUE(ekf.innovation_sum == NUM(0.0));
     return estimated_resistance_ohm();
 }
@@ -331,7 +331,7 @@ static void test_a_current_that_swings_is_no_resistance_whatever_the_inductance(
 static void test_each_innovation_is_taken_once_by_the_monitor(void)
 {
     ekf.innovation_sum = NUM(0.25);
-    invariant_ekf_adapt_resistance(&ekf, &params, false);
+    invariant_ekf_work_on_hold(&ekf, &params, false);
     ekf.innovation_sum = NUM(0.125);
     TEST_ASSERT_TRUE(invariant_ekf_take_innovation_sum(&ekf, true) == NUM(0.25));
     TEST_ASSERT_TRUE(invariant_ekf_take_innovation_sum(&ekf, true) == NUM(0.0));
@@ -570,7 +570,7 @@ static double found_in_step(double speed, num_t nu_d)
     ekf.innovation_sum = nu_d;
     ekf.estimate.next.position = position_from_rad(0.0, 50);
     ekf.estimate.next.speed = num_from_double(speed);
-    invariant_ekf_adapt_resistance(&ekf, &params, false);
+    invariant_ekf_work_on_hold(&ekf, &params, false);
     return position_to_rad(ekf.estimate.next.position, 50) * 50.0 / TWO_PI;
 }
 
@@ -587,7 +587,7 @@ static void test_behind_its_estimate_a_rotor_is_found_half_as_fast_as_ahead_of_i
     ekf.innovation_sum = NUM(0.01);
     const struct position before = ekf.estimate.next.position;
 
-    invariant_ekf_adapt_resistance(&ekf, &params, false);
+    invariant_ekf_work_on_hold(&ekf, &params, false);
     TEST_ASSERT_EQUAL_UINT32(before.fraction, ekf.estimate.next.position.fraction);
 }
 
