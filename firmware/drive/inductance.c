@@ -5,7 +5,7 @@
 
 /*
  * What iron takes of an inductance is not known better than this: one that is nearer is that of the
- * settings. Of iron that takes nothing 6 % too much has been added (inductance_measurement.c).
+ * settings. Of iron that takes nothing 4 % too much has been added (inductance_measurement.c).
  */
 #define CONFIRMED_BELOW NUM(-0.03)
 #define CONFIRMED_ABOVE NUM(0.075)

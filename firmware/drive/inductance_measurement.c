@@ -3,20 +3,22 @@
 #include "firmware/numeric/quotient.h"
 
 /* Of the hold's current, to either side. */
-static const double amplitude_share = 0.25;
+static const double small_share = 0.15;
+static const double large_share = 0.4;
 
-/* The first leads to one side, the last back to the middle. */
-#define STEPS 18u
-#define SHARE NUM(1.0 / 16.0) /* of a step between them in the means */
+/* Of small swings, then of large ones. The first step leads to one side, one from the small swings
+   to the large ones, the last back to the middle. */
+#define FIRST_LARGE 10u
+#define STEPS       19u
+#define SHARE       NUM(1.0 / 16.0) /* of each of the others in the means */
 
 /*
  * What the estimator wants of the inductance that is measured. The hold's current has saturated
- * the d axis, and iron that turns back and forth takes a part of the swing for itself: of the
- * inductance of a meter 0.90 to 0.96 is left on the plant `as-built`. In motion the d current is 0.
- * Of factors from 1 to 1.09 this one held the most runs there, and those from 1.03 on all but a
- * few.
+ * the d axis, and of iron that turns within more flux than a swing makes the large swings have more
+ * than the small ones: of the inductance of a meter 0.92 to 0.95 is left on the plant `as-built`.
+ * In motion the d current is 0.
  */
-#define UNSATURATED NUM(1.06)
+#define UNSATURATED NUM(1.04)
 
 /* 2 ms or more: the current control has reached its reference in that. */
 #define STEPS_OF_LOOK 20u
@@ -25,9 +27,12 @@ struct inductance_measurement_params inductance_measurement_design(const struct 
                                                                    double hold_current_A,
                                                                    uint32_t look_periods)
 {
+    const double current = hold_current_A / base->current_A;
+
     return (struct inductance_measurement_params){
         .half = look_periods / STEPS_OF_LOOK,
-        .amplitude = num_from_double(amplitude_share * hold_current_A / base->current_A),
+        .small = num_from_double(small_share * current),
+        .large = num_from_double(large_share * current),
     };
 }
 
@@ -36,13 +41,31 @@ void inductance_measurement_start(struct inductance_measurement *measurement)
     *measurement = (struct inductance_measurement){.steps = 0u};
 }
 
+/* In the means, of the swing that ends. */
+static num_t share_of(const struct inductance_measurement *measurement)
+{
+    const bool adds = (measurement->level > NUM(0.0)) == (measurement->steps > FIRST_LARGE);
+
+    return measurement->steps < 2u || measurement->steps == FIRST_LARGE ? NUM(0.0)
+           : adds                                                       ? SHARE
+                                                                        : -SHARE;
+}
+
+static num_t next_level(const struct inductance_measurement *measurement,
+                        const struct inductance_measurement_params *params)
+{
+    const num_t amplitude = measurement->steps < FIRST_LARGE ? params->small : params->large;
+
+    return measurement->steps == STEPS       ? NUM(0.0)
+           : (measurement->steps & 1u) != 0u ? amplitude
+                                             : -amplitude;
+}
+
 bool inductance_measurement_step(struct inductance_measurement *measurement,
                                  const struct inductance_measurement_params *params,
                                  num_t resistance, num_t voltage, num_t current)
 {
-    const num_t share = measurement->steps < 2u         ? NUM(0.0)
-                        : measurement->level < NUM(0.0) ? -SHARE
-                                                        : SHARE;
+    const num_t share = share_of(measurement);
     const num_t drop = num_mul(measurement->before, resistance);
 
     if (params->half == 0u || measurement->steps == STEPS) {
@@ -58,9 +81,7 @@ bool inductance_measurement_step(struct inductance_measurement *measurement,
     measurement->begin = current;
     measurement->periods = 0u;
     measurement->steps++;
-    measurement->level = measurement->steps == STEPS       ? NUM(0.0)
-                         : (measurement->steps & 1u) != 0u ? params->amplitude
-                                                           : -params->amplitude;
+    measurement->level = next_level(measurement, params);
     return true;
 }
 
@@ -75,7 +96,7 @@ num_t inductance_measurement_result(const struct inductance_measurement *measure
     if (params->half == 0u) {
         return NUM(0.0);
     }
-    if (change < params->amplitude || num_abs(more) > change) {
+    if (change < num_half(params->large - params->small) || num_abs(more) > change) {
         return NUM(1.0);
     }
     return quotient(more, change);

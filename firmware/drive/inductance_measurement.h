@@ -13,9 +13,14 @@
  *   b / b' = b F / D,   D = sum s (change of i),   F = sum s (u - R i)
  *
  * with b as it is known and b' as it is, whatever the current control made of the step. As many
- * steps up as down: an offset leaves the sums, and so does most of what R is off by. The inductance
- * is that of both phases, of iron that is as saturated as the hold saturates it, less what
- * hysteresis takes of a small swing: what the estimator needs is a little more.
+ * steps up as down: an offset leaves the sums, and so does most of what R is off by.
+ *
+ * Iron that turns with the flux takes a current of its own at each turn. Of a motor with a small
+ * magnet flux beside L i that would be a tenth and more of a swing. It takes nearly as much of a
+ * small swing as of a large one: so D and F are those of large swings less those of small ones.
+ *
+ * The inductance is that of both phases, of iron that is as saturated as the hold saturates it,
+ * less what hysteresis still takes: what the estimator needs is a little more.
  */
 #ifndef STEADYSTEP_INDUCTANCE_MEASUREMENT_H
 #define STEADYSTEP_INDUCTANCE_MEASUREMENT_H
@@ -27,8 +32,8 @@
 #include "firmware/motor/per_unit.h"
 
 struct inductance_measurement_params {
-    uint32_t half;   /* periods from step to step; 0: nothing is measured */
-    num_t amplitude; /* of the current */
+    uint32_t half;      /* periods from step to step; 0: nothing is measured */
+    num_t small, large; /* amplitudes of the current */
 };
 
 struct inductance_measurement {
@@ -37,7 +42,7 @@ struct inductance_measurement {
     num_t level;      /* of the current's reference, beside the hold's */
     num_t begin;      /* current at the step */
     num_t before;     /* current of the last period */
-    num_t change;     /* D, mean of a step */
+    num_t change;     /* D, of a large step less a small one, halved */
     num_t flux;       /* F */
     bool complete;    /* to be put in force */
 };

@@ -5,8 +5,8 @@
 #include "firmware/drive/interrupt_view.h"
 
 #define WINDOW_S     12.8e-3
-#define BACK_EMF_MIN NUM(0.125) /* of the supply */
-#define SHARE        0.25       /* of its way to what a window shows */
+#define BACK_EMF_MIN NUM(0.03125) /* of the supply */
+#define SHARE        0.25         /* of its way to what a window shows */
 #define CHANGE_MIN   NUM(0.03)
 
 /* Of what the interrupt reads, what goes by the torque constant. */

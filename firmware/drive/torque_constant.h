@@ -6,12 +6,12 @@
  *
  *   sum of w_hat T / (change of theta_hat) - 1 = Km_true / Km - 1 = c
  *
- * What is left of R and of offsets errs it by so much over the back-EMF: it is learned from an
- * eighth of the supply on. c is bounded to +-20 %. What it is off by more than 3 % goes into the
- * base of the speeds and into what the interrupt has by it: the model, the reference's
- * feed-forward, the decoupling: with the interrupt held back meanwhile, so that it has all of the
- * one or all of the other. The gains stay. A speed of the present estimate stays what it is, a
- * back-EMF.
+ * What is left of R and of offsets errs it by so much over the back-EMF: it is learned from a
+ * thirty-second of the supply on. Many a motor never turns so fast that it has an eighth of it. c
+ * is bounded to +-20 %. What it is off by more than 3 % goes into the base of the speeds and into
+ * what the interrupt has by it: the model, the reference's feed-forward, the decoupling: with the
+ * interrupt held back meanwhile, so that it has all of the one or all of the other. The gains stay.
+ * A speed of the present estimate stays what it is, a back-EMF.
  *
  * The setting initial_torque_constant_change is where it begins; `store` puts there what was
  * learned.

@@ -235,13 +235,13 @@ void expect_homed(const Case &asked, int least)
 
 void test_without_a_load_without_an_encoder()
 {
-    expect_homed({"", "float", "", -1, 0.0, 100.0, 65536}, 46);
-    expect_homed({"", "fixed", "", -2, 0.0, 100.0, 65536}, 47);
+    expect_homed({"", "float", "", -1, 0.0, 100.0, 65536}, 45);
+    expect_homed({"", "fixed", "", -2, 0.0, 100.0, 65536}, 46);
 }
 
 void test_against_a_quarter_of_the_rated_load_without_an_encoder()
 {
-    expect_homed({"", "fixed", "", -1, 0.25, 100.0, 65536}, 47);
+    expect_homed({"", "fixed", "", -1, 0.25, 100.0, 65536}, 46);
     expect_homed({"", "float", "", -2, 0.25, 100.0, 65536}, 47);
 }
 

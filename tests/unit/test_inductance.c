@@ -5,7 +5,7 @@
 #include "tests/unit/drive_bench.h"
 
 static const double hold_current_A = 3.0;
-static const double unsaturated = 1.06; /* more than is measured */
+static const double unsaturated = 1.04; /* more than is measured */
 static const uint32_t look = 450u;
 
 static struct per_unit base;
@@ -19,7 +19,9 @@ static struct {
     double offset_V;
     double current_A;
     double noise_codes;
-    double stuck; /* share of a step that does not come */
+    double stuck;                   /* share of a step that does not come */
+    double iron_A, iron_Vs, turned; /* the iron's current is turned x iron_A; it turns within the
+                                       flux linkage iron_Vs */
     uint32_t seed;
 } world;
 
@@ -53,9 +55,28 @@ static num_t measured(double value, double code, double in)
     return num_from_double(code * floor(value / code + noise + 0.5) / in);
 }
 
+/* One period of a winding on iron that turns with its flux: dh = (d lambda - |d lambda| h) / l0. */
+static void run_winding_on_iron(double voltage_V)
+{
+    enum { PARTS = 200 };
+
+    for (int part = 0; part < PARTS; part++) {
+        const double flux_Vs =
+            (voltage_V - world.resistance_ohm * world.current_A) * PERIOD_S / PARTS;
+        const double turns = (flux_Vs - fabs(flux_Vs) * world.turned) / world.iron_Vs;
+
+        world.turned += turns;
+        world.current_A += flux_Vs / world.inductance_H + world.iron_A * turns;
+    }
+}
+
 /* One period of the winding under the mean voltage, solved exactly. */
 static void run_winding(double voltage_V)
 {
+    if (world.iron_A > 0.0) {
+        run_winding_on_iron(voltage_V);
+        return;
+    }
     const double final_A = voltage_V / world.resistance_ohm;
     const double decay = exp(-PERIOD_S * world.resistance_ohm / world.inductance_H);
 
@@ -129,8 +150,20 @@ static void test_the_current_swings_about_the_hold_s_and_ends_there(void)
     (void)measure();
     TEST_ASSERT_EQUAL_DOUBLE(0.0, num_to_double(measurement.level));
     TEST_ASSERT_DOUBLE_WITHIN(0.01, hold_current_A, world.current_A);
-    /* the first step leads out by half a swing, and nothing takes that back */
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3, num_to_double(params.amplitude) * params.half, level_sum);
+    /* nine small swings, the first and the last up, and nine large ones, the first and the last
+       down */
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, num_to_double(params.small - params.large) * params.half,
+                              level_sum);
+}
+
+/* 4 % of the rated current, as wide as the plant `as-built` may have it, and turned within what a
+   fifteenth of that current makes: of a motor whose magnet has little flux. */
+static void test_iron_that_a_small_swing_turns_leaves_it(void)
+{
+    world.iron_A = 0.04 * hold_current_A;
+    world.iron_Vs = hold_current_A * world.inductance_H / 15.0;
+    world.turned = 1.0;
+    finds_it_to(0.015);
 }
 
 static void test_a_current_that_does_not_follow_is_no_winding_s(void)
@@ -279,6 +312,7 @@ int main(void)
     RUN_TEST(test_an_inductance_of_less_and_of_more_is_found);
     RUN_TEST(test_offset_and_resistance_that_are_wrong_do_not_err_it);
     RUN_TEST(test_the_current_swings_about_the_hold_s_and_ends_there);
+    RUN_TEST(test_iron_that_a_small_swing_turns_leaves_it);
     RUN_TEST(test_a_current_that_does_not_follow_is_no_winding_s);
     RUN_TEST(test_where_it_is_not_asked_for_nothing_swings);
     RUN_TEST(test_in_force_the_model_is_that_of_the_inductance_and_each_gain_goes_with_it);

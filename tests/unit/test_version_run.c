@@ -187,7 +187,7 @@ static void test_a_drive_with_its_options(void)
     settings.synchronism_policy = DRIVE_SYNCHRONISM_WARN;
     begin();
     move_about();
-    is(UINT64_C(0xA7C4759521329DF6), UINT64_C(0x0C79B488F8FA0327));
+    is(UINT64_C(0x9311571EBEFB28E8), UINT64_C(0xA0F41D96C34FEFCE));
 }
 
 static void test_the_other_ways_to_begin(void)
