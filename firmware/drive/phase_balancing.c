@@ -27,11 +27,13 @@ uint32_t phase_balancing_design(struct drive *drive, const struct drive_settings
     }
     drive->enabling.balance_params = phase_balance_design(&task);
     drive->enabling.inductance_put.left = 0u;
-    drive->enabling.inductance_params = inductance_measurement_design(
-        &drive->base, settings->hold_current_A,
-        FINDS_INDUCTANCE && settings->identify_inductance && !settings->standstill_pulses
-            ? drive->enabling.balance_params.look
-            : 0u);
+    if (FINDS_INDUCTANCE) {
+        drive->enabling.inductance_params = inductance_measurement_design(
+            &drive->base, settings->hold_current_A,
+            settings->identify_inductance && !settings->standstill_pulses
+                ? drive->enabling.balance_params.look
+                : 0u);
+    }
     return phase_balance_periods(&drive->enabling.balance_params);
 }
 
