@@ -1,4 +1,6 @@
 """README.md, sil/README.md: boards and motors as they leave their factories, beside `bench`."""
+import pathlib
+
 from readme_figures.campaigns import campaign
 from readme_figures.reading import mrad, spelled, up
 from readme_figures.registry import Cost, entry, table
@@ -6,6 +8,7 @@ from readme_figures.sensorless import RESTS
 
 AS_BUILT = {"plant.model": "as-built"}
 ON_IT = ("--set", "plant=as-built")
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 @entry("as-built-draws", "steadystep-sil campaign as-built --seeds 1-1000", Cost.CAMPAIGN,
@@ -74,6 +77,24 @@ def long_run(sources):
     run = campaign(sources, "long-run", "1-100", *ON_IT)
     angle = run["figures"]["estimate_error_max_deg_electrical"]
     return {"held": f"{run['verdicts'].get('held', 0)}", "most": up(angle["percentile_95"], 0)}
+
+
+@entry("as-built-library", "steadystep-sil campaign long-run --seeds 7001-7006 --duration 10 --set plant=as-built "
+       "--set motor=MOTOR", Cost.DEAR,
+       probe=("campaign long-run --seeds 7001-7001 --duration 5 --json --set plant=as-built --set motor=ms14ha1p4150",))
+def library(sources):
+    """All motors but the one that the drive refuses."""
+    found = {}
+    for name, numeric in (("", "float"), ("-fixed", "fixed")):
+        runs = {motor: campaign(sources, "long-run", "7001-7006", "--duration", "10", *ON_IT, "--set", f"motor={motor}",
+                                numeric=numeric)["verdicts"]
+                for motor in sorted(file.stem for file in (ROOT / "sil/motors").glob("*.toml"))
+                if motor != "seshagiri-khalil"}
+        held = {motor: verdicts.get("held", 0) for motor, verdicts in runs.items()}
+        others = sorted((count, motor) for motor, count in held.items() if count < 6)
+        found |= {"runs": f"{6 * len(held)}", f"held{name}": f"{sum(held.values())}",
+                  f"others{name}": ", ".join(f"{motor} {count}" for count, motor in others) or "none"}
+    return found
 
 
 @entry("as-built", "steadystep-sil run bendjedia-fig12 hold-transition hold-transition-loaded "
