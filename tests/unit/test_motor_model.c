@@ -111,6 +111,19 @@ static void test_a_calibrated_resistance_stays_between_a_quarter_and_three_times
     TEST_ASSERT_NUM_WITHIN(NUM_ROUNDING, 3.0 * nominal, winding.resistance);
 }
 
+/* 0.14 ohm and 6 A on 24 V, with a bridge of 0.22 ohm that the board does not state, warm. */
+static void test_a_winding_of_little_resistance_may_be_less_than_its_bridge(void)
+{
+    struct motor_params motor = bench_params;
+
+    motor.resistance_ohm = 0.14;
+    motor.rated_current_A = 6.0;
+    base = per_unit_base(&motor, PERIOD_S);
+    model = motor_model_design(&motor, &base, PERIOD_S, NO_BRIDGE_OHM);
+    winding_set_resistance(&winding, &model, num_from_double(0.48 / base.resistance_ohm));
+    TEST_ASSERT_NUM_WITHIN(NUM_ROUNDING, 0.48 / base.resistance_ohm, winding.resistance);
+}
+
 static void test_the_bridge_is_part_of_the_resistance(void)
 {
     model = motor_model_design(&bench_params, &base, PERIOD_S, 0.05);
@@ -241,6 +254,7 @@ int main(void)
     RUN_TEST(test_the_current_of_a_locked_rotor_rises_exponentially);
     RUN_TEST(test_a_calibrated_resistance_gives_the_admittance_of_its_exponential);
     RUN_TEST(test_a_calibrated_resistance_stays_between_a_quarter_and_three_times_nominal);
+    RUN_TEST(test_a_winding_of_little_resistance_may_be_less_than_its_bridge);
     RUN_TEST(test_the_bridge_is_part_of_the_resistance);
     RUN_TEST(test_the_current_of_a_turning_rotor_is_that_of_the_motor);
     RUN_TEST(test_a_constant_torque_moves_the_rotor_along_a_parabola);
