@@ -263,9 +263,12 @@ static bool is_faster(const struct drive *drive, num_t turns)
                                 drive->params.model.turns_per_speed)) > turns;
 }
 
+/* Per-unit below 8: three times that of a winding which takes all of the supply is 6. */
 static uint16_t counts_of(num_t resistance)
 {
-    return (uint16_t)((angle_t)angle_from_turns(resistance) >> 22);
+    const num_t sixteenth = num_half(num_half(num_half(num_half(resistance))));
+
+    return (uint16_t)((angle_t)angle_from_turns(sixteenth) >> 18);
 }
 
 static void look_at(struct phase_look *look, const struct drive *drive)

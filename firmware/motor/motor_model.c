@@ -1,16 +1,8 @@
 #include "firmware/motor/motor_model.h"
 
-/* Per-unit: 9 % of the supply at the rated current. */
-#define BRIDGE_RESISTANCE_MORE 0.18
-
-/* Of a motor with little resistance that of a bridge is more than its own thrice over. */
-static double resistance_max(double nominal)
-{
-    const double winding = 3.0 * nominal;
-    const double bridge = nominal + BRIDGE_RESISTANCE_MORE;
-
-    return winding > bridge ? winding : bridge;
-}
+/* Of a motor with little resistance a bridge has more than its own thrice over. Per-unit: 9 % of
+   the supply at the rated current. */
+#define BRIDGE_RESISTANCE_MORE NUM(0.18)
 
 struct motor_model_params motor_model_design(const struct motor_params *motor,
                                              const struct per_unit *base, double period_s,
@@ -37,7 +29,10 @@ struct motor_model_params motor_model_design(const struct motor_params *motor,
     params.admittance_per_resistance =
         coef_from_double(rate * rate * (1.0 / 2.0 - x * (1.0 / 3.0 - x / 8.0)));
     params.resistance_min = num_from_double(0.25 * nominal);
-    params.resistance_max = num_from_double(resistance_max(nominal));
+    params.resistance_max = num_from_double(3.0 * nominal);
+    if (params.resistance_max < params.nominal_resistance + BRIDGE_RESISTANCE_MORE) {
+        params.resistance_max = params.nominal_resistance + BRIDGE_RESISTANCE_MORE;
+    }
     motor_model_params_fit_coefficients(&params);
     return params;
 }
