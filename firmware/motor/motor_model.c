@@ -1,7 +1,6 @@
 #include "firmware/motor/motor_model.h"
 
-/* Of a motor with little resistance a bridge has more than its own thrice over. Per-unit: 9 % of
-   the supply at the rated current. */
+/* Per-unit: 9 % of the supply at the rated current. */
 #define BRIDGE_RESISTANCE_MORE NUM(0.18)
 
 struct motor_model_params motor_model_design(const struct motor_params *motor,
@@ -30,7 +29,7 @@ struct motor_model_params motor_model_design(const struct motor_params *motor,
         coef_from_double(rate * rate * (1.0 / 2.0 - x * (1.0 / 3.0 - x / 8.0)));
     params.resistance_min = num_from_double(0.25 * nominal);
     params.resistance_max = num_from_double(3.0 * nominal);
-    if (params.resistance_max < params.nominal_resistance + BRIDGE_RESISTANCE_MORE) {
+    if (params.nominal_resistance < num_half(BRIDGE_RESISTANCE_MORE)) { /* thrice that is less */
         params.resistance_max = params.nominal_resistance + BRIDGE_RESISTANCE_MORE;
     }
     motor_model_params_fit_coefficients(&params);
