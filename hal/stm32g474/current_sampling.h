@@ -17,13 +17,22 @@ void current_sampling_configure(void);
 /* From the next peak on. */
 void current_sampling_start(void);
 
+/* Both converters have. */
+static inline bool current_sampling_done(void)
+{
+    const uint32_t both = ADC_CSR_JEOC_MST | ADC_CSR_JEOC_SLV;
+
+    return (~ADC12_COMMON->csr & both) == 0;
+}
+
 /* Results of this S(k); false: a converter has none. Reading the last of a converter clears JEOC.
  */
 static inline bool current_sampling_read(struct hal_samples *samples,
                                          volatile uint16_t *bridge_temperature)
 {
-    const uint32_t both = ADC_CSR_JEOC_MST | ADC_CSR_JEOC_SLV;
-    const bool done = (~ADC12_COMMON->csr & both) == 0;
+    /* an interrupt that nothing held up may be here before them */
+    const bool done = current_sampling_done() || current_sampling_done() ||
+                      current_sampling_done() || current_sampling_done();
 
     samples->current_a = (uint16_t)ADC1->jdr[0];
     samples->current_b = (uint16_t)ADC2->jdr[0];
