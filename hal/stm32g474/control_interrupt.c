@@ -62,14 +62,17 @@ static inline void take_samples(struct hal_samples *samples)
     if (!phase_voltage_sampling_read(samples)) {
         board_fault(BOARD_FAULT_LEG_SAMPLES);
     }
-    if (__builtin_expect(deadline_guard_take_missed(), false)) {
-        flags |= HAL_FLAG_DEADLINE_MISSED;
+    samples->encoder_count = encoder_count(samples->encoder_count);
+    if (__builtin_expect((current_sampling_missing() | deadline_guard.missed) != 0u, false)) {
+        if (deadline_guard_take_missed()) {
+            flags |= HAL_FLAG_DEADLINE_MISSED;
+        }
+        if (!current_sampling_wait()) {
+            board_fault(BOARD_FAULT_CURRENT_SAMPLES);
+        }
     }
     samples->flags = flags;
-    samples->encoder_count = encoder_count(samples->encoder_count);
-    if (!current_sampling_read(samples, &control.bridge_temperature)) {
-        board_fault(BOARD_FAULT_CURRENT_SAMPLES);
-    }
+    current_sampling_read(samples, &control.bridge_temperature);
 }
 
 /*

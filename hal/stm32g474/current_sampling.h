@@ -17,28 +17,27 @@ void current_sampling_configure(void);
 /* From the next peak on. */
 void current_sampling_start(void);
 
-/* Both converters have. */
-static inline bool current_sampling_done(void)
+/* Bits of the converters that have no results of this S(k) yet. */
+static inline uint32_t current_sampling_missing(void)
 {
-    const uint32_t both = ADC_CSR_JEOC_MST | ADC_CSR_JEOC_SLV;
-
-    return (~ADC12_COMMON->csr & both) == 0;
+    return ~ADC12_COMMON->csr & (ADC_CSR_JEOC_MST | ADC_CSR_JEOC_SLV);
 }
 
-/* Results of this S(k); false: a converter has none. Reading the last of a converter clears JEOC.
- */
-static inline bool current_sampling_read(struct hal_samples *samples,
+/* An interrupt that nothing held up may be here before them. false: a converter has none. */
+static inline bool current_sampling_wait(void)
+{
+    return current_sampling_missing() == 0u || current_sampling_missing() == 0u ||
+           current_sampling_missing() == 0u || current_sampling_missing() == 0u;
+}
+
+/* Results of this S(k). Reading the last of a converter clears JEOC. */
+static inline void current_sampling_read(struct hal_samples *samples,
                                          volatile uint16_t *bridge_temperature)
 {
-    /* an interrupt that nothing held up may be here before them */
-    const bool done = current_sampling_done() || current_sampling_done() ||
-                      current_sampling_done() || current_sampling_done();
-
     samples->current_a = (uint16_t)ADC1->jdr[0];
     samples->current_b = (uint16_t)ADC2->jdr[0];
     samples->bus_voltage = (uint16_t)ADC1->jdr[1];
     *bridge_temperature = (uint16_t)ADC2->jdr[1];
-    return done;
 }
 
 #endif
