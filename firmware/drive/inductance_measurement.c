@@ -15,7 +15,7 @@ static const double large_share = 0.4;
 /*
  * What the estimator wants of the inductance that is measured. The hold's current has saturated
  * the d axis, and of iron that turns within more flux than a swing makes the large swings have more
- * than the small ones: of the inductance of a meter 0.92 to 0.95 is left on the plant `as-built`.
+ * than the small ones: of the inductance of a meter 0.90 to 0.95 is left on the plant `as-built`.
  * In motion the d current is 0.
  */
 #define UNSATURATED NUM(1.04)

@@ -109,17 +109,21 @@ static inline num_t interrupt_view_load(const struct drive *drive)
 
 #undef INTERRUPT_VIEW
 
+/* Makes `copy` what `from` is behind one interrupt, whose period is `period`. */
+#define INTERRUPT_COPY(drive, period, copy, from)                                                  \
+    do {                                                                                           \
+        (period) = interrupt_view_period(drive);                                                   \
+        atomic_signal_fence(memory_order_seq_cst);                                                 \
+        (copy) = (from);                                                                           \
+        atomic_signal_fence(memory_order_seq_cst);                                                 \
+    } while ((period) != interrupt_view_period(drive))
+
 /* The reference as it is behind one interrupt, whose period is returned. */
 static inline uint32_t interrupt_view_reference(const struct drive *drive, struct reference *copy)
 {
     uint32_t period;
 
-    do {
-        period = interrupt_view_period(drive);
-        atomic_signal_fence(memory_order_seq_cst);
-        *copy = drive->reference;
-        atomic_signal_fence(memory_order_seq_cst);
-    } while (period != interrupt_view_period(drive));
+    INTERRUPT_COPY(drive, period, *copy, drive->reference);
     return period;
 }
 
@@ -130,13 +134,10 @@ static inline struct encoder interrupt_view_encoder(const struct drive *drive)
     struct encoder copy;
     uint32_t period;
 
-    do {
-        period = interrupt_view_period(drive);
-        atomic_signal_fence(memory_order_seq_cst);
-        copy = *encoder;
-        atomic_signal_fence(memory_order_seq_cst);
-    } while (period != interrupt_view_period(drive));
+    INTERRUPT_COPY(drive, period, copy, *encoder);
     return copy;
 }
+
+#undef INTERRUPT_COPY
 
 #endif

@@ -70,7 +70,7 @@ struct phase_watch {
     uint16_t code[2]; /* at which the current stands */
     struct phase_count count[2];
     uint8_t suspected;  /* fault: what another one comes of */
-    uint8_t resistance; /* likewise, its low byte, when a code last changed of two that do */
+    uint8_t resistance; /* low byte of the look's, when a code last changed of two that do */
     int32_t lag;        /* of the estimate behind the reference of late, 2^-32 turns */
     num_t wanted[2];    /* current, when it came to stand there */
     num_t pushed[2];    /* by how much its voltage would have changed it since */

@@ -1,6 +1,7 @@
 #include "firmware/motor/motor_model.h"
 
-/* Per-unit: 9 % of the supply at the rated current. */
+/* What a bridge may add that the board does not state. Per-unit: 9 % of the supply at the rated
+   current. */
 #define BRIDGE_RESISTANCE_MORE NUM(0.18)
 
 struct motor_model_params motor_model_design(const struct motor_params *motor,

@@ -30,10 +30,8 @@ struct motor_model_params {
     coef_t admittance_per_resistance; /* -db/dR at the nominal resistance */
     num_t nominal_admittance;
     num_t nominal_resistance;
-    num_t resistance_min; /* range of the calibrated resistance: a quarter of the nominal one */
-    num_t
-        resistance_max; /* three times that; or of a winding of little resistance, what a bridge
-                           that nobody has stated takes, up to 9 % of the supply at rated current */
+    num_t resistance_min; /* range of the calibrated resistance: a quarter of the nominal one to */
+    num_t resistance_max; /* three times that, or what a bridge adds that nobody has stated */
 };
 
 #define MOTOR_MODEL_PARAMS_COEFFICIENTS(X)                                                         \

@@ -1,8 +1,8 @@
 /*
  * Both phase currents at S(k), simultaneous, and behind them bus voltage and temperature: injected
  * sequences of ADC1 and ADC2. The PWM timer starts them ahead of the peak, so that the currents are
- * held at the peak; they have ended when the control interrupt, which the peak raises, has formed
- * the voltage means.
+ * held at the peak; as a rule they have ended when the control interrupt, which the peak raises,
+ * has formed the voltage means.
  */
 #ifndef STEADYSTEP_STM32G474_CURRENT_SAMPLING_H
 #define STEADYSTEP_STM32G474_CURRENT_SAMPLING_H

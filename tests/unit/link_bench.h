@@ -21,6 +21,55 @@ static inline void link_bench_start(void)
     (void)bench_heard();
 }
 
+/* Of a board like the bench's that has just been powered up, with an encoder; they stay. */
+static inline struct hal_facts *link_bench_encoder_facts(uint32_t counts_per_turn)
+{
+    static struct hal_facts facts;
+
+    bench_power_up();
+    facts = bench_stored_facts();
+    facts.encoder_counts_per_turn = counts_per_turn;
+    return &facts;
+}
+
+/* The quick ones, of an encoder whose zero is known, or without it. */
+static inline struct drive_settings link_bench_settings(enum drive_feedback feedback)
+{
+    struct drive_settings settings = bench_quick_settings();
+
+    drive_settings_select_feedback(&settings, feedback);
+    settings.encoder_zero_known = true;
+    return settings;
+}
+
+static inline void link_bench_start_with(const struct hal *board,
+                                         const struct drive_settings *settings)
+{
+    char error[DRIVE_ERROR_TEXT] = "";
+
+    TEST_ASSERT_TRUE_MESSAGE(application_init_with(&bench.application, board, settings, error),
+                             error);
+    application_put_link(&bench.application, &bench_link);
+    bench_periods(3);
+    (void)bench_heard();
+}
+
+static inline uint16_t link_bench_code(num_t current)
+{
+    const double current_A = num_to_double(current) * bench.application.drive.base.current_A;
+
+    return (uint16_t)(2048.5 + current_A / bench_facts.current_A_per_code);
+}
+
+/* The currents of the next period are those that the drive expects. */
+static inline void link_bench_expected_currents(void)
+{
+    const struct phases current = bench.application.drive.estimator.estimate.next.current;
+
+    bench.samples.current_a = link_bench_code(current.a);
+    bench.samples.current_b = link_bench_code(current.b);
+}
+
 /* What comes within some periods of a line, its '\r' left out. */
 static inline const char *link_bench_say(const char *line, int periods)
 {

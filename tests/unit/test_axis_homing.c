@@ -59,7 +59,7 @@ static double full_step_rad(void)
     return TWO_PI / 4.0 / bench.application.drive.settings.motor.rotor_teeth;
 }
 
-static void begin(int method)
+static void enable(int method)
 {
     put(0x6060, 0, 1, 6);
     put(0x6098, 0, 1, (uint32_t)method & 0xffu);
@@ -68,6 +68,11 @@ static void begin(int method)
     put(0x6040, 0, 2, 0x0f);
     bench_periods(20);
     TEST_ASSERT_EQUAL_HEX32(REACHED, status());
+}
+
+static void begin(int method)
+{
+    enable(method);
     put(0x6040, 0, 2, 0x1f);
     bench_periods(30);
 }
@@ -366,28 +371,17 @@ static bool index_of_board(void *context, enum hal_index ask, int32_t *count)
 
 static void start_with_encoder(double rotor_rad, double lower_rad, bool has_index)
 {
-    static struct hal_facts facts;
-    struct drive_settings settings = bench_quick_settings();
-    char error[DRIVE_ERROR_TEXT] = "";
+    const struct drive_settings settings = link_bench_settings(DRIVE_FEEDBACK_ENCODER);
+    struct hal_facts *facts = link_bench_encoder_facts(COUNTS);
+    struct hal board = bench_board(facts);
 
-    bench_power_up();
-    facts = bench_stored_facts();
-    facts.encoder_counts_per_turn = COUNTS;
-    facts.has_encoder_index = has_index;
-    drive_settings_select_feedback(&settings, DRIVE_FEEDBACK_ENCODER);
-    settings.encoder_zero_known = true;
-    struct hal board = bench_board(&facts);
-
+    facts->has_encoder_index = has_index;
     board.encoder_index = index_of_board;
     memset(&encoder, 0, sizeof encoder);
     encoder.lower_rad = lower_rad;
     encoder.rotor_rad = rotor_rad;
     bench.samples.encoder_count = (int32_t)floor(rotor_rad / count_rad);
-    TEST_ASSERT_TRUE_MESSAGE(application_init_with(&bench.application, &board, &settings, error),
-                             error);
-    application_put_link(&bench.application, &bench_link);
-    bench_periods(3);
-    (void)bench_heard();
+    link_bench_start_with(&board, &settings);
     link_bench_open();
     (void)link_bench_say("t00020101", 1);
     put(0x6099, 1, 4, TURN / 2); /* a winding without a voltage denies a faster one */
@@ -413,22 +407,13 @@ static void turn_to(double rotor_rad)
     bench.samples.encoder_count = (int32_t)floor(rotor_rad / count_rad);
 }
 
-static uint16_t current_code(num_t current)
-{
-    const double current_A = num_to_double(current) * bench.application.drive.base.current_A;
-
-    return (uint16_t)(2048.5 + current_A / bench_facts.current_A_per_code);
-}
-
 /* The rotor follows, and trembles; the currents are those that the drive expects. */
 static void turn(int ms)
 {
     for (int i = 0; i < 10 * ms; i++) {
         const double trembles_rad = bench.period / 50u % 2u == 0u ? 0.6 * count_rad : 0.0;
-        const struct phases current = bench.application.drive.estimator.estimate.next.current;
 
-        bench.samples.current_a = current_code(current.a);
-        bench.samples.current_b = current_code(current.b);
+        link_bench_expected_currents();
         turn_to(link_bench_reference_rad() - zero_rad() + trembles_rad);
         bench_period();
     }
@@ -437,13 +422,7 @@ static void turn(int ms)
 
 static void begin_with_encoder(int method)
 {
-    put(0x6060, 0, 1, 6);
-    put(0x6098, 0, 1, (uint32_t)method);
-    put(0x6040, 0, 2, 0x06);
-    bench_periods(20);
-    put(0x6040, 0, 2, 0x0f);
-    bench_periods(20);
-    TEST_ASSERT_EQUAL_HEX32(REACHED, status());
+    enable(method);
     put(0x6040, 0, 2, 0x1f);
     turn(3);
 }

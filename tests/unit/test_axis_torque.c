@@ -13,24 +13,12 @@ static double angle_rad;
 
 static void start(enum drive_feedback feedback)
 {
-    static struct hal_facts facts;
-    struct drive_settings settings = bench_quick_settings();
-    char error[DRIVE_ERROR_TEXT] = "";
+    struct drive_settings settings = link_bench_settings(feedback);
+    const struct hal board = bench_board(link_bench_encoder_facts(COUNTS));
 
-    bench_power_up();
     bench.inputs = 0; /* none is active */
-    facts = bench_stored_facts();
-    facts.encoder_counts_per_turn = COUNTS;
-    drive_settings_select_feedback(&settings, feedback);
-    settings.encoder_zero_known = true;
     settings.inputs_used = HAL_INPUT_LIMIT_MINUS | HAL_INPUT_LIMIT_PLUS;
-    const struct hal board = bench_board(&facts);
-
-    TEST_ASSERT_TRUE_MESSAGE(application_init_with(&bench.application, &board, &settings, error),
-                             error);
-    application_put_link(&bench.application, &bench_link);
-    bench_periods(3);
-    (void)bench_heard();
+    link_bench_start_with(&board, &settings);
     link_bench_open();
     (void)link_bench_say("t00020101", 1);
     speed_rad_s = 0.0;
@@ -46,21 +34,11 @@ void tearDown(void)
 {
 }
 
-static uint16_t current_code(num_t current)
-{
-    const double current_A = num_to_double(current) * bench.application.drive.base.current_A;
-
-    return (uint16_t)(2048.5 + current_A / bench_facts.current_A_per_code);
-}
-
 /* The currents are those that the drive expects. */
 static void run(int periods)
 {
     for (int k = 0; k < periods; k++) {
-        const struct phases current = bench.application.drive.estimator.estimate.next.current;
-
-        bench.samples.current_a = current_code(current.a);
-        bench.samples.current_b = current_code(current.b);
+        link_bench_expected_currents();
         angle_rad += speed_rad_s * PERIOD_S;
         bench.samples.encoder_count = (int32_t)floor(angle_rad / TWO_PI * COUNTS);
         bench_period();

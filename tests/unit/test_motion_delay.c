@@ -8,22 +8,10 @@ enum { COUNTS = 16384, CYCLE = 40 /* periods: 4 ms */, MOST = 400, TORQUE = 100 
 
 static void start(enum drive_feedback feedback)
 {
-    static struct hal_facts facts;
-    struct drive_settings settings = bench_quick_settings();
-    char error[DRIVE_ERROR_TEXT] = "";
+    const struct drive_settings settings = link_bench_settings(feedback);
+    const struct hal board = bench_board(link_bench_encoder_facts(COUNTS));
 
-    bench_power_up();
-    facts = bench_stored_facts();
-    facts.encoder_counts_per_turn = COUNTS;
-    drive_settings_select_feedback(&settings, feedback);
-    settings.encoder_zero_known = true;
-    const struct hal board = bench_board(&facts);
-
-    TEST_ASSERT_TRUE_MESSAGE(application_init_with(&bench.application, &board, &settings, error),
-                             error);
-    application_put_link(&bench.application, &bench_link);
-    bench_periods(3);
-    (void)bench_heard();
+    link_bench_start_with(&board, &settings);
     link_bench_open();
     (void)link_bench_nmt(1, 1);
 }
