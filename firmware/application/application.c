@@ -5,6 +5,7 @@
 #include "firmware/design/text.h"
 #include "firmware/drive/drive_hash.h"
 #include "firmware/drive/interrupt_view.h"
+#include "firmware/drive/motion_current.h"
 #include "firmware/interface/parts_carried.h"
 #include "firmware/interface/settings.h"
 #include "firmware/linkage.h"
@@ -229,6 +230,7 @@ CALLED_FROM_OUTSIDE void application_background(struct application *application)
     drive_background(&application->drive);
     phase_watch_background(&application->drive);
     idle_current_background(&application->drive);
+    motion_current_background(&application->drive);
     standing_rotor_background(&application->drive);
     thermal_watch_background(&application->drive);
     rotor_watch_background(&application->drive);

@@ -36,6 +36,7 @@ void standstill_hold_reset(struct standstill_hold *hold,
 {
     hold->active = false;
     hold->current = params->current;
+    hold->motion_current = params->motion_current;
     hold->i_d = NUM(0.0);
     hold->place = 0;
 }

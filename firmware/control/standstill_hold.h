@@ -20,7 +20,7 @@
 
 struct standstill_hold_params {
     num_t current;        /* i_d* when ramped in */
-    num_t motion_current; /* i_d* when ramped out */
+    num_t motion_current; /* i_d* when ramped out, of a slow motion */
     num_t ramp_in;        /* of i_d*, per period */
     num_t ramp_out;
     num_t current_limit; /* of the q current */
@@ -36,12 +36,13 @@ COEFFICIENTS(standstill_hold_params, STANDSTILL_HOLD_PARAMS_COEFFICIENTS)
 
 struct standstill_hold {
     bool active;
-    bool leads;          /* the frame moves, or has not come to rest yet */
-    struct sincos frame; /* of the reference; of the middle of a period where it creeps */
-    num_t speed;         /* of the frame: 0 at rest */
-    int32_t place;       /* while it waits: where it may begin, off the reference, 2^-32 turn */
-    int32_t offset;      /* where the frame is */
-    num_t current;       /* the design's, but while enabling: to which i_d* ramps in */
+    bool leads;           /* the frame moves, or has not come to rest yet */
+    struct sincos frame;  /* of the reference; of the middle of a period where it creeps */
+    num_t speed;          /* of the frame: 0 at rest */
+    int32_t place;        /* while it waits: where it may begin, off the reference, 2^-32 turn */
+    int32_t offset;       /* where the frame is */
+    num_t current;        /* the design's, but while enabling: to which i_d* ramps in */
+    num_t motion_current; /* to which it ramps out */
     num_t i_d;
 };
 
@@ -77,6 +78,12 @@ void standstill_hold_end_aligning(struct standstill_hold *hold,
 static inline void standstill_hold_put_current(struct standstill_hold *hold, num_t current)
 {
     hold->current = current;
+}
+
+/* Background: the d current of motion from now on, to which i_d* ramps. One word. */
+static inline void standstill_hold_put_motion_current(struct standstill_hold *hold, num_t current)
+{
+    hold->motion_current = current;
 }
 
 /* Background: where, off the reference, a hold that waits may begin; 2^-32 turn. One word. */
@@ -127,7 +134,7 @@ static inline num_t standstill_hold_current(struct standstill_hold *hold,
 static inline num_t standstill_hold_motion_current(struct standstill_hold *hold,
                                                    const struct standstill_hold_params *params)
 {
-    return standstill_hold_ramp(hold, params->motion_current, params->ramp_out);
+    return standstill_hold_ramp(hold, hold->motion_current, params->ramp_out);
 }
 
 /*

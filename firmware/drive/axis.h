@@ -22,8 +22,9 @@ struct axis {
     struct position offset; /* the user's coordinates less the motor's */
     struct position origin; /* the motor's zero, a constant: a signal shows it */
     enum drive_position_reference reference;
-    bool counts;  /* the encoder does, while the bridge is off */
-    bool aligned; /* its zero has been found, and nothing has questioned it since */
+    bool counts;     /* the encoder does, while the bridge is off */
+    bool aligned;    /* its zero has been found, and nothing has questioned it since */
+    bool seeks_stop; /* the background is homing on a hard stop */
 };
 
 struct drive;

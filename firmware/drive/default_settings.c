@@ -5,6 +5,7 @@
 #include "firmware/design/loop_bandwidth.h"
 #include "firmware/design/mechanical_control_design.h"
 #include "firmware/drive/board_limits.h"
+#include "firmware/interface/parts_carried.h"
 
 /* Of the rated current; half of it with pulses, which need the difference up to the trip for
    theirs, and with the paper's filter, whose own hold has half. */
@@ -89,6 +90,25 @@ __attribute__((noinline)) static double hold_current_wanted(const struct drive_s
     return trip_A < wanted_A ? trip_A : wanted_A; /* a trip that follows is a NaN still */
 }
 
+/*
+ * A d current draws the rotor to its estimate as to the frame of a hold. A sensorless motor needs
+ * that whose rated current makes more than so many times the flux of its magnet, N L I / Km: what
+ * an inductance is off by, and iron, turns its estimate as many times as far.
+ */
+#define MOTION_CURRENT_FROM  3.0
+#define MOTION_CURRENT_SHARE 0.375
+
+static double motion_current(const struct drive_settings *settings)
+{
+    const struct motor_params *motor = &settings->motor;
+    const double flux_Vs = motor->rotor_teeth * motor->inductance_H * motor->rated_current_A;
+
+    return settings->feedback == DRIVE_FEEDBACK_SENSORLESS &&
+                   flux_Vs > MOTION_CURRENT_FROM * motor->torque_constant_Nm_A
+               ? MOTION_CURRENT_SHARE * motor->rated_current_A
+               : 0.0;
+}
+
 static bool holds_at_times(const struct drive_settings *settings)
 {
     return settings_ask_for_hold(settings) || !settings->encoder_zero_known;
@@ -158,7 +178,7 @@ static double observer_bandwidth(const struct drive_settings *settings, double p
     const double least = fast(settings) ? 1400.0 : 1000.0;
     const double wanted = smaller(larger(swing, least), ENCODER_OBSERVER_PERIOD_MAX / period_s);
 
-    return counts_per_turn == 0u
+    return !ENCODER_CARRIED || counts_per_turn == 0u
                ? wanted
                : smaller(wanted, count_bandwidth_max(&settings->motor, period_s, counts_per_turn));
 }
@@ -186,6 +206,7 @@ bool default_settings_step(struct default_settings_search *search, struct drive_
     put(&settings->following_error_rad, following_error(settings));
     put(&settings->hold_current_A, search->hold_current_A);
     put(&settings->idle_current_A, settings->hold_current_A);
+    put(&settings->motion_current_A, motion_current(settings));
     put(&settings->hold_delay_s,
         smaller(HOLD_DELAY_MAX_S,
                 HOLD_DELAY_SWING / hold_frequency(&settings->motor, settings->hold_current_A)));

@@ -2,6 +2,7 @@
 
 #include "firmware/design/refusal.h"
 #include "firmware/drive/board_limits.h"
+#include "firmware/drive/default_settings.h"
 #include "firmware/drive/law_design.h"
 #include "firmware/drive/synchronism.h"
 #include "firmware/interface/settings.h"
@@ -97,12 +98,15 @@ bool settings_in_motion_change(struct drive *drive, const struct drive_settings 
     struct synchronism_supervision *synchronism = &drive->synchronism;
     struct drive_settings next = drive->settings;
     union position_law_params law = params->law;
+    struct default_settings_search none = {.refused = 0}; /* the hold's current is known */
 
     for (size_t i = 0; setting_number(i) != NULL; i++) {
         if (setting_number(i)->in_motion) {
             setting_put(&next, setting_number(i), 0, setting_get(wanted, setting_number(i), 0));
         }
     }
+    (void)default_settings_step(&none, &next, facts->control_period_s,
+                                facts->encoder_counts_per_turn);
     if (!board_limits_apply(&next, facts, error) || !check(&drive->settings, &next, error) ||
         !law_design(drive, &next, &law, error)) {
         return false;

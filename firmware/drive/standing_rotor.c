@@ -51,7 +51,7 @@ void standing_rotor_background(struct drive *drive)
     const uint32_t period = interrupt_view_period(drive);
     const bool holds = interrupt_view_holds(drive);
 
-    if (holds && drive->hold.offset != 0) {
+    if (holds && drive->hold.offset != 0 && drive->hold.place == 0) { /* not as it begins */
         lead_back(drive, period);
     }
     atomic_signal_fence(memory_order_seq_cst);

@@ -162,8 +162,10 @@
          "hold current after idle_delay_s at rest, bears and heats likewise: hold_current_A")      \
     REAL(0x214e, idle_delay_s, "s", FIXED(0.0), FIXED(3600.0), FIXED(1.0), AT_ENABLE,              \
          "at rest before the hold current falls to idle_current_A")                                \
-    REAL(0x2146, motion_current_A, "A", FIXED(0.0), RATED(1.0), FIXED(0.0), IN_MOTION,             \
-         "d-axis current in motion")                                                               \
+    REAL(                                                                                          \
+        0x2146, motion_current_A, "A", FIXED(0.0), RATED(1.0), FOLLOWS, IN_MOTION,                 \
+        "d-axis current in motion, none of it from a quarter of V / Km on: 0, or sensorless with " \
+        "little flux 0.375 of the rated")                                                          \
     REAL(0x2147, hold_ramp_s, "s", FIXED(1e-3), FIXED(1.0), FIXED(0.010), AT_ENABLE,               \
          "time for the hold current to ramp in; out, 1.25 of it without an encoder")               \
     REAL(0x2148, hold_delay_s, "s", FIXED(0.0), FIXED(100.0), FOLLOWS, AT_ENABLE,                  \

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "firmware/drive/idle_current.h"
+#include "firmware/drive/motion_current.h"
 #include "firmware/drive/phase_watch.h"
 #include "firmware/drive/rotor_watch.h"
 #include "firmware/drive/standing_rotor.h"
@@ -126,6 +127,7 @@ static inline void period(void)
         drive_background(&drive);
         phase_watch_background(&drive);
         idle_current_background(&drive);
+        motion_current_background(&drive);
         standing_rotor_background(&drive);
         thermal_watch_background(&drive);
         rotor_watch_background(&drive);

@@ -130,6 +130,40 @@ static void test_it_goes_at_the_homing_speed_down_and_up(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, TWO_PI / 8, link_bench_speed_rad_s());
 }
 
+static double motion_current_A(void)
+{
+    struct drive *drive = &bench.application.drive;
+
+    return num_to_double(drive->hold.motion_current) * drive->base.current_A;
+}
+
+/* It would hold the rotor where a wrong estimate has it, with the torque of a stop. */
+static void test_it_looks_for_a_stop_without_a_d_current(void)
+{
+    struct drive_settings settings = link_bench_settings(DRIVE_FEEDBACK_SENSORLESS);
+    const struct hal board = bench_board(&bench_facts);
+
+    settings.motion_current_A = 0.8;
+    link_bench_start_with(&board, &settings);
+    link_bench_open();
+    (void)link_bench_say("t00020101", 1);
+    begin(-1);
+    follow(10);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.0, motion_current_A());
+    bear(-1.0, 1.1);
+    look(100);
+    TEST_ASSERT_NOT_EQUAL(HOMING_SEARCHES, homing()->phase);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.8, motion_current_A());
+    look(300);
+    put(0x6040, 0, 2, 0x0f);
+    put(0x6040, 0, 2, 0x1f);
+    follow(10);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.0, motion_current_A());
+    put(0x6040, 0, 2, 0x0f);
+    look(20);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.8, motion_current_A());
+}
+
 static void test_a_polarity_turns_it_round(void)
 {
     put(0x607e, 0, 1, 0x80);
@@ -534,6 +568,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_it_goes_at_the_homing_speed_down_and_up);
+    RUN_TEST(test_it_looks_for_a_stop_without_a_d_current);
     RUN_TEST(test_a_polarity_turns_it_round);
     RUN_TEST(test_a_stop_above_is_where_the_offset_says);
     RUN_TEST(test_a_stop_below_is_where_the_offset_says);

@@ -176,6 +176,38 @@ static void test_what_is_not_given_follows_from_motor_and_period(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-5, 4.2 / 388.3, settings.hold_delay_s);
 }
 
+/* Its rated current makes 0.86 times the flux of its magnet. */
+static double motion_current_of(double km_share, double rated_A)
+{
+    drive_settings_default(&settings, &bench_params);
+    settings.motor.torque_constant_Nm_A *= km_share;
+    settings.motor.rated_current_A = rated_A;
+    default_settings_apply(&settings, 1e-4, 0u);
+    return settings.motion_current_A;
+}
+
+static void test_a_motor_of_little_flux_has_a_d_current_in_motion(void)
+{
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, motion_current_of(1.0, 3.0));
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, motion_current_of(0.29, 3.0));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.375 * 3.0, motion_current_of(0.28, 3.0));
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, motion_current_of(0.5, 5.2));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.375 * 5.3, motion_current_of(0.5, 5.3));
+}
+
+static void test_with_an_encoder_or_as_it_is_given_it_is_not_that(void)
+{
+    (void)motion_current_of(0.28, 3.0);
+    settings.motion_current_A = __builtin_nan("");
+    drive_settings_select_feedback(&settings, DRIVE_FEEDBACK_ENCODER);
+    default_settings_apply(&settings, 1e-4, 4000u);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, settings.motion_current_A);
+    drive_settings_select_feedback(&settings, DRIVE_FEEDBACK_SENSORLESS);
+    settings.motion_current_A = 0.1;
+    default_settings_apply(&settings, 1e-4, 0u);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.1, settings.motion_current_A);
+}
+
 /* They were another law's. */
 static void test_bandwidths_that_were_given_do_not_outlive_their_law(void)
 {
@@ -491,6 +523,8 @@ int main(void)
     RUN_TEST(test_ranges_and_units_are_those_of_the_contract);
     RUN_TEST(test_every_setting_may_take_the_bounds_of_its_range);
     RUN_TEST(test_what_is_not_given_follows_from_motor_and_period);
+    RUN_TEST(test_a_motor_of_little_flux_has_a_d_current_in_motion);
+    RUN_TEST(test_with_an_encoder_or_as_it_is_given_it_is_not_that);
     RUN_TEST(test_bandwidths_that_were_given_do_not_outlive_their_law);
     RUN_TEST(test_a_light_rotor_gets_a_wider_and_sooner_hold);
     RUN_TEST(test_a_hold_that_a_motor_does_not_bear_gets_less_current_in_steps);

@@ -126,6 +126,23 @@ static void test_where_no_hold_leads_nothing_stands(void)
     TEST_ASSERT_EQUAL_INT32(0, drive.hold.place);
 }
 
+/* It stands there for longer than any step of its way back takes. */
+static void test_a_hold_begins_where_the_rotor_stands(void)
+{
+    enabled_drive_whose_hold_waits();
+    pass(2u * DELAYS, 60.0);
+    standstill_hold_consider(&drive.hold, &drive.params.hold,
+                             drive.reference.next.position.fraction, num_from_double(60.0 / 360.0),
+                             NUM(0.0));
+    TEST_ASSERT_TRUE(drive.hold.active);
+    drive.supervision.period += 9u;
+    pass(1u, 60.0);
+    TEST_ASSERT_INT32_WITHIN(degree / 100, -60 * degree, drive.hold.offset);
+    pass(1u, 60.0);
+    TEST_ASSERT_TRUE(drive.hold.offset > -60 * degree);
+    TEST_ASSERT_INT32_WITHIN(degree, -60 * degree, drive.hold.offset);
+}
+
 /* However seldom the background comes to it, up to every 3.2 ms. */
 static void test_a_frame_comes_back_at_the_speed_at_which_it_creeps(void)
 {
@@ -188,6 +205,7 @@ int main(void)
     RUN_TEST(test_a_rotor_that_swings_does_not_stand_but_one_that_creeps_does);
     RUN_TEST(test_its_place_is_known_while_the_hold_waits);
     RUN_TEST(test_where_no_hold_leads_nothing_stands);
+    RUN_TEST(test_a_hold_begins_where_the_rotor_stands);
     RUN_TEST(test_a_frame_comes_back_at_the_speed_at_which_it_creeps);
     RUN_TEST(test_a_background_that_was_busy_leads_it_by_3_2_ms_whatever_the_period);
     return UNITY_END();
