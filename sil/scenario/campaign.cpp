@@ -118,7 +118,7 @@ CampaignMotor campaign_motor(const Catalogue &catalogue, const CampaignKind &kin
 {
     CampaignMotor motor;
     Value settings;
-    apply_settings(settings, given.settings);
+    apply_settings(settings, with_plant_spelled_out(given.settings));
     const Value *const named = settings.find("motor");
     if (named == nullptr) {
         return motor;

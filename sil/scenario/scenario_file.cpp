@@ -43,18 +43,6 @@ void spell_out_plant(Value &document)
     document.set("plant", table);
 }
 
-/* The same of --set. */
-std::vector<std::string> with_plant_spelled_out(std::vector<std::string> sets)
-{
-    const std::string brief = "plant=";
-    for (std::string &set : sets) {
-        if (set.rfind(brief, 0) == 0) {
-            set = "plant.model=" + set.substr(brief.size());
-        }
-    }
-    return sets;
-}
-
 /* The file with its bases under it; `chain` holds the files that wait for this one. */
 Value read_with_bases(const Catalogue &catalogue, const fs::path &file, std::vector<fs::path> chain)
 {
@@ -517,6 +505,17 @@ Scenario interpreted(const Catalogue &catalogue, const Value &document, const Co
 }
 
 } // namespace
+
+std::vector<std::string> with_plant_spelled_out(std::vector<std::string> sets)
+{
+    const std::string brief = "plant=";
+    for (std::string &set : sets) {
+        if (set.rfind(brief, 0) == 0) {
+            set = "plant.model=" + set.substr(brief.size());
+        }
+    }
+    return sets;
+}
 
 Scenario read_scenario(const Catalogue &catalogue, const std::string &name,
                        const CommandLine &given, const std::string &asked_by)

@@ -27,6 +27,9 @@ struct CommandLine {
     std::string settings_file{};       /* of --settings; "" */
 };
 
+/* What --set gives, with `plant=real` as `plant.model=real`. */
+std::vector<std::string> with_plant_spelled_out(std::vector<std::string> sets);
+
 struct Scenario {
     std::string name, description;
     std::string asked; /* name or path by which it was asked for */

@@ -99,6 +99,9 @@ def settings_lie_over_every_scenario(folder):
     (one,), (other,) = (json.loads(text.stdout)["runs"] for text in (plain, done))
     CHECKS.that(one["trace_hash"] != other["trace_hash"], "--set counts")
     CHECKS.that("--set drive.law=pid" in other["reproduce"], f"and is repeated: {other}")
+    brief, spelled = (json.loads(campaign(folder, "--seed", "1", "--set", model, "--set", "plant.hysteresis=0.03", "--json").stdout)
+                      ["runs"][0] for model in ("plant=as-built", "plant.model=as-built"))
+    CHECKS.that(brief["trace_hash"] == spelled["trace_hash"], "a plant in brief goes with keys of its own")
 
 
 def it_goes_on_where_it_was_cut_off(folder):

@@ -33,6 +33,9 @@ def each_command_does_its_own(port, folder):
             (("move", 1.5, "--enable"), 0, "at 1."),
             (("move", -0.5, "--relative"), 0, "at "),
             (("capture", "theta_est_rad", "--duration", 0.1, "--out", f"{folder}/a.csv"), 0, "samples"),
+            (("home", "here", "--at", 1), 0, "homed; at "),
+            (("home", "index-up"), 1, "not homed, index-up: none has passed"),
+            (("home", "up"), 2, "expected one of here, stop-down"),
             (("faults",), 0, "now: none"),
             (("--node", 7, "state"), 2, "node 7 does not answer")):
         found, text = typed(port, *words)

@@ -120,6 +120,31 @@ def it_moves(drive, knobs):
     drive.enable()
 
 
+def it_is_homed(drive, knobs):
+    """On a stop above, and where it stands; on nothing it is not."""
+    drive.move(0.0)
+    stop = float(knobs.truth()["theta_rad"]) + 0.5
+    knobs.turn(f"stops = true, stop_high_rad = {stop}")
+    seen = []
+    drive.home("stop-up", 2.0, progress=lambda what, share: seen.append(what))
+    off = drive.position_rad - 2.0 - (float(knobs.truth()["theta_rad"]) - stop)
+    CHECKS.that(abs(off) < 0.01, f"the stop is at 2 rad: {off}")
+    CHECKS.that(drive.read("position_reference") == "referenced" and set(seen) == {"homing"}, "and it is homed")
+    knobs.turn("stops = false")
+    found = refusal(lambda: drive.home("stop-down", travel_rad=0.3), steadystep.NotHomed)
+    CHECKS.that("within its travel" in found, f"no stop: {found}")
+    found = refusal(lambda: drive.home("index-up"), steadystep.NotHomed)
+    CHECKS.that("no encoder with an index" in found, f"no index: {found}")
+    found = refusal(lambda: drive.home("stop-down", speed_rad_s=5, timeout_s=0.2), steadystep.TimedOut)
+    CHECKS.that("0.2 s" in found, f"in time: {found}")
+    for method, more, said in (("up", {}, "one of here, stop-down"), ("here", {"position_rad": 1e9}, "position_rad: expected"),
+                               ("stop-up", {"torque_share": 0}, "torque_share"), ("stop-up", {"travel_rad": math.nan}, "travel_rad")):
+        found = refusal(lambda method=method, more=more: drive.home(method, **more), steadystep.Refused)
+        CHECKS.that(said in found, f"{method} {more}: {found}")
+    drive.home("here")
+    CHECKS.that(abs(drive.position_rad) < 0.01, f"here is 0: {drive.position_rad}")
+
+
 def parquet_has_what_csv_has(made, path, rows):
     import pyarrow.parquet
 
@@ -309,6 +334,7 @@ with tempfile.TemporaryDirectory() as scratch, Simulated(program=SIL) as simulat
         what_is_no_setting_is_refused(DRIVE)
         a_torque_is_a_drive_s_with_an_encoder(DRIVE)
         it_moves(DRIVE, simulated.knobs)
+        it_is_homed(DRIVE, simulated.knobs)
         it_captures(DRIVE, FOLDER)
         what_the_drive_records_itself(DRIVE)
         a_fault_is_in_words(DRIVE, simulated.knobs)

@@ -10,7 +10,7 @@ from .capture import Capture
 from .capture_in_drive import Trigger
 from .dictionary import dictionary
 from .drive import Drive
-from .errors import DriveFault, LostLink, Refused, SteadystepError, TimedOut, WrongPort, WrongVersion
+from .errors import DriveFault, LostLink, NotHomed, Refused, SteadystepError, TimedOut, WrongPort, WrongVersion
 
-__all__ = ["Capture", "Drive", "DriveFault", "LostLink", "Refused", "SteadystepError", "TimedOut", "Trigger",
-           "WrongPort", "WrongVersion", "dictionary"]
+__all__ = ["Capture", "Drive", "DriveFault", "LostLink", "NotHomed", "Refused", "SteadystepError", "TimedOut",
+           "Trigger", "WrongPort", "WrongVersion", "dictionary"]

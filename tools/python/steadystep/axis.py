@@ -6,7 +6,7 @@ from typing import Callable, NoReturn
 from canopen.profiles.p402 import State402
 
 from .dictionary import Dictionary, Fault
-from .errors import DriveFault, Refused, TimedOut
+from .errors import DriveFault, NotHomed, Refused, TimedOut
 from .objects import Objects, OutOfRange
 from .settings import Progress, unseen
 
@@ -18,6 +18,13 @@ QUICK_STOP_OPTION, STAYS = 0x605A, 6  # in QUICK STOP ACTIVE, and holds
 SHUTDOWN, SWITCH_ON, ENABLE_OPERATION, QUICK_STOP, RESET = 0x06, 0x07, 0x0F, 0x02, 0x80
 NEW_SET_POINT, AT_ONCE, RELATIVE = 0x10, 0x20, 0x40
 REFUSED, REACHED, ACKNOWLEDGED = 0x0080, 0x0400, 0x1000
+START, ATTAINED, HOMING_ERROR = 0x10, 0x1000, 0x2000
+HOMING_METHODS = {"here": 37, "stop-down": -1, "stop-up": -2, "index-down": 33, "index-up": 34}
+STOP_TORQUE, STOP_TRAVEL = (0x2403, 1), (0x2403, 2)
+WHY_NOT = {"here": "the axis moves",
+           "stop": "within its travel nothing bore the torque and stood, or the rotor may have lost step, or the drive's law "
+                   "knows no load",
+           "index": "none has passed in a turn, or the drive has no encoder with an index"}
 
 
 class Axis:
@@ -261,6 +268,61 @@ class Axis:
             self._in_mode(PROFILE_POSITION)
         else:
             self.command("set-position", position_rad=position_rad)
+
+    def home(self, method: str, position_rad: float = 0.0, *, torque_share: float | None = None,
+             travel_rad: float | None = None, speed_rad_s: float | None = None, timeout_s: float = 120.0,
+             progress: Progress = unseen) -> None:
+        """Finds where the axis is: `here`, or on a hard stop (`stop-down`, `stop-up`), or on the encoder's index
+        (`index-down`, `index-up`). There is position_rad. Of a stop: the torque that it bears, as a share of the rated
+        torque, and the travel within which it is. What is not given stays as it was. Raises NotHomed, DriveFault."""
+        if method not in HOMING_METHODS:
+            raise Refused(f"method: expected one of {', '.join(HOMING_METHODS)}, got {method}")
+        offset = self._position_units(position_rad)
+        self._in_mode(HOMING)
+        try:
+            self.objects.write(0x6098, HOMING_METHODS[method])
+            if torque_share is not None:
+                self.objects.write(STOP_TORQUE[0], self._whole("torque_share", 1e3 * torque_share, 2**16), STOP_TORQUE[1])
+            if travel_rad is not None:
+                self.objects.write(STOP_TRAVEL[0], self._whole("travel_rad", travel_rad / self._unit_rad, 2**32),
+                                   STOP_TRAVEL[1])
+            if speed_rad_s is not None:
+                units = self._whole("speed_rad_s", speed_rad_s / self._unit_rad, 2**32)
+                for sub in (1, 2):
+                    self.objects.write(0x6099, units, sub)
+        except OutOfRange:
+            raise Refused(f"home: {method} is not of this drive, or a value is out of its range") from None
+        self.objects.write(0x607C, offset)
+        self._control(ENABLE_OPERATION)
+        self._control(ENABLE_OPERATION | START)
+        try:
+            self._until_homed(method, timeout_s, progress)
+        finally:
+            if self.state == "OPERATION ENABLED":
+                self._control(ENABLE_OPERATION)  # interrupts what goes on yet
+
+    @staticmethod
+    def _whole(name: str, value: float, end: int) -> int:
+        if not (math.isfinite(value) and 0 < round(value) < end):
+            raise Refused(f"{name}: expected a number above 0, within the object's range")
+        return round(value)
+
+    def _until_homed(self, method: str, timeout_s: float, progress: Progress) -> None:
+        begin = time.monotonic()
+        time.sleep(LOOK_S)  # the statusword is that of the start
+        while not (status := self.status) & ATTAINED:
+            if state_of(status) == "FAULT":
+                self.raise_fault()
+            if status & HOMING_ERROR:
+                raise NotHomed(f"not homed, {method}: {WHY_NOT[method.partition('-')[0]]}")
+            if status & REACHED or state_of(status) != "OPERATION ENABLED":
+                raise NotHomed(f"not homed, {method}: interrupted; the drive is {state_of(status).lower()}")
+            passed_s = time.monotonic() - begin
+            progress("homing", min(passed_s / timeout_s, 1.0))
+            if passed_s > timeout_s:
+                raise TimedOut(f"homing has not ended within {timeout_s:g} s")
+            time.sleep(LOOK_S)
+        progress("homing", 1.0)
 
     def command(self, name: str, **parameters: float) -> None:
         """Any command of the dictionary, with its parameters by name."""

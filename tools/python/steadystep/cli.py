@@ -12,7 +12,7 @@ from .capture_in_drive import Trigger
 from .cli_words import PORT, parser
 from .dictionary import Value, dictionary
 from .drive import Drive
-from .errors import DriveFault, LostLink, Refused, SteadystepError, TimedOut, WrongPort, WrongVersion
+from .errors import DriveFault, LostLink, NotHomed, Refused, SteadystepError, TimedOut, WrongPort, WrongVersion
 from .resonance_curve import NOT_SURE
 from .settings_text import line_of
 
@@ -161,6 +161,14 @@ def torque(drive: Drive, arguments: Arguments) -> None:
     print("goes on until stop, or torque 0, which lets it coast")
 
 
+def home(drive: Drive, arguments: Arguments) -> None:
+    if arguments.enable:
+        drive.enable(progress=Bar())
+    drive.home(arguments.method, arguments.at, torque_share=arguments.torque, travel_rad=arguments.travel,
+               speed_rad_s=arguments.speed, timeout_s=arguments.timeout, progress=Bar())
+    print(f"homed; at {drive.position_rad:.5g} rad")
+
+
 def give_command(drive: Drive, arguments: Arguments) -> None:
     pairs = [pair.partition("=") for pair in arguments.parameters]
     drive.command(arguments.name, **{name: float(value) for name, _, value in pairs})
@@ -265,7 +273,7 @@ def page(arguments: Arguments) -> int:
 # ---- the command line ----
 
 DRIVE_COMMANDS: dict[str, Callable[[Drive, Arguments], object]] = {
-    "state": show_state, "faults": show_faults, "enable": enable, "move": move, "velocity": velocity, "torque": torque,
+    "state": show_state, "faults": show_faults, "enable": enable, "move": move, "velocity": velocity, "torque": torque, "home": home,
     "command": give_command, "capture": capture, "resonance": find_resonance, "disable": lambda drive, _: drive.disable(),
     "stop": lambda drive, _: drive.stop(), "reset": lambda drive, _: drive.reset(),
     "store": lambda drive, _: drive.store(),
@@ -293,7 +301,7 @@ def run(arguments: Arguments) -> int:
 def main(given: Sequence[str] | None = None) -> int:
     try:
         return run(parser().parse_args(given))
-    except (DriveFault, LostLink, TimedOut) as error:
+    except (DriveFault, LostLink, NotHomed, TimedOut) as error:
         print(f"steadystep: {error}", file=sys.stderr)
         return NOT_DONE
     except (WrongPort, WrongVersion, SteadystepError, OSError, ValueError) as error:

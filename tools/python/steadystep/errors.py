@@ -21,6 +21,10 @@ class Refused(SteadystepError):
     """The drive, or its dictionary, does not accept a value or a command."""
 
 
+class NotHomed(SteadystepError):
+    """The axis has not been homed; where it is, is not known better than before."""
+
+
 class TimedOut(SteadystepError):
     """What was waited for has not come in time."""
 
