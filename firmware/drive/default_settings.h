@@ -22,8 +22,8 @@ static inline struct hold_task hold_task_of(const struct drive_settings *setting
 
 /*
  * Puts in force what is not given (NaN) of law_bandwidth_rad_s, current_bandwidth_rad_s,
- * observer_bandwidth_rad_s, hold_current_A, hold_bandwidth_rad_s and hold_delay_s, each within what
- * the period and the motor bear.
+ * observer_bandwidth_rad_s, following_error_rad, hold_current_A, idle_current_A, motion_current_A,
+ * hold_bandwidth_rad_s and hold_delay_s, each within what the period and the motor bear.
  */
 void default_settings_apply(struct drive_settings *settings, double period_s,
                             uint32_t encoder_counts_per_turn);

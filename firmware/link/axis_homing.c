@@ -83,7 +83,6 @@ static void search(struct application *application, int8_t method)
             .phase = index ? HOMING_SETS_OUT : HOMING_SEARCHES,
             .began_rad = cia402_signals(application)->theta_ref_rad,
         };
-        application->drive.axis.seeks_stop = !index;
     }
 }
 
@@ -121,7 +120,6 @@ static void leave(struct application *application, float steps, bool found)
     };
 
     homing->phase = HOMING_LEAVES;
-    application->drive.axis.seeks_stop = false;
     homing->found = found;
     homing->ms = 0;
     if (!axis_motion_post(application, &back,

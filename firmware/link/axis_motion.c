@@ -144,7 +144,6 @@ void axis_motion_brake(struct application *application, bool quickly)
     motion_of(application)->speed_rad_s = 0.0f;
     motion_of(application)->at_limit = false;
     motion_of(application)->homing.phase = HOMING_ENDED;
-    application->drive.axis.seeks_stop = false;
     if (!axis_motion_rests(application) &&
         !axis_motion_post(application, &brake, 0.0f, deceleration)) {
         brake.kind = DRIVE_COMMAND_STOP;

@@ -233,6 +233,8 @@ void cia402_background(struct application *application)
     } else {
         axis->mode = application->link->objects.mode;
     }
+    application->drive.axis.seeks_stop =
+        axis->state == CIA402_OPERATION_ENABLED && axis->motion.homing.phase == HOMING_SEARCHES;
 }
 
 void cia402_control(struct application *application, uint16_t word)

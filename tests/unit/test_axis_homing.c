@@ -159,7 +159,7 @@ static void test_it_looks_for_a_stop_without_a_d_current(void)
     put(0x6040, 0, 2, 0x1f);
     follow(10);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.0, motion_current_A());
-    put(0x6040, 0, 2, 0x0f);
+    put(0x6040, 0, 2, 0x00); /* whatever ends it */
     look(20);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.8, motion_current_A());
 }

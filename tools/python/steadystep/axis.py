@@ -164,10 +164,7 @@ class Axis:
                                    (0x6083, "acceleration_rad_s2", acceleration_rad_s2),
                                    (0x6084, "acceleration_rad_s2", acceleration_rad_s2)):
             if value is not None and index in self.objects.entries:  # 6084h: not of every version
-                units = round(value / self._unit_rad) if math.isfinite(value) else 0
-                if not 0 < units < 2**32:
-                    raise Refused(f"{name}: expected a number above 0, got {value:g}")
-                self.objects.write(index, units)
+                self.objects.write(index, _whole(name, value, self._unit_rad))
 
     def _position_units(self, position_rad: float) -> int:
         most = (2**31 - 1) * self._unit_rad
@@ -228,10 +225,7 @@ class Axis:
             raise Refused("torque: without an encoder a slow rotor is lost; "
                           "the drive has the mode with feedback = encoder")
         if speed_rad_s is not None:
-            rpm = round(speed_rad_s * 30 / math.pi) if math.isfinite(speed_rad_s) else 0
-            if not 0 < rpm < 2**32:
-                raise Refused(f"speed_rad_s: expected a number above 0.053, got {speed_rad_s:g}")
-            self.objects.write(0x6080, rpm)
+            self.objects.write(0x6080, _whole("speed_rad_s", speed_rad_s, math.pi / 30))
         self.objects.write(0x6071, thousandths)
         self._in_mode(CYCLIC_TORQUE)
         self._control(ENABLE_OPERATION)
@@ -282,12 +276,11 @@ class Axis:
         try:
             self.objects.write(0x6098, HOMING_METHODS[method])
             if torque_share is not None:
-                self.objects.write(STOP_TORQUE[0], self._whole("torque_share", 1e3 * torque_share, 2**16), STOP_TORQUE[1])
+                self.objects.write(STOP_TORQUE[0], _whole("torque_share", torque_share, 1e-3, 2**16), STOP_TORQUE[1])
             if travel_rad is not None:
-                self.objects.write(STOP_TRAVEL[0], self._whole("travel_rad", travel_rad / self._unit_rad, 2**32),
-                                   STOP_TRAVEL[1])
+                self.objects.write(STOP_TRAVEL[0], _whole("travel_rad", travel_rad, self._unit_rad), STOP_TRAVEL[1])
             if speed_rad_s is not None:
-                units = self._whole("speed_rad_s", speed_rad_s / self._unit_rad, 2**32)
+                units = _whole("speed_rad_s", speed_rad_s, self._unit_rad)
                 for sub in (1, 2):
                     self.objects.write(0x6099, units, sub)
         except OutOfRange:
@@ -300,12 +293,6 @@ class Axis:
         finally:
             if self.state == "OPERATION ENABLED":
                 self._control(ENABLE_OPERATION)  # interrupts what goes on yet
-
-    @staticmethod
-    def _whole(name: str, value: float, end: int) -> int:
-        if not (math.isfinite(value) and 0 < round(value) < end):
-            raise Refused(f"{name}: expected a number above 0, within the object's range")
-        return round(value)
 
     def _until_homed(self, method: str, timeout_s: float, progress: Progress) -> None:
         begin = time.monotonic()
@@ -345,6 +332,14 @@ class Axis:
             raise Refused(f"{name}: the drive has no such command") from None
         except Refused:
             raise Refused(f"{name}: legal {row.legal}; the drive is {self.read('state')}") from None
+
+
+def _whole(name: str, value: float, unit: float, end: int = 2**32) -> int:
+    """So many units, more than none and within an object that has no more than `end`."""
+    units = round(value / unit) if math.isfinite(value) else 0
+    if not 0 < units < end:
+        raise Refused(f"{name}: expected a number above 0, at most {unit * (end - 1):.6g}, got {value:g}")
+    return units
 
 
 def state_of(status: int) -> str:

@@ -2,6 +2,8 @@
 import argparse
 from typing import TYPE_CHECKING
 
+from .axis import HOMING_METHODS
+
 if TYPE_CHECKING:
     Commands = argparse._SubParsersAction[argparse.ArgumentParser]
 
@@ -50,7 +52,7 @@ def _add_motion(commands: "Commands") -> None:
         each.add_argument("--enable", action="store_true", help="first")
     _add(commands, "set-position", "the axis, at rest, is here").add_argument("position_rad", type=float)
     home = _add(commands, "home", "finds where the axis is: here, on a hard stop, or on the encoder's index")
-    home.add_argument("method", metavar="METHOD", help="here, stop-down, stop-up, index-down, index-up")
+    home.add_argument("method", metavar="METHOD", help=", ".join(HOMING_METHODS))
     home.add_argument("--at", type=float, default=0.0, metavar="RAD", help="where that is (0)")
     home.add_argument("--torque", type=float, metavar="SHARE", help="that a stop bears, of the rated torque")
     home.add_argument("--travel", type=float, metavar="RAD", help="within which a stop is")
