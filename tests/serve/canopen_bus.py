@@ -15,7 +15,8 @@ try:
 except ImportError:
     sys.exit(f"python-canopen is not in {CLIENTS}: tools/setup clients installs it")
 
-PATIENCE = 5  # its waits go by the wall's clock, and a busy machine lets drive or client wait
+PATIENCE = 15  # its waits go by the wall's clock, and a busy machine lets drive or client wait
+ANSWER_S = 5
 WAITS = ("TIMEOUT_SWITCH_STATE_FINAL", "TIMEOUT_SWITCH_STATE_SINGLE", "TIMEOUT_CHECK_TPDO",
          "TIMEOUT_SWITCH_OP_MODE")
 
@@ -36,7 +37,7 @@ class Bus:
         if self.lives:
             self.network.nmt.state = "RESET COMMUNICATION"
         for node in self.nodes:
-            node.sdo.RESPONSE_TIMEOUT = 2
+            node.sdo.RESPONSE_TIMEOUT = ANSWER_S
             slow(node, 1 / PATIENCE)
             wait_for(lambda node=node: node.nmt.state == "PRE-OPERATIONAL")
         return self

@@ -91,7 +91,7 @@ def it_moves(drive, knobs):
     CHECKS.that(abs(drive.position_rad - 1.0) < 0.01, f"and on from there: {drive.position_rad}")
     drive.move(1000.0, speed_rad_s=20, wait=False)
     time.sleep(0.1)
-    drive.move(1.0, timeout_s=5)
+    drive.move(1.0)
     CHECKS.that(abs(drive.position_rad - 1.0) < 0.01, "a newer target counts at once")
     drive.velocity(10, wait=True)
     CHECKS.that(abs(float(drive.read("omega_ref_rad_s")) - 10) < 0.1, "it turns at a speed")
@@ -212,7 +212,14 @@ def what_the_drive_records_itself(drive):
         CHECKS.that("knows no trigger" in found, found)
         return
     names = ["theta_ref_rad", "theta_est_rad", "reference_moving", "period", "fault"]
-    mover = threading.Timer(0.3, lambda: drive.move(1.0, relative=True, wait=False))
+
+    def moves_when_it_waits():
+        while drive.objects.read(capture_in_drive.CONTROL, capture_in_drive.ARM) == capture_in_drive.OFF:
+            time.sleep(0.01)
+        time.sleep(0.1)  # of the drive's memory before the trigger
+        drive.move(1.0, relative=True, wait=False)
+
+    mover = threading.Thread(target=moves_when_it_waits)
     mover.start()
     made = drive.capture(names, 0.1, 10000, trigger=steadystep.Trigger("reference_moving", before_s=0.01))
     mover.join()

@@ -111,7 +111,7 @@ async def stop_works(client):
     await client.status(lambda now: now["moving"])
     begin = time.monotonic()
     await client.act("stop")
-    found = await client.status(lambda now: not now["moving"], 2)
+    found = await client.status(lambda now: not now["moving"])
     CHECKS.that(found["state"] == "QUICK STOP ACTIVE" and not found["moving"], f"it stops: {found}")
     CHECKS.that(time.monotonic() - begin < 2, "soon")
     await client.act("disable")
@@ -120,7 +120,7 @@ async def stop_works(client):
     await asyncio.sleep(0.15)
     await client.act("stop")
     status, said = await enabling
-    found = await client.status(lambda now: now["state"] == "SWITCH ON DISABLED", 2)
+    found = await client.status(lambda now: now["state"] == "SWITCH ON DISABLED")
     CHECKS.that(found["state"] in ("SWITCH ON DISABLED", "QUICK STOP ACTIVE"), f"an enabling ends: {found} {said}")
     await client.act("disable")
     # what has been aligned in part swings for a while, and the drive wants a rotor at rest
@@ -143,7 +143,7 @@ async def stop_waits_for_nobody(client):
     CHECKS.that(not stopping.done(), "while the transfer is still that program's")
     await stopping
     writer.close()
-    found = await client.status(lambda now: now["state"] != "OPERATION ENABLED", 2)
+    found = await client.status(lambda now: now["state"] != "OPERATION ENABLED")
     CHECKS.that(found["state"] in ("QUICK STOP ACTIVE", "SWITCH ON DISABLED"), f"it stays so: {found}")
     await client.act("disable")
 
@@ -195,9 +195,9 @@ async def what_breaks_is_said(client):
     await client.ask("POST", "/api/knob", {"line": "plant.bus_V = 24"})
     await client.act("reset")
     await client.ask("POST", "/api/knob", {"line": 'command = "power-cycle"'})
-    found = await client.status(lambda now: now["lost"], 5)
+    found = await client.status(lambda now: now["lost"])
     CHECKS.that(found["lost"], f"a lost link is said: {found}")
-    found = await client.status(lambda now: not now["lost"], 8)
+    found = await client.status(lambda now: not now["lost"])
     CHECKS.that(found.get("state") == "SWITCH ON DISABLED", f"and found again: {found}")
 
 

@@ -1,15 +1,18 @@
 """What lets several programs share one drive, by itself: whose turn a transfer is, and a program that does
-not read.
+not read, answers that come late.
 
 usage: share.py SIL    (which it does not need)
 """
 import socket
+import threading
 import time
 
 from operated import steadystep
 from served import Checks
+from steadystep.byte_line import PairedLine
 from steadystep.program_lines import ProgramLine
 from steadystep.sdo_turns import Turns
+from steadystep.share import TURN_S, Share
 
 CHECKS = Checks()
 # Requests and responses, by their first bytes, of each kind of transfer, up to its end.
@@ -76,8 +79,60 @@ def a_program_that_does_not_read_holds_up_nobody():
     listener.close()
 
 
+class Scripted:
+    """A drive that answers nothing but the opening of its channel; the test does."""
+
+    def __init__(self):
+        self.line, outer = PairedLine.two("scripted")
+        threading.Thread(target=lambda: self.line.write(b"V1010\r") if self.heard(b"V") else None).start()
+        self.share = Share(outer)
+        self.heard(b"O")
+
+    def heard(self, begin, seconds=5.0, line=None):
+        """The next text that begins so on a line, the drive's if none is given; b"" if none comes in time."""
+        end, rest = time.monotonic() + seconds, b""
+        while (left := end - time.monotonic()) > 0:
+            *texts, rest = (rest + (line or self.line).read(left)).split(b"\r")
+            found = [text for text in texts if text.startswith(begin)]
+            if found:
+                return found[0]
+        return b""
+
+    def program(self):
+        line = self.share.line()
+        line.write(b"O\r")
+        return line
+
+
+ASKS_TYPE, TYPE = b"t60184000100000000000\r", b"t58184300100092010200\r"
+ASKS_ERRORS, ERRORS = b"t60184001100000000000\r", b"t58184F01100000000000\r"
+GIVES_UP = b"t60188000000000000405\r"
+
+
+def a_late_answer_is_for_nobody(how, gives_up, wait_s):
+    drive = Scripted()
+    first, second = drive.program(), drive.program()
+    first.write(ASKS_TYPE)
+    CHECKS.that(drive.heard(ASKS_TYPE[:-1]) != b"", f"{how}: it is asked")
+    second.write(ASKS_ERRORS)
+    gives_up(first)
+    marker = drive.heard(b"t6018400000", wait_s)
+    CHECKS.that(marker != b"", f"{how}: then for a marker")
+    drive.line.write(TYPE)
+    CHECKS.that(drive.heard(b"t5818", 0.2, second) == b"", f"{how}: the answer that is late is not the next one's")
+    CHECKS.that(drive.heard(ASKS_ERRORS[:-1], 0.2) == b"", f"{how}: which is not asked yet")
+    drive.line.write(b"t581880" + marker[7:13] + b"00000206\r")
+    CHECKS.that(drive.heard(ASKS_ERRORS[:-1]) != b"", f"{how}: behind the marker it is")
+    drive.line.write(ERRORS)
+    CHECKS.that(drive.heard(b"t5818", 5.0, second) == ERRORS[:-1], f"{how}: and gets its answer")
+    drive.share.close()
+
+
 a_transfer_is_one_program_s_to_its_end()
 a_program_that_gives_up_is_not_served_later()
 a_program_that_goes_leaves_no_turn()
 a_program_that_does_not_read_holds_up_nobody()
+a_late_answer_is_for_nobody("given up", lambda program: program.write(GIVES_UP), 1.0)
+a_late_answer_is_for_nobody("gone", lambda program: program.close(), 1.0)
+a_late_answer_is_for_nobody("silent", lambda program: None, TURN_S + 2)
 CHECKS.end()

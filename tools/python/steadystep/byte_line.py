@@ -11,6 +11,7 @@ import serial
 from .errors import LostLink, WrongPort
 
 BAUD = 921600
+LOST_S = 3.0  # of silence, behind which a link is lost; programs on a busy machine stand still for a second or two
 MOST_BYTES = 65536
 PORT_ERRORS = (serial.SerialException, OSError, ValueError, TypeError)  # closed meanwhile, too
 
@@ -69,7 +70,7 @@ class SerialLine(PortLine):
         terminal = place.startswith("/dev/pts/") or os.path.realpath(place).startswith("/dev/pts/")
         try:
             # a pseudo-terminal has no rate, and some refuse to be locked
-            self._port = serial.Serial(place, BAUD, timeout=0, write_timeout=1,
+            self._port = serial.Serial(place, BAUD, timeout=0, write_timeout=LOST_S,
                                        exclusive=None if terminal else True)
         except (serial.SerialException, OSError, ValueError) as error:
             raise WrongPort(f"{place}: {_reason(error)}{_hint(place)}") from None
@@ -97,7 +98,7 @@ class TcpLine(PortLine):
         if scheme != "tcp" or not host or not port.isdecimal() or not 0 < int(port) < 65536:
             raise WrongPort(f"{place}: expected tcp://HOST:PORT, or the name of a serial port")
         try:
-            self._socket = socket.create_connection((host, int(port)), timeout=2)
+            self._socket = socket.create_connection((host, int(port)), timeout=LOST_S)
         except OSError as error:
             raise WrongPort(f"{place}: {_reason(error)}; no drive is served there") from None
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

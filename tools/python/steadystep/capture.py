@@ -7,6 +7,7 @@ import threading
 import time
 from typing import Any, Protocol, Sequence
 
+from .byte_line import LOST_S
 from .dictionary import Signal
 from .errors import LostLink
 from .objects import Objects
@@ -14,7 +15,6 @@ from .settings import Progress, unseen
 
 PERIOD_INDEX, STATUS_INDEX = 0x2301, 0x6041
 PDOS, PDO_BYTES, INVALID = 4, 8, 0x80000000
-SILENCE_S = 1.0
 
 
 @dataclasses.dataclass
@@ -155,9 +155,9 @@ def record(objects: Objects, signals: Sequence[Signal], duration_s: float, rate_
         while (now := time.monotonic()) - begin < duration_s:
             if len(data.samples) > heard:
                 heard_s, heard = now, len(data.samples)
-            elif now - heard_s > SILENCE_S:
+            elif now - heard_s > LOST_S:
                 raise objects.bus.lost or LostLink(f"{objects.bus.channel_info}: no sample has come for "
-                                                   f"{SILENCE_S:g} s")
+                                                   f"{LOST_S:g} s")
             data.ask()
             due = max(due + 1 / rate_Hz, now)
             time.sleep(max(0.0, due - time.monotonic()))

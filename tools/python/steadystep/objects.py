@@ -2,7 +2,6 @@
 import contextlib
 import logging
 import queue
-import struct
 import threading
 import time
 from typing import Any, Callable, Iterator
@@ -11,18 +10,18 @@ import canopen
 from canopen.objectdictionary import ODVariable
 from canopen.sdo.exceptions import SdoAbortedError, SdoError
 
-from .byte_line import ByteLine
+from .byte_line import LOST_S, ByteLine
 from .dictionary import EDS
 from .errors import LostLink, Refused, WrongPort
+from .sdo_marker import AGAIN_S, Markers
 from .text_bus import TextBus
 
 logging.getLogger("canopen").addHandler(logging.NullHandler())  # what it says is raised here
 
 OUT_OF_RANGE, WRONG_STATE, STORE_FAILED = 0x06090030, 0x08000022, 0x06060000
-RESPONSE_S, TRIES = 0.5, 1
-LATE_S = 2.0  # of a response behind an abort
-UPLOAD, UPLOADED = 0x40, 0x43  # command bytes of CiA 301, of four bytes
-PATIENCE_S, SILENCE_S = 10.0, 0.4  # with a server that serves another program; of a line that is dead
+ANSWER_S, TRIES = LOST_S - AGAIN_S, 1  # behind which a request is given up; the rest of the time is for finding out why
+PATIENCE_S = 10.0  # with a server that serves another program
+END = bytes([0x80, 0, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF])  # ends what waits for a response when there will be none
 
 Number = bool | int | float | str
 
@@ -52,8 +51,11 @@ class Objects:
         self.network.add_node(self.node)
         self.network.NOTIFIER_CYCLE = 0.1  # closing waits for so long
         self.network.connect()
-        self.node.sdo.RESPONSE_TIMEOUT, self.node.sdo.MAX_RETRIES = RESPONSE_S, TRIES
+        self.node.sdo.RESPONSE_TIMEOUT, self.node.sdo.MAX_RETRIES = ANSWER_S, TRIES
+        self.bus.on_end = lambda: self.node.sdo.responses.put(END)
         self._lock = threading.RLock()
+        self._markers, self._begun_s = Markers(), 0.0
+        self._is_late = False  # an answer to what has been given up may come yet
         try:
             self.read(0x1000)
         except LostLink:
@@ -80,14 +82,14 @@ class Objects:
         self._asked(lambda: setattr(self._variable(index, sub), "raw", value))
 
     def _asked(self, work: Callable[[], Any]) -> Any:
-        """While others are heard, one that gets no answer waits for its turn."""
+        """Anew, if the request or its answer was lost on a line that is alive."""
         end = time.monotonic() + PATIENCE_S
         while True:
             try:
                 with self.transfer():
                     return work()
             except NoAnswer:
-                if time.monotonic() > end or time.monotonic() - self.bus.heard_s > SILENCE_S:
+                if time.monotonic() > end:
                     raise
 
     def send_controlword(self, word: int) -> None:
@@ -98,31 +100,56 @@ class Objects:
     def transfer(self) -> Iterator[None]:
         """Raises LostLink, OutOfRange or Refused for what python-canopen does."""
         with self._lock:
+            self._pass_what_is_late()
+            self._begun_s = time.monotonic()
             try:
                 yield
-            except KeyboardInterrupt:
-                self._give_up()
-                raise
             except SdoError as error:
                 if _hides_an_interrupt(error):
                     self._give_up()
                     raise KeyboardInterrupt from None
-                if isinstance(error, SdoAbortedError):
+                if isinstance(error, SdoAbortedError) and not self._is_over:
                     raise self._refusal(error) from None
+                self._is_late = True
                 raise self._loss(str(error)) from None
+            except BaseException:
+                self._give_up()
+                raise
 
     def _give_up(self) -> None:
-        """What was asked is answered yet, perhaps, and would pass for the response to the next request. So a request of its own
-        is behind it: with its response all that came before has come."""
-        if self.bus.lost:
-            return
-        sdo, end = self.node.sdo, time.monotonic() + LATE_S
+        self._is_late = True
+        self.node.sdo.abort()
+
+    @property
+    def _is_over(self) -> bool:
+        return self.bus.lost is not None or self.bus.restarted
+
+    def _pass_what_is_late(self) -> None:
+        """With the answer to a marker it has come. While others are heard, the marker waits for its turn."""
+        begin = time.monotonic()
+        while self._is_late and not self._is_over:
+            self._is_late = not self._is_marker_answered()
+            if self._is_over:
+                break
+            now = time.monotonic()
+            silent_s = now - max(self._begun_s, self.bus.heard_s.get(self.number, 0.0))
+            if self._is_late and (silent_s >= LOST_S or now - begin > PATIENCE_S):
+                raise LostLink(f"{self.bus.channel_info}: the drive does not answer any more")
+        if self._is_over:
+            raise self._loss("")
+
+    def _is_marker_answered(self) -> bool:
+        sdo = self.node.sdo
         sdo.abort()
-        asked = struct.pack("<BHB4x", UPLOAD, 0x1000, 0)
-        sdo.send_request(asked)
-        with contextlib.suppress(queue.Empty):
-            while sdo.responses.get(timeout=max(end - time.monotonic(), 0.0))[:4] != bytes([UPLOADED]) + asked[1:4]:
-                pass
+        sdo.send_request(self._markers.request())
+        end = time.monotonic() + AGAIN_S
+        while not self._is_over:
+            try:
+                if self._markers.is_answered_by(sdo.responses.get(timeout=max(end - time.monotonic(), 0.0))):
+                    return True
+            except queue.Empty:
+                return False
+        return False
 
     def _refusal(self, error: SdoAbortedError) -> Refused:
         if error.code == OUT_OF_RANGE:

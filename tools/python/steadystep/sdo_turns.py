@@ -3,6 +3,8 @@ import collections
 import time
 from typing import Generic, TypeVar
 
+from .sdo_marker import Markers
+
 ABORT, BLOCK_END = 0x80, 0xA1
 BLOCKS = BLOCK_DOWNLOAD, BLOCK_UPLOAD = 6, 5  # of a request's first byte, the upper three bits
 
@@ -16,18 +18,24 @@ class Turns(Generic[Client]):
         self.owner: Client | None = None
         self.waiting: collections.deque[tuple[Client, bytes]] = collections.deque()
         self.heard_s = 0.0
+        self.markers = Markers()
+        self.is_late = False  # an answer to what its client has given up may come yet, and is for nobody
         self._request = 0
         self._block = 0
 
     def take(self, client: Client, request: int) -> bool:
-        """false: another's turn."""
-        if self.owner not in (None, client):
+        """false: another's turn, or nobody's yet."""
+        if self.is_late or self.owner not in (None, client):
             return False
+        is_begun = self.owner is not None
         if self.owner is None or (self._block == 0 and request >> 5 in BLOCKS):
             self._block = request >> 5 if request >> 5 in BLOCKS else 0
         self.owner, self._request, self.heard_s = client, request, time.monotonic()
         # what is sent in a block begins with a number, which may look like an end
-        if request == ABORT or (self._block == BLOCK_UPLOAD and request == BLOCK_END):
+        if request == ABORT:
+            self.is_late = is_begun
+            self._end()
+        elif self._block == BLOCK_UPLOAD and request == BLOCK_END:
             self._end()
         return True
 
@@ -61,7 +69,17 @@ class Turns(Generic[Client]):
     def _end(self) -> None:
         self.owner, self._block = None, 0
 
+    def mark(self) -> bytes:
+        """A request whose answer is behind what is late."""
+        self.heard_s = time.monotonic()
+        return self.markers.request()
+
+    def passes(self, response: bytes) -> None:
+        """One that is for nobody."""
+        self.is_late = not self.markers.is_answered_by(response)
+
     def leave(self, client: Client) -> None:
         if self.owner is client:
+            self.is_late = True
             self._end()
         self.waiting = collections.deque(one for one in self.waiting if one[0] is not client)

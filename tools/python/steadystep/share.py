@@ -8,14 +8,16 @@ import socket
 import threading
 import time
 
-from .byte_line import ByteLine, PairedLine
+from .byte_line import LOST_S, ByteLine, PairedLine
 from .errors import LostLink, WrongPort
+from .objects import ANSWER_S
 from .program_lines import ProgramLine, TerminalLine
-from .sdo_turns import Turns
-from .text_bus import Pieces, TextBus
+from .sdo_marker import AGAIN_S
+from .sdo_turns import ABORT, Turns
+from .text_bus import NODE_BITS, Pieces, TextBus, frame_of
 
-SILENCE_S = 0.6  # behind which a transfer is over
-REQUEST, RESPONSE, HEARTBEAT, NODE_BITS = 0x600, 0x580, 0x700, 0x07F
+TURN_S = (ANSWER_S + LOST_S) / 2  # of silence ends a turn: a program has given up by then, and who waits has not yet
+REQUEST, RESPONSE, HEARTBEAT = 0x600, 0x580, 0x700
 NMT_STATES = {1: 0x05, 2: 0x04, 0x80: 0x7F}  # by the command that brings about each
 ANSWERS = {b"V": b"V1010\r", b"N": b"N0001\r", b"F": b"F00\r"}
 
@@ -115,8 +117,9 @@ class Share:
             except LostLink:
                 with self._lock:
                     client.open = False
-                    for turns in self._turns.values():
+                    for node, turns in self._turns.items():
                         turns.leave(client)
+                        self._next(node)
                     if not isinstance(client.line, TerminalLine):
                         self._clients.remove(client)
                         return
@@ -156,11 +159,12 @@ class Share:
                 if not turns.take(client, request):
                     turns.wait(client, request, text)
                     return
-                self._next(turns)
             for other in self._clients:
                 if other is not client and other.open:
                     other.send(text + b"\r")
             self._to_drive(text)
+            if number & ~NODE_BITS == REQUEST:
+                self._next(number & NODE_BITS)
 
     def _note_state(self, command: int, text: bytes) -> None:
         node = int(text[7:9] or b"0", 16)
@@ -174,9 +178,16 @@ class Share:
         except LostLink as error:
             self._lose(error)
 
-    def _next(self, turns: Turns[Client]) -> None:
-        """The oldest of those that wait, now that it is nobody's turn."""
-        if turns.owner is None and turns.waiting:
+    def _send_request(self, node: int, data: bytes) -> None:
+        self._to_drive(b"t%03X8%s" % (REQUEST + node, data.hex().upper().encode()))
+
+    def _next(self, node: int) -> None:
+        """The oldest of those that wait, now that it is nobody's turn, and nothing is late."""
+        turns = self._turns[node]
+        if turns.is_late:
+            self._send_request(node, bytes([ABORT]) + bytes(7))  # a block takes no request but that
+            self._send_request(node, turns.mark())
+        elif turns.owner is None and turns.waiting:
             client, text = turns.waiting.popleft()
             self._forward(client, text)
 
@@ -191,10 +202,16 @@ class Share:
             except LostLink as error:
                 self._lose(error)
             with self._lock:
-                for turns in self._turns.values():
-                    if turns.owner and time.monotonic() - turns.heard_s > SILENCE_S:
-                        turns.leave(turns.owner)
-                        self._next(turns)
+                for node, turns in list(self._turns.items()):
+                    self._end_what_is_silent(node, turns)
+
+    def _end_what_is_silent(self, node: int, turns: Turns[Client]) -> None:
+        silent_s = time.monotonic() - turns.heard_s
+        if turns.owner and silent_s > TURN_S:
+            turns.leave(turns.owner)
+            self._next(node)
+        elif turns.is_late and silent_s > AGAIN_S:
+            self._next(node)
 
     def _deliver(self, text: bytes, ending: bytes) -> None:
         if ending == b"\n" and text.startswith(b"steadystep "):
@@ -203,21 +220,26 @@ class Share:
             self._asks_console.send(text + b"\n")
             self._asks_console = None
             self._line.write(b"O\r")
-        if ending != b"\r" or text[:1] != b"t" or len(text) < 5:
+        frame = frame_of(text) if ending == b"\r" else None
+        if frame is None:
             return
-        number = int(text[1:4], 16)
-        if number & ~NODE_BITS == HEARTBEAT:
-            state = int(text[5:7] or b"0", 16)
-            self._nmt[number & NODE_BITS] = state or NMT_STATES[0x80]  # 0: it has started
+        node, data = frame.arbitration_id & NODE_BITS, bytes(frame.data)
+        kind = frame.arbitration_id & ~NODE_BITS
+        if kind == HEARTBEAT and data:
+            self._nmt[node] = data[0] or NMT_STATES[0x80]  # 0: it has started
         with self._lock:
-            turns = self._turns[number & NODE_BITS] if number & ~NODE_BITS == RESPONSE else None
-            listeners = [turns.owner] if turns else self._clients
+            if kind == RESPONSE and self._turns[node].is_late:
+                self._turns[node].passes(data)
+                if not self._turns[node].is_late:
+                    self._next(node)
+                return
+            listeners = [self._turns[node].owner] if kind == RESPONSE else self._clients
             for client in listeners:
                 if client and client.open:
                     client.send(text + b"\r")
-            if turns:
-                turns.hear(int(text[5:7] or b"0", 16))
-                self._next(turns)
+            if kind == RESPONSE and data:
+                self._turns[node].hear(data[0])
+                self._next(node)
 
     def _lose(self, error: LostLink) -> None:
         """Programs see their line end."""

@@ -2,14 +2,14 @@
 import collections
 import threading
 import time
-from typing import Any
+from typing import Any, Callable
 
 import can
 
-from .byte_line import ByteLine
+from .byte_line import LOST_S, ByteLine
 from .errors import LostLink, WrongPort
 
-ANSWER_S = 1.0
+NODE_BITS = 0x07F
 ENDS = b"\r\n\a"
 
 
@@ -58,7 +58,8 @@ class TextBus(can.BusABC):
         self._answer = ""
         self.lost: LostLink | None = None
         self.restarted = False
-        self.heard_s = time.monotonic()  # the last frame
+        self.on_end: Callable[[], object] = lambda: None  # of either
+        self.heard_s: dict[int, float] = {}  # the last frame of each node, or to it
         super().__init__(channel=line.place, **kwargs)
         self.channel_info = line.place
         try:
@@ -70,7 +71,7 @@ class TextBus(can.BusABC):
 
     def _ask(self, command: bytes, answers: tuple[bytes, ...]) -> bool:
         self._line.write(command)
-        end = time.monotonic() + ANSWER_S
+        end = time.monotonic() + LOST_S
         while time.monotonic() < end:
             for text, ending in self._pieces.of(self._line.read(max(0.0, end - time.monotonic()))):
                 if ending == b"\r" and text.startswith(answers):
@@ -99,17 +100,18 @@ class TextBus(can.BusABC):
             try:
                 self._take(self._line.read(left))
             except LostLink as error:
-                self.lost = error
+                self._end(error)
         return self._frames.popleft(), False
 
     def _take(self, data: bytes) -> None:
         for text, ending in self._pieces.of(data):
             frame = frame_of(text) if ending == b"\r" else None
             if frame is not None:
-                self.heard_s = time.monotonic()
+                self.heard_s[frame.arbitration_id & NODE_BITS] = time.monotonic()
                 self._frames.append(frame)
             elif ending == b"\n" and text.startswith(b"steadystep "):
                 self.restarted = True  # it announces itself on its console: the channel is closed
+                self.on_end()
             elif ending == b"\n" and text.startswith((b"ok", b"error:")):
                 with self._said:
                     self._answer = text.decode(errors="replace")
@@ -121,7 +123,7 @@ class TextBus(can.BusABC):
         with self._lock:
             self._line.write(b"C\r" + line.encode() + b"\n")
         with self._said:
-            self._said.wait_for(lambda: self._answer, ANSWER_S)
+            self._said.wait_for(lambda: self._answer, LOST_S)
         with self._lock:
             self._line.write(b"O\r")
         return self._answer
@@ -131,7 +133,11 @@ class TextBus(can.BusABC):
             with self._lock:
                 self._line.write(frame_text(msg))
         except LostLink as error:
-            self.lost = error
+            self._end(error)
+
+    def _end(self, error: LostLink) -> None:
+        self.lost = error
+        self.on_end()
 
     def shutdown(self) -> None:
         """The drive goes on with what it does."""
