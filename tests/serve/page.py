@@ -106,6 +106,37 @@ async def it_is_operated(client):
         CHECKS.that(status == 409 and said in answer["error"], f"{action} {values}: {status} {answer}")
 
 
+async def it_is_homed(client):
+    """On a stop, and where it stands; why not, in words."""
+    _, said = await client.ask("POST", "/api/knob", {"line": "state"})
+    stop = float(said["said"].split("theta_rad=")[1].split()[0]) + 0.5
+    await client.ask("POST", "/api/knob", {"line": f"stops = true, stop_high_rad = {stop}"})
+    homing = asyncio.create_task(client.act("home", method="stop-up", position_rad=2.0))
+    found = await client.status(lambda now: now["doing"])
+    CHECKS.that(found["doing"] == "homing", f"that it homes is shown: {found['doing']}")
+    await homing
+    found = await client.status(lambda now: now["reference"] == "referenced")
+    off = found["position_rad"] - 2.0 - (float(found["truth"]["theta_rad"]) - stop)
+    CHECKS.that(abs(off) < 0.01 and found["reference"] == "referenced", f"the stop is at 2 rad: {off}")
+    await client.ask("POST", "/api/knob", {"line": "stops = false"})
+    for values, said in (({"method": "index-up"}, "no encoder with an index"), ({"method": "up"}, "one of here, stop-down"),
+                         ({"method": "stop-up", "travel_rad": 0.3}, "within its travel nothing bore"),
+                         ({"method": "here", "position_rad": "a"}, "position_rad: expected a number")):
+        status, answer = await client.ask("POST", "/api/act/home", {"position_rad": 0, **values})
+        CHECKS.that(status == 409 and said in answer["error"], f"home {values}: {status} {answer}")
+    homing = asyncio.create_task(client.ask("POST", "/api/act/home", {"method": "stop-up", "position_rad": 0, "travel_rad": 600}))
+    await client.status(lambda now: now["moving"] and now["doing"] == "homing")
+    await client.act("stop")
+    status, answer = await homing
+    CHECKS.that(status == 409 and answer["error"] == "stopped", f"a stop ends it: {status} {answer}")
+    found = await client.status(lambda now: not now["moving"])
+    CHECKS.that(found["state"] == "QUICK STOP ACTIVE" and not found["moving"], f"and the rotor is held: {found}")
+    await client.act("enable")
+    await client.act("home", method="here", position_rad=0.5)
+    found = await client.status(lambda now: abs(now["position_rad"] - 0.5) < 0.01)
+    CHECKS.that(abs(found["position_rad"] - 0.5) < 0.01, f"here is 0.5: {found}")
+
+
 async def stop_works(client):
     await client.act("velocity", speed_rad_s=20)
     await client.status(lambda now: now["moving"])
@@ -206,6 +237,7 @@ async def main(page):
         client = Client(page, session)
         await who_is_let_in(client)
         await it_is_operated(client)
+        await it_is_homed(client)
         await stop_works(client)
         await stop_waits_for_nobody(client)
         await settings_go_round(client)

@@ -39,6 +39,45 @@ def it_is_operated_by_keyboard(tab):
     expect(tab.locator("#state")).to_have_text("ready")
 
 
+def it_is_homed_by_keyboard(tab):
+    """On a stop, on none, and until STOP: what comes of it stands beside the button."""
+    view(tab, "simulation")
+    truth = float(tab.locator("#truth").text_content().split()[0])
+    tab.fill("#knob input", f"stops = true, stop_high_rad = {truth + 0.5}")
+    tab.press("#knob input", "Enter")
+    expect(tab.locator("#knob-said")).to_contain_text("ok time_s=")
+    view(tab, "operate")
+    home, said = tab.locator("#home"), tab.locator("#home-said")
+    CHECKS.that(not home.locator("[name=travel_rad]").is_visible(), "here has no travel")
+    home.locator("select").focus()
+    tab.keyboard.type("on the stop above")
+    expect(home.locator("select")).to_have_value("stop-up")
+    tab.keyboard.press("Tab")
+    tab.keyboard.type("2")
+    tab.keyboard.press("Tab")
+    CHECKS.that(home.locator("[name=speed_rad_s]").evaluate("field => field === document.activeElement"), "the next field is the speed")
+    tab.keyboard.press("Enter")
+    expect(said).to_have_text("homing …")
+    expect(tab.locator("#state-words")).to_have_text("homing …")
+    expect(home.locator("button")).to_be_disabled()
+    expect(said).to_have_text("homed: on the stop above, is at 2 rad")
+    expect(home.locator("button")).to_be_enabled()
+    expect(tab.locator("#position")).to_contain_text("1.9")
+    tab.evaluate("""document.querySelector("#knob input").value = "stops = false";
+        document.querySelector("#knob button").click()""")
+    home.locator("[name=travel_rad]").fill("0.3")
+    home.locator("[name=travel_rad]").press("Enter")
+    expect(said).to_contain_text("within its travel nothing bore the torque")
+    home.locator("[name=travel_rad]").fill("600")
+    home.locator("button").press("Enter")
+    expect(tab.locator("#state")).to_have_text("moving")
+    tab.click("#stop")
+    expect(said).to_have_text("stopped")
+    expect(tab.locator("#state")).to_have_text("stopped")
+    tab.click("#operate [data-act=enable]")
+    expect(tab.locator("#state")).to_have_text("ready")
+
+
 def is_busy():
     """By what else the machine has to do."""
     return os.getloadavg()[0] > (os.cpu_count() or 1)
@@ -85,6 +124,8 @@ def a_capture_is_zoomed(tab):
     tab.fill("#capture [name=duration_s]", "1")
     tab.click("#capture button")
     expect(tab.locator("#capture-said")).to_contain_text("samples")
+    # with the move of the other view
+    tab.wait_for_function("Math.abs(parseFloat(document.querySelector('#position').textContent) - 1.5) < 0.02")
     CHECKS.that(tab.locator("#captured canvas").count() == 2, "a plot for each unit")
     before = tab.locator("#captured canvas").first.screenshot()
     tab.click("[data-zoom=in]")
@@ -147,6 +188,9 @@ def the_guide_leads_to_a_motion(tab):
 
 
 def it_fits(tab):
+    """With all of its fields."""
+    view(tab, "operate")
+    tab.select_option("#home select", "stop-up")
     for size in (WIDE, NARROW):
         tab.set_viewport_size(size)
         for name in VIEWS:
@@ -163,6 +207,7 @@ PAGE, REMARKS = Page(), []
 try:
     with opened(PAGE.address, REMARKS) as TAB:
         it_is_operated_by_keyboard(TAB)
+        it_is_homed_by_keyboard(TAB)
         traces_run_smoothly(TAB)
         a_capture_is_zoomed(TAB)
         settings_are_found_and_set(TAB)

@@ -128,7 +128,7 @@ class Operation:
     # ---- what it does ----
 
     def stop(self) -> None:
-        """At once, whatever else is going on; an enabling ends with the bridge off."""
+        """At once, whatever else is going on; an enabling ends with the bridge off, homing with the rotor held."""
         self._stopping.set()
         self.drive.quick_stop()
 
@@ -154,6 +154,10 @@ class Operation:
                 acceleration_rad_s2=_optional(values, "acceleration_rad_s2")),
             "velocity": lambda drive: drive.velocity(_number(values, "speed_rad_s")),
             "set-position": lambda drive: drive.set_position(_number(values, "position_rad")),
+            "home": lambda drive: drive.home(
+                str(values.get("method")), _number(values, "position_rad"), torque_share=_optional(values, "torque_share"),
+                travel_rad=_optional(values, "travel_rad"), speed_rad_s=_optional(values, "speed_rad_s"),
+                progress=self._progress),
             "motor": lambda drive: self._take_motor(drive, str(values.get("motor"))),
         }
         if action not in actions:
@@ -163,9 +167,14 @@ class Operation:
         try:
             self._stopping.clear()
             actions[action](self.drive)
-        except Stopped:
-            self.drive.disable()  # no matter how far it has come
-            raise
+        except SteadystepError:
+            if not self._stopping.is_set():
+                raise
+            if action == "home":
+                self.drive.quick_stop()  # once more: homing has ended with a word of its own
+            else:
+                self.drive.disable()  # no matter how far it has come
+            raise Stopped("stopped") from None
         finally:
             self._doing = ""
             self._acting.release()
@@ -201,6 +210,8 @@ class Operation:
 
 def _number(values: Mapping[str, Any], name: str) -> float:
     value = values.get(name)
+    if value is None:
+        raise Refused(f"{name} is missing")
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise Refused(f"{name}: expected a number, got {value!r}")
     return float(value)

@@ -66,7 +66,33 @@ function moveOf(form) {
   });
 }
 
+// By the method, which of its values count; what is left empty stays as the drive has it.
+function prepareHoming() {
+  const form = one("form#home"), said = one("#home-said"), button = one("button", form);
+  const method = one("select", form);
+  method.onchange = () => all("[data-of]", form).forEach((label) => {
+    label.hidden = !label.dataset.of.split(" ").includes(method.value.split("-")[0]);
+  });
+  method.onchange();
+  form.onsubmit = async (event) => {
+    event.preventDefault();
+    button.disabled = true;
+    said.textContent = "homing …";
+    try {
+      const { torque_percent, ...values } = numbers(form);
+      if (torque_percent !== undefined) values.torque_share = torque_percent / 100;
+      await post("/api/act/home", { position_rad: 0, ...values, method: method.value });
+      said.textContent = `homed: ${method.selectedOptions[0].text}, is at ${shown(values.position_rad ?? 0)} rad`;
+    } catch (error) {
+      said.textContent = error.message;
+    } finally {
+      button.disabled = false;
+    }
+  };
+}
+
 function prepareControls() {
+  prepareHoming();
   one("#stop").onclick = () => act("stop");
   all("[data-act]").forEach((button) => {
     button.onclick = async () => {
@@ -126,7 +152,8 @@ function showCapturing(share) {
 
 const turn = (line) => tried(async () => {
   const { said } = await post("/api/knob", { line });
-  one("#knob-said").textContent = `${line}\n${said}\n\n${one("#knob-said").textContent}`.slice(0, 4000);
+  page.knobSaid = `${line}\n${said}\n\n${page.knobSaid ?? ""}`.slice(0, 4000);
+  one("#knob-said").textContent = page.knobSaid;
 });
 
 function prepareSimulation() {

@@ -85,11 +85,11 @@ export async function tried(work) {
   }
 }
 
-// The numbers of a form by their names; what is empty is left out. Throws what is no number.
+// The numbers of a form by their names; what is empty or hidden is left out. Throws what is no number.
 export function numbers(form) {
   const values = {};
   for (const input of all("input:not([type=checkbox])", form)) {
-    if (input.value.trim() === "") continue;
+    if (input.value.trim() === "" || input.closest("label")?.hidden) continue;
     const number = Number(input.value.replace(",", "."));
     if (!Number.isFinite(number)) {
       input.focus();
