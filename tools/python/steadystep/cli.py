@@ -9,7 +9,7 @@ import time
 from typing import Callable, Sequence
 
 from .capture_in_drive import Trigger
-from .cli_words import PORT, parser
+from .cli_words import PORT, command_name, parser
 from .dictionary import Value, dictionary
 from .drive import Drive
 from .errors import DriveFault, LostLink, NotHomed, Refused, SteadystepError, TimedOut, WrongPort, WrongVersion
@@ -235,7 +235,7 @@ def simulate(arguments: Arguments) -> int:
     command = [find_simulator(arguments.simulator), "serve", "--link", arguments.link, "--knobs-link",
                arguments.link + "-knobs", *(["--set", f"motor={arguments.motor}"] if arguments.motor else []),
                *arguments.more]
-    print(f"{' '.join(command)}\nin another terminal: steadystep --port {arguments.link} move 1.5 --enable", flush=True)
+    print(f"{' '.join(command)}\nin another terminal: {command_name()} --port {arguments.link} move 1.5 --enable", flush=True)
     try:
         return subprocess.run(command, check=False).returncode
     except OSError as error:

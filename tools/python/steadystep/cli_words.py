@@ -1,5 +1,6 @@
 """The words of the command `steadystep`."""
 import argparse
+import os
 from typing import TYPE_CHECKING
 
 from .axis import HOMING_METHODS
@@ -7,7 +8,12 @@ from .axis import HOMING_METHODS
 if TYPE_CHECKING:
     Commands = argparse._SubParsersAction[argparse.ArgumentParser]
 
-PORT = "STEADYSTEP_PORT"
+PORT, COMMAND = "STEADYSTEP_PORT", "STEADYSTEP_COMMAND"
+
+
+def command_name() -> str:
+    """As it can be typed again: tools/steadystep says how it has been called."""
+    return os.environ.get(COMMAND, "steadystep")
 
 
 def _add(commands: "Commands", name: str, about: str) -> argparse.ArgumentParser:

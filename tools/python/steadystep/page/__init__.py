@@ -7,6 +7,7 @@ import webbrowser
 
 from aiohttp import web
 
+from ..cli_words import command_name
 from ..errors import SteadystepError, WrongPort
 from ..simulator import Knobs, Simulated
 from .operation import Operation
@@ -24,7 +25,7 @@ async def _serve(operation: Operation, arguments: argparse.Namespace) -> None:
         raise WrongPort(f"127.0.0.1:{arguments.http}: {error.strerror}") from None
     address = f"http://127.0.0.1:{runner.addresses[0][1]}/#{token}"
     shared = [*([arguments.link] if arguments.link else []), f"tcp://127.0.0.1:{operation.tcp_port}"]
-    print(f"page: {address}\nanother program: steadystep --port {shared[0]} move 1.5 --enable", flush=True)
+    print(f"page: {address}\nanother program: {command_name()} --port {shared[0]} move 1.5 --enable", flush=True)
     if arguments.open:
         webbrowser.open(address)
     ended = asyncio.Event()
