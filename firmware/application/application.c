@@ -234,6 +234,7 @@ CALLED_FROM_OUTSIDE void application_background(struct application *application)
     standing_rotor_background(&application->drive);
     thermal_watch_background(&application->drive);
     rotor_watch_background(&application->drive);
+    lead_watch_background(&application->drive);
     belt_watch_background(&application->drive);
     torque_constant_background(&application->drive);
     stop_if_unheard(application);

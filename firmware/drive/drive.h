@@ -27,6 +27,7 @@
 #include "firmware/drive/planned_end.h"
 #include "firmware/drive/planner.h"
 #include "firmware/drive/protection.h"
+#include "firmware/drive/lead_watch.h"
 #include "firmware/drive/rotor_watch.h"
 #include "firmware/drive/standing_rotor.h"
 #include "firmware/drive/thermal_watch.h"
@@ -210,6 +211,7 @@ struct drive {
     struct idle_current_params idle_params;
     struct thermal_watch thermal;
     struct rotor_watch rotor_watch;
+    struct lead_watch lead_watch;
     struct standing_rotor standing;
     uint32_t fed_in; /* period in which the watchdog was fed */
     struct drive_settings settings;

@@ -88,8 +88,8 @@ static num_t of_a_block(const struct drive *drive, num_t sum)
 
 static enum synchronism judge_load_angle(struct drive *drive)
 {
-    const enum synchronism verdict = synchronism_monitor_judge_load_angle(
-        &drive->synchronism.monitor, &drive->synchronism.params);
+    const enum synchronism verdict =
+        synchronism_monitor_judge_load_angle(&drive->synchronism.monitor);
 
     drive->synchronism.step = TAKE;
     if (drive->supervision.period - drive->synchronism.block_began <
@@ -136,8 +136,7 @@ static enum synchronism judge_pull_out(struct drive *drive, const struct rotor *
         return SYNCHRONISM_SURE;
     }
     return synchronism_monitor_judge_pull_out(
-        &drive->synchronism.monitor, &drive->synchronism.params,
-        error_of(drive, rotor) + turns_from_angle(drive->hold.offset));
+        &drive->synchronism.monitor, error_of(drive, rotor) + turns_from_angle(drive->hold.offset));
 }
 
 /* A hold whose rotor has pulled out drives it on: the position law catches it, if it may. */
@@ -165,21 +164,22 @@ static void take(struct drive *drive)
 __attribute__((noinline)) static void watch_hold(struct drive *drive)
 {
     if (drive->hold.active) {
+        invariant_ekf_bear(&drive->estimator.invariant_ekf, drive->params.hold.current_limit);
         invariant_ekf_watch_hold(&drive->estimator.invariant_ekf,
                                  &drive->params.estimator.invariant_ekf, drive->hold.leads);
     }
 }
 
+_Static_assert((int)SYNCHRONISM_DOUBTFUL == (int)DRIVE_SYNCHRONISM_DOUBTFUL &&
+                   (int)SYNCHRONISM_STALLED == (int)DRIVE_SYNCHRONISM_STALLED &&
+                   (int)SYNCHRONISM_LOST == (int)DRIVE_SYNCHRONISM_LOST,
+               "a verdict is shown as it is");
+
 /* With the policy `warn` the worst stays on show: a loss until the bridge is switched on anew, the
    rest until the estimate is sure again. */
 enum drive_fault synchronism_act(struct drive *drive, enum synchronism verdict)
 {
-    static const enum drive_synchronism shown[] = {
-        [SYNCHRONISM_SURE] = DRIVE_SYNCHRONISM_SURE,
-        [SYNCHRONISM_DOUBTFUL] = DRIVE_SYNCHRONISM_DOUBTFUL,
-        [SYNCHRONISM_STALLED] = DRIVE_SYNCHRONISM_STALLED,
-        [SYNCHRONISM_LOST] = DRIVE_SYNCHRONISM_LOST,
-    };
+    const enum drive_synchronism shown = (enum drive_synchronism)verdict;
 
     if (drive->synchronism.step == FOLLOW) {
         return DRIVE_FAULT_FOLLOWING_ERROR;
@@ -188,8 +188,8 @@ enum drive_fault synchronism_act(struct drive *drive, enum synchronism verdict)
         verdict == SYNCHRONISM_STALLED) {
         release(drive);
     }
-    if (shown[verdict] > drive->synchronism.shown) {
-        drive->synchronism.shown = shown[verdict];
+    if (shown > drive->synchronism.shown) {
+        drive->synchronism.shown = shown;
     }
     if (verdict > SYNCHRONISM_DOUBTFUL) {
         axis_note_uncertain(drive);

@@ -170,6 +170,13 @@ __attribute__((noinline)) void invariant_ekf_follow_step(struct invariant_ekf *e
 void invariant_ekf_watch_hold(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
                               bool leads);
 
+/* The load that a hold returns to is no more than what its q current bears: beyond that nothing
+   anchors the estimate, and that of a rotor which rests walks away. */
+static inline void invariant_ekf_bear(struct invariant_ekf *ekf, num_t most)
+{
+    ekf->settled_load = num_clamp(ekf->settled_load, -most, most);
+}
+
 /* At S(k): corrects what was predicted for it, and predicts S(k+1). The default path does not come
    here: invariant_ekf_step.h. */
 __attribute__((noinline)) struct passage

@@ -2,6 +2,27 @@
 
 #include "firmware/design/elementary.h"
 
+/* With a twentieth of the rated torque left a rotor that can move is faster than the bound within
+   the time that it takes to be called standing. */
+#define STANDING_S 14.4e-3
+static const double standing_torque = 0.05;
+
+/* Times of the rows below, in blocks. */
+#define BLOCKS(time_s) ((int)((time_s) / SYNCHRONISM_BLOCK_S + 0.5))
+
+enum {
+    STANDING_BLOCKS = BLOCKS(STANDING_S),
+    /* Moves that ask for more than the motor has are caught up with in half of this. */
+    BEHIND_BLOCKS = BLOCKS(0.1),
+    /* Twice what quick changes of load take to pass. */
+    OPPOSITE_BLOCKS = BLOCKS(6.4e-3),
+    PULL_OUT_BLOCKS = BLOCKS(3.2e-3),
+    /* What motion has left unknown of the resistance is found in a hold within five times 22 ms. */
+    SETTLED_BLOCKS = BLOCKS(0.11),
+    WARNING_BLOCKS = BLOCKS(5e-3),
+    DOUBTFUL_BLOCKS = BLOCKS(20e-3)
+};
+
 static num_t quarter(num_t x)
 {
     return num_half(num_half(x));
@@ -13,14 +34,13 @@ static num_t eighth(num_t x)
 }
 
 /* So many blocks of an unbroken row. */
-static enum synchronism stalled_after(struct synchronism_monitor *monitor,
-                                      const struct synchronism_monitor_params *params,
-                                      uint32_t blocks_in_row, uint32_t limit)
+static enum synchronism stalled_after(struct synchronism_monitor *monitor, uint32_t blocks_in_row,
+                                      uint32_t limit)
 {
     if (blocks_in_row < limit) {
         return SYNCHRONISM_SURE;
     }
-    monitor->doubtful = params->doubtful_blocks;
+    monitor->doubtful = DOUBTFUL_BLOCKS;
     return SYNCHRONISM_STALLED;
 }
 
@@ -43,42 +63,18 @@ static const double settled_floor = 0.06 / 24.0;
    0.9 of what its hold bears leaves 0.17. */
 static const double displaced_flux = 0.24;
 
-/* What motion has left unknown of the resistance is found in a hold within five times 22 ms. */
-static const double settled_s = 0.11;
-
 /* Share of the resistance: what its adaptation leaves in a hold under load; all of it, where the
    bridge's switches and a winding of any temperature come on top of the motor's own. */
 static const double resistance_error_known = 0.05;
 static const double resistance_error_unknown = 0.75;
 
-/* With a twentieth of the rated torque left a rotor that can move is faster than the bound within
-   the time that it takes to be called standing. */
-static const double standing_s = 14.4e-3;
-static const double standing_torque = 0.05;
-
-/* Moves that ask for more than the motor has are caught up with in half of this. */
-static const double behind_s = 0.1;
-
-/* Twice what quick changes of load take to pass. */
-static const double opposite_s = 6.4e-3;
-
 static const double pull_out_load = 1.6; /* of the rated torque */
-static const double pull_out_s = 3.2e-3;
-static const double warning_s = 5e-3;
-static const double doubtful_s = 20e-3;
 
 static uint32_t block_periods(double period_s)
 {
     const double count = SYNCHRONISM_BLOCK_S / period_s;
 
     return count > SYNCHRONISM_STEPS ? (uint32_t)(count + 0.5) : SYNCHRONISM_STEPS;
-}
-
-__attribute__((noinline)) static uint32_t blocks(double time_s, double block_s)
-{
-    const double count = time_s / block_s;
-
-    return count > 1.0 ? (uint32_t)(count + 0.5) : 1u;
 }
 
 /* c over the periods of a block, for a share k_i of the innovation that is corrected in each. */
@@ -103,7 +99,7 @@ synchronism_monitor_design(const struct synchronism_monitor_task *task)
     const double resistance_error =
         task->resistance_calibrated ? resistance_error_known : resistance_error_unknown;
     const double standing_rad_s =
-        standing_torque * rated_torque_Nm / motor->inertia_kgm2 * standing_s;
+        standing_torque * rated_torque_Nm / motor->inertia_kgm2 * STANDING_S;
     const double displaced_V =
         displaced_flux * motor->torque_constant_Nm_A / motor->rotor_teeth / (8.0 * block_s);
     /* A rotor that stands at full current is taken to turn so fast. */
@@ -129,13 +125,7 @@ synchronism_monitor_design(const struct synchronism_monitor_task *task)
         .standing_speed = num_from_double(standing_rad_s / base->speed_rad_s),
         .full_current = num_from_double(FULL_CURRENT * task->current_limit_A / base->current_A),
         .load_limit = num_from_double(pull_out_load * rated_torque_Nm / base->torque_Nm),
-        .standing_blocks = blocks(standing_s, block_s),
-        .behind_blocks = blocks(behind_s, block_s),
-        .pull_out_blocks = blocks(pull_out_s, block_s),
-        .opposite_blocks = blocks(opposite_s, block_s),
-        .settled_blocks = task->resistance_adapted ? blocks(settled_s, block_s) : UINT32_MAX,
-        .warning_blocks = blocks(warning_s, block_s),
-        .doubtful_blocks = blocks(doubtful_s, block_s),
+        .settled_blocks = task->resistance_adapted ? SETTLED_BLOCKS : UINT32_MAX,
     };
 }
 
@@ -172,9 +162,16 @@ enum synchronism synchronism_monitor_judge_voltage(struct synchronism_monitor *m
         return SYNCHRONISM_LOST;
     }
     if (monitor->disturbance > num_half(allowed)) {
-        monitor->doubtful = params->doubtful_blocks;
+        monitor->doubtful = DOUBTFUL_BLOCKS;
     }
     return SYNCHRONISM_SURE;
+}
+
+static void begin_hold_anew(struct synchronism_monitor *monitor)
+{
+    monitor->held = 0u;
+    monitor->settled = NUM(0.0);
+    monitor->swing = NUM(0.0);
 }
 
 enum synchronism synchronism_monitor_judge_motion(struct synchronism_monitor *monitor,
@@ -185,12 +182,10 @@ enum synchronism synchronism_monitor_judge_motion(struct synchronism_monitor *mo
     const num_t allowed =
         quarter(magnitude) + num_mul_coef(num_abs(i_d), monitor->voltage_per_current);
 
-    monitor->held = 0u;
-    monitor->settled = NUM(0.0);
-    monitor->swing = NUM(0.0);
+    begin_hold_anew(monitor);
     monitor->opposite = count(monitor->opposite, magnitude > params->standing_speed &&
                                                      !(monitor->disturbance < allowed));
-    return monitor->opposite < params->opposite_blocks ? SYNCHRONISM_SURE : SYNCHRONISM_LOST;
+    return monitor->opposite < OPPOSITE_BLOCKS ? SYNCHRONISM_SURE : SYNCHRONISM_LOST;
 }
 
 enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *monitor,
@@ -199,9 +194,7 @@ enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *moni
 {
     monitor->opposite = 0u;
     if (leads) { /* away from the angle at which the offset along d passed for a resistance */
-        monitor->held = 0u;
-        monitor->settled = NUM(0.0);
-        monitor->swing = NUM(0.0);
+        begin_hold_anew(monitor);
         return SYNCHRONISM_SURE;
     }
     monitor->swing += eighth(num_abs(speed) - monitor->swing);
@@ -216,29 +209,29 @@ enum synchronism synchronism_monitor_judge_hold(struct synchronism_monitor *moni
     const num_t allowed = params->settled_floor + quarter(monitor->swing);
 
     if (num_abs(monitor->settled) > num_half(allowed)) {
-        monitor->doubtful = params->doubtful_blocks;
+        monitor->doubtful = DOUBTFUL_BLOCKS;
     }
     return num_abs(monitor->settled) < allowed ? SYNCHRONISM_SURE : SYNCHRONISM_LOST;
 }
 
 /* A rotor that rests in its hold does what it is to do. */
-static bool stands(const struct synchronism_monitor *monitor,
-                   const struct synchronism_monitor_params *params, num_t speed)
+static bool rests(const struct synchronism_monitor *monitor,
+                  const struct synchronism_monitor_params *params, num_t speed)
 {
-    const bool rests =
-        monitor->held > 0u && !monitor->beyond && speed <= quarter(params->settled_floor);
-
-    return speed < monitor->standing_speed && !rests;
+    return monitor->held > 0u && speed <= params->settled_floor;
 }
 
 enum synchronism synchronism_monitor_judge_torque(struct synchronism_monitor *monitor,
                                                   const struct synchronism_monitor_params *params,
                                                   num_t wanted, num_t speed)
 {
+    const num_t magnitude = num_abs(speed);
+
     monitor->full = num_abs(wanted) > params->full_current;
     monitor->standing =
-        count(monitor->standing, RARE(monitor->full) && stands(monitor, params, num_abs(speed)));
-    return stalled_after(monitor, params, monitor->standing, params->standing_blocks);
+        count(monitor->standing, RARE(monitor->full) && magnitude < monitor->standing_speed &&
+                                     !rests(monitor, params, magnitude));
+    return stalled_after(monitor, monitor->standing, STANDING_BLOCKS);
 }
 
 enum synchronism synchronism_monitor_judge_load(struct synchronism_monitor *monitor,
@@ -247,9 +240,8 @@ enum synchronism synchronism_monitor_judge_load(struct synchronism_monitor *moni
 {
     const num_t load = num_abs(load_torque);
 
-    monitor->beyond = load - eighth(load) > params->full_current;
     monitor->pull_out = count(monitor->pull_out, load > params->load_limit);
-    return stalled_after(monitor, params, monitor->pull_out, params->pull_out_blocks);
+    return stalled_after(monitor, monitor->pull_out, PULL_OUT_BLOCKS);
 }
 
 /* The load angle at which the current that holds a rotor yields, electrical turns. */
@@ -264,27 +256,24 @@ synchronism_monitor_judge_following(struct synchronism_monitor *monitor,
 
     monitor->behind = count(monitor->behind, monitor->full && num_abs(error) > PULL_OUT_ANGLE &&
                                                  opening > -params->standing_speed);
-    return stalled_after(monitor, params, monitor->behind, params->behind_blocks);
+    return stalled_after(monitor, monitor->behind, BEHIND_BLOCKS);
 }
 
 enum synchronism synchronism_monitor_judge_pull_out(struct synchronism_monitor *monitor,
-                                                    const struct synchronism_monitor_params *params,
                                                     num_t error)
 {
     const num_t load_angle = num_abs(error);
 
     if (load_angle > num_half(PULL_OUT_ANGLE)) {
-        monitor->doubtful = params->doubtful_blocks;
+        monitor->doubtful = DOUBTFUL_BLOCKS;
     }
     return load_angle > PULL_OUT_ANGLE ? SYNCHRONISM_STALLED : SYNCHRONISM_SURE;
 }
 
-enum synchronism
-synchronism_monitor_judge_load_angle(struct synchronism_monitor *monitor,
-                                     const struct synchronism_monitor_params *params)
+enum synchronism synchronism_monitor_judge_load_angle(struct synchronism_monitor *monitor)
 {
-    if (monitor->behind >= params->warning_blocks || monitor->standing >= params->warning_blocks) {
-        monitor->doubtful = params->doubtful_blocks;
+    if (monitor->behind >= WARNING_BLOCKS || monitor->standing >= WARNING_BLOCKS) {
+        monitor->doubtful = DOUBTFUL_BLOCKS;
     }
     if (monitor->doubtful == 0u) {
         return SYNCHRONISM_SURE;

@@ -36,8 +36,8 @@
  * Stalled: the estimate is sound and says that the rotor does not follow:
  *   standing    all current is in use and yet the rotor stands, or seems to turn no faster than an
  *               error of the resistance that is not known yet feigns: at full current r i / Km
- *   unheld      all current is in use in a hold that rests, and yet the rotor turns, by V_1 / 4 Km
- *               and more, or seven eighths of the load are more than that current bears
+ *   unheld      all current is in use in a hold that rests, and yet the rotor turns, by V_1 / Km or
+ *               more
  *   behind      all current is in use and yet the rotor falls further behind
  *   pull-out    a load of 1.6 times the rated torque, or, holding, a load angle of a quarter of an
  *               electrical turn, beyond which the current that holds the rotor yields
@@ -53,7 +53,8 @@
 
 #include "firmware/estimator/estimate.h"
 
-/* A block, of at least as many periods as it has steps in motion, and one. */
+/* A block, of at least as many periods as it has steps in motion, and one: so long at 5 kHz and
+ * more. */
 #define SYNCHRONISM_BLOCK_S 1.6e-3
 #define SYNCHRONISM_STEPS   8u
 
@@ -85,13 +86,7 @@ struct synchronism_monitor_params {
     num_t standing_speed;          /* from then on */
     num_t full_current;
     num_t load_limit;
-    uint32_t standing_blocks; /* in a row, to be called so */
-    uint32_t behind_blocks;   /* in a row, falling behind, to be stalled */
-    uint32_t pull_out_blocks; /* likewise, of a load beyond the limit */
-    uint32_t settled_blocks;  /* of a hold, until it is */
-    uint32_t opposite_blocks; /* in a row, to be on the opposite half-turn */
-    uint32_t warning_blocks;  /* in a row, standing or falling behind, to be doubtful */
-    uint32_t doubtful_blocks; /* that it stays doubtful, from then on */
+    uint32_t settled_blocks; /* of a hold, until it is */
 };
 
 enum synchronism { SYNCHRONISM_SURE, SYNCHRONISM_DOUBTFUL, SYNCHRONISM_STALLED, SYNCHRONISM_LOST };
@@ -105,8 +100,7 @@ struct synchronism_monitor {
     num_t swing;                /* likewise, of the speed's magnitude; else 0 */
     uint32_t held;              /* blocks at rest in a hold; in a row, as those below */
     uint32_t opposite;
-    bool full;   /* all current is in use */
-    bool beyond; /* the load is more than that bears */
+    bool full; /* all current is in use */
     uint32_t standing;
     uint32_t behind;
     uint32_t pull_out;
@@ -162,12 +156,9 @@ synchronism_monitor_judge_following(struct synchronism_monitor *monitor,
 
 /* In a hold: whether the load angle is that of pull-out: stalled, or sure. */
 enum synchronism synchronism_monitor_judge_pull_out(struct synchronism_monitor *monitor,
-                                                    const struct synchronism_monitor_params *params,
                                                     num_t error);
 
 /* What the block's other steps leave: doubtful, or sure. */
-enum synchronism
-synchronism_monitor_judge_load_angle(struct synchronism_monitor *monitor,
-                                     const struct synchronism_monitor_params *params);
+enum synchronism synchronism_monitor_judge_load_angle(struct synchronism_monitor *monitor);
 
 #endif

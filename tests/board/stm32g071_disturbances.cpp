@@ -303,7 +303,7 @@ void laws_are_listed(const ElfImage &image)
     Powered run(image);
     run.run_for(start_time);
     const std::string listed = run.type("get law\n", 50 * ms);
-    expect(count(listed, "; state-feedback, pid, microstepping; ") == 1,
+    expect(count(listed, "; state-feedback, microstepping; ") == 1,
            "get law lists the laws that the image carries, and no other");
 }
 

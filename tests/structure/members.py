@@ -25,6 +25,7 @@ WRITERS = {
     "params": ["drive", "estimator_design", "settings_in_motion", "belt_watch", "torque_constant",
                "inductance"],
     "belt_watch": ["belt_watch"],
+    "lead_watch": ["lead_watch"],
     "torque_constant": ["torque_constant"],
     "settings": ["drive", "settings_in_motion", "belt_watch"],
     "supervision": ["state_machine"],

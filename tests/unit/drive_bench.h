@@ -131,6 +131,7 @@ static inline void period(void)
         standing_rotor_background(&drive);
         thermal_watch_background(&drive);
         rotor_watch_background(&drive);
+        lead_watch_background(&drive);
         torque_constant_background(&drive);
     }
 }

@@ -728,6 +728,16 @@ static void test_the_lasting_offset_goes_to_the_offset_by_its_time_constant(void
     TEST_ASSERT_NUM_WITHIN(1e-4, 0.25 * (1.0 - left), ekf.settled_bias.a);
 }
 
+static void test_a_hold_returns_to_no_more_load_than_its_current_bears(void)
+{
+    ekf.settled_load = NUM(0.25);
+    invariant_ekf_bear(&ekf, NUM(0.25));
+    TEST_ASSERT_NUM_WITHIN(0.0, 0.25, ekf.settled_load);
+    ekf.settled_load = NUM(-0.5);
+    invariant_ekf_bear(&ekf, NUM(0.25));
+    TEST_ASSERT_NUM_WITHIN(0.0, -0.25, ekf.settled_load);
+}
+
 static void test_a_reset_forgets_all_but_what_it_is_set_to(void)
 {
     turn(45.0, 300);
@@ -780,6 +790,7 @@ int main(void)
     RUN_TEST(test_steps_of_the_load_to_and_fro_are_a_vibration_sooner_than_those_to_one_side);
     RUN_TEST(test_a_step_of_the_load_brings_the_lasting_offset_back);
     RUN_TEST(test_the_lasting_offset_goes_to_the_offset_by_its_time_constant);
+    RUN_TEST(test_a_hold_returns_to_no_more_load_than_its_current_bears);
     RUN_TEST(test_a_reset_forgets_all_but_what_it_is_set_to);
     return UNITY_END();
 }

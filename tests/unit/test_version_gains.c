@@ -107,7 +107,7 @@ static void add_every_law(enum drive_feedback feedback)
 static void test_without_an_encoder_every_law_has_these_gains(void)
 {
     add_every_law(DRIVE_FEEDBACK_SENSORLESS);
-    is(UINT64_C(0xC1AEDA36B21976AA), UINT64_C(0xDE95E731108166B9));
+    is(UINT64_C(0x9C475F5AD07AC456), UINT64_C(0x09056598FD4125B9));
 }
 
 static void test_with_an_encoder_every_law_has_these_gains(void)
@@ -152,7 +152,7 @@ static void test_another_motor_on_another_board_has_these_gains(void)
         settings.motion_current_A = 0.2;
         add_design();
     }
-    is(UINT64_C(0x3AC185518457EF3E), UINT64_C(0xA10F97D4E2196E0D));
+    is(UINT64_C(0x949FE0BC71DEEFE6), UINT64_C(0xBD06C68219B8CAA9));
 }
 
 int main(void)

@@ -69,11 +69,13 @@ def long_run(sources):
 
 @entry("load", "steadystep-sil campaign load --seeds 1-800", Cost.CAMPAIGN,
        probe=("campaign load --seeds 1-16 --json",
-              "campaign load --seeds 1-16 --numeric fixed --json"))
+              "campaign load --seeds 1-16 --numeric fixed --json",
+              "campaign load --seeds 1-16 --set plant.model=as-built --json"))
 def load(sources):
     found = {}
-    for name, numeric in (("held", "float"), ("held-fixed", "fixed")):
-        run = campaign(sources, "load", "1-800", numeric=numeric)
+    for name, numeric, options in (("held", "float", ()), ("held-fixed", "fixed", ()),
+                                   ("held-as-built", "float", ("--set", "plant.model=as-built"))):
+        run = campaign(sources, "load", "1-800", *options, numeric=numeric)
         found |= {name: f"{run['verdicts']['held']}",
                   name.replace("held", "others"): ", ".join(
                       f"{count} {what}" for what, count in sorted(run["verdicts"].items())
