@@ -37,41 +37,24 @@ bool lead_watch_is_left(struct lead_watch *watch, num_t led, num_t seen)
     return watch->unseen >= UNSEEN_TURNS;
 }
 
-struct look {
-    uint32_t block;
-    num_t led, shown; /* speed of the frame; estimate and offset along its q axis */
-    num_t load, away; /* from the load that the hold returns to */
-    bool follows;     /* a load step */
-};
-
-/* A block's mean of c sum(nu_q), from the load's equation. */
-static num_real denied(const struct drive *drive, const struct look *look, num_real periods)
+static num_t turns_in_block(const struct drive *drive, num_t speed)
 {
-    const struct invariant_ekf_params *params = &drive->params.estimator.invariant_ekf;
-    const struct invariant_ekf_gain_set *gain =
-        look->follows ? &params->following : &params->holding;
-    const num_real change = (num_real)num_to_double(look->load - drive->lead_watch.load);
-    const num_real returned =
-        (num_real)coef_to_double(gain->load_return) * (num_real)num_to_double(look->away);
-    const num_real innovations =
-        (change / periods + returned) / (num_real)coef_to_double(gain->load_q);
+    const num_t half_turns = half_period_turns(&drive->params.model, speed);
 
-    return (num_real)coef_to_double(drive->synchronism.params.voltage_per_sum_holding) *
-           (num_real)drive->synchronism.params.block_periods * innovations;
+    return (half_turns + half_turns) * (num_t)drive->synchronism.params.block_periods;
 }
 
-static bool is_left(struct drive *drive, const struct look *look)
+/* c nu_q, from the load's equation; `change` and `away` of the load. Per-unit, a voltage is a
+ * speed. */
+static num_t denied(const struct drive *drive, num_t change, num_t away)
 {
-    struct lead_watch *watch = &drive->lead_watch;
-    const num_real periods = (num_real)(look->block - watch->block);
-    const num_real turns = periods * (num_real)drive->base.turns_per_period;
-    const num_real led = turns * (num_real)num_to_double(look->led);
-    const num_real seen =
-        turns * ((num_real)num_to_double(look->shown) - denied(drive, look, periods));
+    const struct invariant_ekf_gain_set *gain = &drive->params.estimator.invariant_ekf.holding;
+    const double per_load = coef_to_double(drive->synchronism.params.voltage_per_sum_holding) /
+                            coef_to_double(gain->load_q);
+    const num_t returned =
+        num_mul_coef(away, gain->load_return) * (num_t)drive->synchronism.params.block_periods;
 
-    return look->block - watch->block <= BLOCKS_MOST * drive->synchronism.params.block_periods &&
-           lead_watch_is_left(watch, num_from_double((double)led),
-                              num_headroom(num_from_double((double)seen), NUM(8.0)));
+    return num_mul_coef(num_headroom(change + returned, NUM(4.0)), coef_from_double(per_load));
 }
 
 static bool is_led(const struct drive *drive)
@@ -91,22 +74,27 @@ void lead_watch_background(struct drive *drive)
         return;
     }
     atomic_signal_fence(memory_order_seq_cst);
-    const struct look look = {
-        .block = drive->synchronism.block_began,
-        .led = drive->hold.leads ? drive->hold.speed : NUM(0.0),
-        .shown = ekf->estimate.rotor.speed + park(ekf->bias, drive->hold.frame).q,
-        .load = ekf->estimate.rotor.load_torque,
-        .away = ekf->estimate.rotor.load_torque - ekf->settled_load,
-        .follows = ekf->following_periods > drive->params.estimator.invariant_ekf.rest_periods,
-    };
+    const uint32_t block = drive->synchronism.block_began;
+    const num_t led = drive->hold.leads ? drive->hold.speed : NUM(0.0);
+    const num_t shown = ekf->estimate.rotor.speed + park(ekf->bias, drive->hold.frame).q;
+    const num_t load = ekf->estimate.rotor.load_torque;
+    const num_t away = load - ekf->settled_load;
 
     atomic_signal_fence(memory_order_seq_cst);
-    if (period != interrupt_view_period(drive) || look.block == watch->block) {
+    const uint32_t blocks = (block - watch->block) / drive->synchronism.params.block_periods;
+
+    if (period != interrupt_view_period(drive) || blocks == 0u) {
         return;
     }
-    if (look.led != NUM(0.0) && is_left(drive, &look)) {
-        state_machine_ask_for_fault(drive, DRIVE_FAULT_STALLED);
+    if (led != NUM(0.0) && blocks <= BLOCKS_MOST) {
+        const num_t change = (load - watch->load) / (num_t)blocks;
+        const num_t seen = turns_in_block(drive, shown - denied(drive, change, away));
+
+        if (lead_watch_is_left(watch, turns_in_block(drive, led) * (num_t)blocks,
+                               seen * (num_t)blocks)) {
+            state_machine_ask_for_fault(drive, DRIVE_FAULT_STALLED);
+        }
     }
-    watch->block = look.block;
-    watch->load = look.load;
+    watch->block = block;
+    watch->load = load;
 }

@@ -5,7 +5,8 @@
  * shows whether it is there. Over an electrical turn of the frame an offset leaves nothing, since
  * it stays where it is in phase coordinates, nor do two phases that are not alike; the rotor's
  * back-EMF stands along the frame's q axis. It is what the estimate makes of it, less what the
- * innovations deny, which show in the load's estimate (estimator/invariant_ekf.h):
+ * innovations deny, which show in the load's estimate (estimator/invariant_ekf.h, in a settled
+ * hold):
  *
  *   e_q = Km w_hat + b_q - c nu_q,   nu_q = (dT_L/dk + k_r (T_L - T_settled)) / k_T
  *
