@@ -13,7 +13,7 @@
  * c: estimator/synchronism_monitor.h. The sign: two turns in a row, in one direction, in which the
  * mean of e_q is less than a quarter of Km w. Of a sound rotor that lags by a load, and whose
  * inductance is a fifth off, half is left. It is a fault where the monitor's policy is to end in
- * faults. Where a frame turns to and fro within a turn nothing shows.
+ * faults; with another it is not said. Where a frame turns to and fro within a turn nothing shows.
  */
 #ifndef STEADYSTEP_LEAD_WATCH_H
 #define STEADYSTEP_LEAD_WATCH_H
