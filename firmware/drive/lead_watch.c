@@ -3,6 +3,7 @@
 #include "firmware/drive/drive.h"
 #include "firmware/drive/interrupt_view.h"
 #include "firmware/drive/state_machine.h"
+#include "firmware/drive/synchronism.h"
 
 #define UNSEEN_TURNS 2u
 #define BLOCKS_MOST  8u /* for which the last one stands, of a background that was busy */
@@ -17,6 +18,11 @@ void lead_watch_reset(struct lead_watch *watch)
 {
     begin_turn(watch);
     watch->unseen = 0u;
+}
+
+bool lead_watch_rotor_is_left(const struct lead_watch *watch)
+{
+    return watch->unseen >= UNSEEN_TURNS;
 }
 
 bool lead_watch_is_left(struct lead_watch *watch, num_t led, num_t seen)
@@ -34,7 +40,7 @@ bool lead_watch_is_left(struct lead_watch *watch, num_t led, num_t seen)
         watch->unseen = along < NUM(0.25) ? (uint8_t)(watch->unseen + 1u) : (uint8_t)0u;
         begin_turn(watch);
     }
-    return watch->unseen >= UNSEEN_TURNS;
+    return lead_watch_rotor_is_left(watch);
 }
 
 static num_t turns_in_block(const struct drive *drive, num_t speed)
@@ -91,7 +97,8 @@ void lead_watch_background(struct drive *drive)
         const num_t seen = turns_in_block(drive, shown - denied(drive, change, away));
 
         if (lead_watch_is_left(watch, turns_in_block(drive, led) * (num_t)blocks,
-                               seen * (num_t)blocks)) {
+                               seen * (num_t)blocks) &&
+            synchronism_loss_is_fault(drive)) {
             state_machine_ask_for_fault(drive, DRIVE_FAULT_STALLED);
         }
     }

@@ -34,6 +34,9 @@ struct lead_watch {
 /* Nothing has been led by then. */
 void lead_watch_reset(struct lead_watch *watch);
 
+/* Background: whether the rotor is left, as of the last look. */
+bool lead_watch_rotor_is_left(const struct lead_watch *watch);
+
 /* Electrical turns that the frame has led since the last call, and that are seen. true: the rotor
    is left. */
 bool lead_watch_is_left(struct lead_watch *watch, num_t led, num_t seen);

@@ -4,6 +4,7 @@
 #include "firmware/drive/interrupt_view.h"
 #include "firmware/drive/phase_watch.h"
 #include "firmware/drive/state_machine.h"
+#include "firmware/drive/synchronism.h"
 
 /* In looks of the following error, 1 ms each. */
 #define SWING_LOOKS 100u
@@ -149,9 +150,7 @@ static enum drive_fault look(struct drive *drive, uint32_t period)
 {
     const struct following_error_params *following = &drive->params.following;
     const bool encoder = reads_encoder(&drive->settings);
-    const bool watched = encoder ? following->limit > NUM(0.0)
-                                 : drive->synchronism.monitored &&
-                                       drive->synchronism.policy == DRIVE_SYNCHRONISM_FAULT;
+    const bool watched = encoder ? following->limit > NUM(0.0) : synchronism_loss_is_fault(drive);
     const num_t error = position_difference(drive->reference.now.position,
                                             drive->estimator.estimate.rotor.position);
     const num_t limit = encoder ? following->limit : SWING_TURNS;

@@ -18,6 +18,7 @@ static void enter(struct drive *drive, enum drive_state state)
 static void begin_operation(struct drive *drive)
 {
     axis_note_ready(drive);
+    drive->supervision.knows_phases = true;
     synchronism_start(drive);
     enter(drive, DRIVE_OPERATION_ENABLED);
 }
@@ -61,7 +62,7 @@ static void balance_phases(struct drive *drive, const struct hal_samples *sample
 __attribute__((noinline)) static void
 end_first_hold(struct drive *drive, const struct hal_samples *samples, uint32_t longer)
 {
-    if (drive->params.enabling.balance_periods == 0u) {
+    if (drive->params.enabling.balance_periods == 0u || drive->supervision.knows_phases) {
         end_aligning(drive);
     } else if (longer == 0u) {
         phase_balancing_start(drive);
@@ -125,6 +126,7 @@ static void find_position_or_power_up(struct drive *drive)
 /* Apart: rare. */
 __attribute__((noinline)) static void start_enabling(struct drive *drive)
 {
+    drive->supervision.knows_phases = false;
     drive_reset_control(drive);
     measurement_reset(&drive->measurement, &drive->params.measurement);
     offset_calibration_reset(&drive->enabling.calibration);
@@ -135,11 +137,25 @@ __attribute__((noinline)) static void start_enabling(struct drive *drive)
     }
 }
 
-void state_machine_ask_for_fault(struct drive *drive, enum drive_fault fault)
+#define TO_REALIGN ((uint8_t)DRIVE_FAULTS) /* beside the faults */
+
+static void ask_for(struct drive *drive, uint8_t what)
 {
-    drive->supervision.asked_for = (uint8_t)fault;
+    drive->supervision.asked_for = what;
     atomic_signal_fence(memory_order_release);
     command_queue_look_next(&drive->commands);
+}
+
+void state_machine_ask_for_fault(struct drive *drive, enum drive_fault fault)
+{
+    ask_for(drive, (uint8_t)fault);
+}
+
+void state_machine_ask_to_realign(struct drive *drive)
+{
+    if (drive->supervision.asked_for == DRIVE_FAULT_NONE) {
+        ask_for(drive, TO_REALIGN);
+    }
 }
 
 /* Apart: rare, and so its registers are not take_urgent's. */
@@ -184,13 +200,32 @@ __attribute__((noinline)) static void enter_fault(struct drive *drive, enum driv
     enter(drive, DRIVE_FAULT);
 }
 
-__attribute__((cold, noinline)) static void enter_fault_asked_for(struct drive *drive)
+/* Currents flow, and what the next sample shows of them is expected. */
+__attribute__((cold, noinline)) static void realign(struct drive *drive)
 {
-    const enum drive_fault fault = (enum drive_fault)drive->supervision.asked_for;
+    const struct outlook next = drive->estimator.estimate.next;
+
+    axis_note_uncertain(drive);
+    reference_reset(&drive->reference, next.position);
+    drive_reset_control(drive);
+    power_up(drive);
+    estimator_expect_current(&drive->estimator, next.current);
+    standstill_hold_preset(&drive->hold, drive->params.hold.current);
+    standstill_hold_enter(&drive->hold, drive->reference.next.position.fraction);
+}
+
+__attribute__((cold, noinline)) static void do_as_asked(struct drive *drive)
+{
+    const uint8_t what = drive->supervision.asked_for;
 
     drive->supervision.asked_for = DRIVE_FAULT_NONE;
-    if (drive->supervision.state == DRIVE_OPERATION_ENABLED) {
-        enter_fault(drive, fault);
+    if (drive->supervision.state != DRIVE_OPERATION_ENABLED) {
+        return;
+    }
+    if (LINK_CARRIED && what == TO_REALIGN) {
+        realign(drive);
+    } else {
+        enter_fault(drive, (enum drive_fault)what);
     }
 }
 
@@ -335,7 +370,7 @@ static void take_commands(struct drive *drive)
 {
     command_queue_look(&drive->commands, drive->supervision.period);
     if (RARE(drive->supervision.asked_for != DRIVE_FAULT_NONE)) {
-        enter_fault_asked_for(drive);
+        do_as_asked(drive);
     } else if (RARE(command_queue_holds_urgent(&drive->commands))) {
         take_urgent(drive);
     } else {

@@ -69,6 +69,15 @@ struct hal_outputs state_machine_resting_bridge(const struct drive *drive);
 /* Background: the next interrupt enters the fault state, if the drive is in operation still. */
 void state_machine_ask_for_fault(struct drive *drive, enum drive_fault fault);
 
+/*
+ * Background, of a rotor that may be anywhere: the next interrupt aligns it anew, if the drive is
+ * in operation still and no fault has been asked for. The reference stops where the rotor is
+ * estimated, and the first hold begins anew, with all of its current, which
+ * draws the rotor there to within whole electrical turns; then the drive is in operation again.
+ * What is known of the winding stays; the position is uncertain.
+ */
+void state_machine_ask_to_realign(struct drive *drive);
+
 /* Enters the fault state if there is a fault; the bridge opens in the same period. */
 void state_machine_fault(struct drive *drive, enum drive_fault fault);
 

@@ -194,7 +194,7 @@ enum drive_fault synchronism_act(struct drive *drive, enum synchronism verdict)
     if (verdict > SYNCHRONISM_DOUBTFUL) {
         axis_note_uncertain(drive);
     }
-    if (verdict == SYNCHRONISM_DOUBTFUL || drive->synchronism.policy != DRIVE_SYNCHRONISM_FAULT) {
+    if (verdict == SYNCHRONISM_DOUBTFUL || !synchronism_loss_is_fault(drive)) {
         return DRIVE_FAULT_NONE;
     }
     return verdict == SYNCHRONISM_LOST ? DRIVE_FAULT_LOST_SYNCHRONISM : DRIVE_FAULT_STALLED;

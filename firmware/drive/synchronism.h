@@ -21,6 +21,14 @@ void synchronism_reset(struct drive *drive);
 /* When operation begins. */
 void synchronism_start(struct drive *drive);
 
+/* Whether a loss ends in a fault. Not while the axis looks for a hard stop: that throws the rotor,
+   and homing takes it up from where it comes to rest. */
+static inline bool synchronism_loss_is_fault(const struct drive *drive)
+{
+    return drive->synchronism.monitored && drive->synchronism.policy == DRIVE_SYNCHRONISM_FAULT &&
+           !(LINK_CARRIED && drive->axis.seeks_stop);
+}
+
 /* So many periods at most: a quick sine claims every one or two. */
 #define SYNCHRONISM_WAIT_MAX 3
 

@@ -84,6 +84,12 @@ static inline void estimator_preset_current(struct estimator *estimator,
 #undef ESTIMATOR_PRESET_CURRENT
 }
 
+/* Behind estimator_begin, between two samples: this current is expected of the next one. */
+static inline void estimator_expect_current(struct estimator *estimator, struct phases current)
+{
+    estimator->estimate.next.current = current;
+}
+
 /* The rotor is held from now on. Only this one distinguishes a hold from motion. */
 static inline void estimator_begin_hold(struct estimator *estimator,
                                         const struct estimator_params *params)

@@ -4,19 +4,7 @@
  * there. The place is one edge of the index, whichever the direction: the one that rises upwards
  * and falls downwards, at the count that hardware has kept. It is looked for from a full step on,
  * and for 9/8 of a turn in all; then there is none, a homing error. Methods -1 and -2: it goes
- * down, or up, until a hard stop bears it. There is 607ch, and the rotor comes to rest a full step
- * before it, where the hold draws it even if the stop has thrown it off.
- *
- * A stop is where the rotor ceases to follow. All of these have to show:
- * - the estimated load against the motion is beyond the torque 2403h, 1;
- * - it has been above three quarters of that at two looks in a row, 1 ms apart;
- * - since then the reference has gone on by a quarter of a full step, the rotor by less than half
- * as much.
- *
- * A rotor that goes on by a quarter of a full step under three quarters of the torque is not at a
- * stop: what gives way is softer than a quarter of the torque over a quarter of a full step, or the
- * load is heavier than the torque. That, a rotor out of step before anything bears
- * it or at the end, and a reference that has gone the travel 2403h, 2, end in a homing error.
+ * down, or up, until a hard stop bears it, axis_homing_stop.h.
  */
 #ifndef STEADYSTEP_AXIS_HOMING_H
 #define STEADYSTEP_AXIS_HOMING_H
@@ -24,23 +12,36 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/interface/drive_interface.h"
+
 struct application;
 
 enum homing_phase {
     HOMING_ENDED,        /* or not begun */
-    HOMING_SEARCHES,     /* a stop */
     HOMING_SETS_OUT,     /* for the index */
     HOMING_AWAITS_INDEX, /* to pass */
-    HOMING_LEAVES        /* for a stop's or the index's place, or gives up */
+    HOMING_SEEKS_STOP,
+    HOMING_CATCHES,   /* a rotor that the stop may have thrown */
+    HOMING_BACKS_OFF, /* from the stop */
+    HOMING_SETTLES
 };
 
 struct axis_homing {
-    double began_rad;               /* of the reference, in the search */
-    double bears_rad, at_bears_rad; /* rotor and reference as the load grew: the stop; the index */
-    float way;                      /* 1 up, -1 down, of the motor */
-    uint8_t phase;                  /* enum homing_phase */
-    uint8_t ms;                     /* for which it stands */
-    bool found;
+    double began_rad; /* of the reference: the search */
+    double index_rad;
+    /* full steps on the way from there */
+    float from;       /* of the reference: this approach to the stop */
+    float led_from;   /* of the reference, as the load began to grow */
+    float free;       /* of the rotor, likewise */
+    float furthest;   /* of the rotor, in this approach */
+    float place;      /* the stop as far as it is known */
+    float way;        /* 1 up, -1 down, of the motor */
+    uint16_t ms;      /* for which the reference rests, or the load has grown */
+    uint8_t phase;    /* enum homing_phase */
+    uint8_t failures; /* approaches that have not found the stop */
+    uint8_t touches;  /* that have, in a row and at one place */
+    bool doubtful;    /* the synchronism, as the load began to grow */
+    bool on_stop;
 };
 
 /* Whether 6098h may have this value. */
@@ -51,5 +52,27 @@ void axis_homing_start(struct application *application);
 
 /* Background, once in a millisecond, in the mode. */
 void axis_homing_look(struct application *application);
+
+/* Whether it is about a hard stop, which may throw the rotor. */
+bool axis_homing_seeks_stop(const struct axis_homing *homing);
+
+/* ---- for its ways ---- */
+
+__attribute__((noinline)) float axis_homing_full_step_rad(const struct application *application);
+
+void axis_homing_enter(struct application *application, enum homing_phase phase);
+
+/* Posts this command, with a speed in rad/s and an acceleration in units, or gives up. */
+void axis_homing_go(struct application *application, enum drive_command_kind kind,
+                    double position_rad, float speed_rad_s, uint32_t acceleration);
+
+/* Whether the reference has rested for so long. */
+bool axis_homing_has_rested(struct application *application, uint16_t ms);
+
+/* At rest: that place, rad, is 607ch. */
+void axis_homing_end(struct application *application, double place_rad);
+
+/* To rest, with a homing error. */
+void axis_homing_give_up(struct application *application);
 
 #endif

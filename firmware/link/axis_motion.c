@@ -33,7 +33,8 @@ bool axis_motion_rests(const struct application *application)
 {
     const struct drive *drive = &application->drive;
 
-    return !interrupt_view_moves(drive) && !command_queue_holds_any(&drive->commands);
+    return interrupt_view_state(drive) == DRIVE_OPERATION_ENABLED && !interrupt_view_moves(drive) &&
+           !command_queue_holds_any(&drive->commands);
 }
 
 /* ---- limits ---- */
@@ -54,6 +55,13 @@ float axis_motion_acceleration_limit(const struct application *application)
 
     return 0.999f * (float)settings->current_limit_A * (float)settings->motor.torque_constant_Nm_A /
            (float)settings->motor.inertia_kgm2;
+}
+
+float axis_motion_torque_Nm(const struct application *application, float thousandths)
+{
+    const struct motor_params *motor = &application->drive.settings.motor;
+
+    return 1e-3f * thousandths * (float)motor->rated_current_A * (float)motor->torque_constant_Nm_A;
 }
 
 float axis_motion_limited(struct application *application, float value, float least, float most)
@@ -111,20 +119,25 @@ static float jerk_to_end(struct axis_motion *motion, float jerk)
     return motion->jerk;
 }
 
-bool axis_motion_post(struct application *application, struct drive_command *command,
-                      float speed_rad_s, uint32_t acceleration_units)
+bool axis_motion_post(struct application *application, enum drive_command_kind kind,
+                      double position_rad, float speed_rad_s, uint32_t acceleration_units)
 {
     const float acceleration =
         axis_motion_limited(application, units(application) * (float)acceleration_units, 1e-3f,
                             axis_motion_acceleration_limit(application));
     const float jerk_s =
         jerk_share * (speed_rad_s < 0.0f ? -speed_rad_s : speed_rad_s) / acceleration;
+    const float jerk = jerk_to_end(motion_of(application),
+                                   acceleration / (jerk_s > jerk_min_s ? jerk_s : jerk_min_s));
+    struct drive_command command = {
+        .kind = kind,
+        .position_rad = position_rad,
+        .speed_rad_s = (double)speed_rad_s,
+        .acceleration_rad_s2 = (double)acceleration,
+        .jerk_rad_s3 = (double)jerk,
+    };
 
-    command->speed_rad_s = (double)speed_rad_s;
-    command->acceleration_rad_s2 = (double)acceleration;
-    command->jerk_rad_s3 = (double)jerk_to_end(
-        motion_of(application), acceleration / (jerk_s > jerk_min_s ? jerk_s : jerk_min_s));
-    return cia402_command(application, command);
+    return cia402_command(application, &command);
 }
 
 float axis_motion_speed(struct application *application, uint32_t speed_units)
@@ -138,16 +151,15 @@ void axis_motion_brake(struct application *application, bool quickly)
     const struct link_objects *objects = &application->link->objects;
     const uint32_t deceleration =
         quickly ? objects->quick_stop_deceleration : objects->profile_deceleration;
-    struct drive_command brake = {.kind = DRIVE_COMMAND_VELOCITY};
+    struct drive_command stop = {.kind = DRIVE_COMMAND_STOP};
 
     motion_of(application)->waits = false;
     motion_of(application)->speed_rad_s = 0.0f;
     motion_of(application)->at_limit = false;
     motion_of(application)->homing.phase = HOMING_ENDED;
     if (!axis_motion_rests(application) &&
-        !axis_motion_post(application, &brake, 0.0f, deceleration)) {
-        brake.kind = DRIVE_COMMAND_STOP;
-        (void)cia402_command(application, &brake);
+        !axis_motion_post(application, DRIVE_COMMAND_VELOCITY, 0.0, 0.0f, deceleration)) {
+        (void)cia402_command(application, &stop);
     }
 }
 
@@ -207,8 +219,6 @@ static void go_to_target(struct application *application)
 {
     const struct link_objects *objects = &application->link->objects;
     struct axis_motion *motion = motion_of(application);
-    struct drive_command retarget = {.kind = DRIVE_COMMAND_RETARGET,
-                                     .position_rad = motion->target_rad};
 
     if (!motion->waits || motion->halted || !(motion->at_once || axis_motion_rests(application))) {
         return;
@@ -220,7 +230,9 @@ static void go_to_target(struct application *application)
                                 ? objects->profile_deceleration
                                 : objects->profile_acceleration;
 
-    motion->limited = !axis_motion_post(application, &retarget, speed, lesser) || motion->limited;
+    motion->limited =
+        !axis_motion_post(application, DRIVE_COMMAND_RETARGET, motion->target_rad, speed, lesser) ||
+        motion->limited;
     motion->waits = false;
 }
 
@@ -277,18 +289,18 @@ bool axis_motion_nears_limit(struct application *application, float speed_rad_s,
 static bool ends_at_limit(struct application *application, float *speed)
 {
     struct axis_motion *motion = motion_of(application);
-    struct drive_command to_limit = {.kind = DRIVE_COMMAND_RETARGET};
+    double limit_rad;
     const float asked = (float)magnitude((double)*speed);
     const float present = (float)magnitude(cia402_signals(application)->omega_ref_rad_s);
     const float most = asked > present ? asked : present;
-    const float room = room_rad(application, *speed, &to_limit.position_rad);
+    const float room = room_rad(application, *speed, &limit_rad);
 
     if (*speed == 0.0f ||
         room > stopping_rad(application, most, application->link->objects.profile_deceleration)) {
         return false;
     }
     motion->limited = true;
-    if (motion->at_limit && motion->target_rad == to_limit.position_rad) {
+    if (motion->at_limit && motion->target_rad == limit_rad) {
         return true;
     }
     if (room <= 0.0f) {
@@ -296,11 +308,11 @@ static bool ends_at_limit(struct application *application, float *speed)
         return false;
     }
     if (!command_queue_holds_any(&application->drive.commands) &&
-        axis_motion_post(application, &to_limit,
+        axis_motion_post(application, DRIVE_COMMAND_RETARGET, limit_rad,
                          0.98f * most, /* a plan at its own limit is a soft one */
                          application->link->objects.profile_deceleration)) {
         motion->at_limit = true;
-        motion->target_rad = to_limit.position_rad;
+        motion->target_rad = limit_rad;
         motion->speed_rad_s = *speed;
     }
     return true;
@@ -312,7 +324,6 @@ static void go_at_speed(struct application *application)
     struct axis_motion *motion = motion_of(application);
     const float most = axis_motion_speed_limit(application);
     const float before = motion->speed_rad_s;
-    struct drive_command velocity = {.kind = DRIVE_COMMAND_VELOCITY};
     float speed = 0.0f;
 
     motion->limited = false;
@@ -327,7 +338,7 @@ static void go_at_speed(struct application *application)
     }
     if ((speed != motion->speed_rad_s || motion->at_limit) &&
         !command_queue_holds_any(&application->drive.commands)) {
-        if (axis_motion_post(application, &velocity, speed,
+        if (axis_motion_post(application, DRIVE_COMMAND_VELOCITY, 0.0, speed,
                              slows(before, speed) ? objects->profile_deceleration
                                                   : objects->profile_acceleration)) {
             motion->speed_rad_s = speed;

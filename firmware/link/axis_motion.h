@@ -5,8 +5,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "firmware/interface/drive_interface.h"
+
 struct application;
-struct drive_command;
 
 /* Profile speed, acceleration and quick stop of the motor's settings, where none is given. */
 void axis_motion_put_defaults(struct application *application);
@@ -34,15 +35,18 @@ double axis_motion_target(struct application *application);
 float axis_motion_speed_limit(const struct application *application);
 float axis_motion_acceleration_limit(const struct application *application);
 
+/* Of thousandths of the rated torque. */
+float axis_motion_torque_Nm(const struct application *application, float thousandths);
+
 /* Cut to limits, which shows in the statusword. */
 float axis_motion_limited(struct application *application, float value, float least, float most);
 
 /* A speed in units as rad/s, cut to what the drive can. */
 float axis_motion_speed(struct application *application, uint32_t speed_units);
 
-/* Acceleration and jerk of a command that goes to `speed_rad_s`; false: the drive refuses it. */
-bool axis_motion_post(struct application *application, struct drive_command *command,
-                      float speed_rad_s, uint32_t acceleration_units);
+/* Posts a command that goes to `speed_rad_s`, with jerk; false: the drive refuses it. */
+bool axis_motion_post(struct application *application, enum drive_command_kind kind,
+                      double position_rad, float speed_rad_s, uint32_t acceleration_units);
 
 /* Whether a software limit on this way, up or down by its sign, is no further than what it takes to
    stop from the speed with 6085h. */

@@ -48,15 +48,13 @@ static bool is_cut(struct application *application, int32_t target)
 
 static void command_torque(struct application *application, int32_t target)
 {
-    const struct motor_params *motor = &application->drive.settings.motor;
     struct axis_motion *motion = &application->link->axis.motion;
     const uint32_t rpm = application->link->objects.max_speed_rpm;
     const float most = axis_motion_speed_limit(application);
     const float speed = AXIS_RAD_S_PER_RPM * (float)rpm;
     struct drive_command command = {
         .kind = DRIVE_COMMAND_TORQUE,
-        .torque_Nm = (double)(1e-3f * (float)target * (float)motor->rated_current_A *
-                              (float)motor->torque_constant_Nm_A),
+        .torque_Nm = (double)axis_motion_torque_Nm(application, (float)target),
         .speed_rad_s = (double)(speed < most ? speed : most),
     };
 

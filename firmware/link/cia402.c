@@ -234,7 +234,7 @@ void cia402_background(struct application *application)
         axis->mode = application->link->objects.mode;
     }
     application->drive.axis.seeks_stop =
-        axis->state == CIA402_OPERATION_ENABLED && axis->motion.homing.phase == HOMING_SEARCHES;
+        axis->state == CIA402_OPERATION_ENABLED && axis_homing_seeks_stop(&axis->motion.homing);
 }
 
 void cia402_control(struct application *application, uint16_t word)

@@ -135,7 +135,7 @@ def it_is_homed(drive, knobs):
     CHECKS.that("within its travel" in found, f"no stop: {found}")
     found = refusal(lambda: drive.home("index-up"), steadystep.NotHomed)
     CHECKS.that("no encoder with an index" in found, f"no index: {found}")
-    found = refusal(lambda: drive.home("stop-down", speed_rad_s=5, timeout_s=0.2), steadystep.TimedOut)
+    found = refusal(lambda: drive.home("stop-down", travel_rad=9, speed_rad_s=5, timeout_s=0.2), steadystep.TimedOut)
     CHECKS.that("0.2 s" in found, f"in time: {found}")
     for method, more, said in (("up", {}, "one of here, stop-down"), ("here", {"position_rad": 1e9}, "position_rad: expected"),
                                ("stop-up", {"torque_share": 0}, "torque_share"), ("stop-up", {"travel_rad": math.nan}, "travel_rad")):

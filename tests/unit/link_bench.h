@@ -10,15 +10,20 @@
 
 static struct link bench_link;
 
+static inline void link_bench_start_drive(const struct drive_settings *settings)
+{
+    bench_power_up();
+    (void)bench_start(settings);
+    application_put_link(&bench.application, &bench_link);
+    bench_periods(3);
+    (void)bench_heard();
+}
+
 static inline void link_bench_start(void)
 {
     const struct drive_settings settings = bench_quick_settings();
 
-    bench_power_up();
-    (void)bench_start(&settings);
-    application_put_link(&bench.application, &bench_link);
-    bench_periods(3);
-    (void)bench_heard();
+    link_bench_start_drive(&settings);
 }
 
 /* Of a board like the bench's that has just been powered up, with an encoder; they stay. */

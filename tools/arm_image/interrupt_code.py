@@ -22,6 +22,7 @@ ENABLING = {
     "phase_balancing_start",
     "phase_balancing_step",
     "power_up",
+    "realign",
     "start_enabling",
 }
 CCM = range(0x10000000, 0x10008000)
