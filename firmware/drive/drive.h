@@ -106,7 +106,6 @@ struct supervision {
     enum drive_state state;
     enum drive_fault fault;
     uint8_t asked_for; /* by the background, of the next interrupt: a fault, or to realign */
-    bool knows_phases; /* they have been compared since the bridge was switched on */
     bool aligns; /* draws the rotor to where it is assumed to be: what the encoder then knows of the
                     frame, and with it load and detent, is worth nothing */
     uint32_t period;      /* index of the present or last control interrupt; 0 is the first */

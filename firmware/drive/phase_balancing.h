@@ -18,6 +18,20 @@ enum phase_balancing {
 uint32_t phase_balancing_design(struct drive *drive, const struct drive_settings *settings,
                                 double period_s);
 
+/* The bridge is about to be switched on: the phases have not been compared since. */
+static inline void phase_balancing_forget(struct drive *drive)
+{
+    if (drive->params.enabling.balance_periods > 0u) {
+        drive->enabling.balance.stage = PHASES_LED;
+    }
+}
+
+/* Whether they have; of a drive that compares them. */
+static inline bool phase_balancing_is_done(const struct drive *drive)
+{
+    return drive->enabling.balance.stage == PHASES_BALANCED;
+}
+
 /* The hold has found the resistance. */
 __attribute__((noinline)) void phase_balancing_start(struct drive *drive);
 

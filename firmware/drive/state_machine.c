@@ -18,7 +18,6 @@ static void enter(struct drive *drive, enum drive_state state)
 static void begin_operation(struct drive *drive)
 {
     axis_note_ready(drive);
-    drive->supervision.knows_phases = true;
     synchronism_start(drive);
     enter(drive, DRIVE_OPERATION_ENABLED);
 }
@@ -62,7 +61,7 @@ static void balance_phases(struct drive *drive, const struct hal_samples *sample
 __attribute__((noinline)) static void
 end_first_hold(struct drive *drive, const struct hal_samples *samples, uint32_t longer)
 {
-    if (drive->params.enabling.balance_periods == 0u || drive->supervision.knows_phases) {
+    if (drive->params.enabling.balance_periods == 0u || phase_balancing_is_done(drive)) {
         end_aligning(drive);
     } else if (longer == 0u) {
         phase_balancing_start(drive);
@@ -126,7 +125,7 @@ static void find_position_or_power_up(struct drive *drive)
 /* Apart: rare. */
 __attribute__((noinline)) static void start_enabling(struct drive *drive)
 {
-    drive->supervision.knows_phases = false;
+    phase_balancing_forget(drive);
     drive_reset_control(drive);
     measurement_reset(&drive->measurement, &drive->params.measurement);
     offset_calibration_reset(&drive->enabling.calibration);
@@ -208,10 +207,11 @@ __attribute__((cold, noinline)) static void realign(struct drive *drive)
     axis_note_uncertain(drive);
     reference_reset(&drive->reference, next.position);
     drive_reset_control(drive);
-    power_up(drive);
+    drive_reset_motion(drive);
     estimator_expect_current(&drive->estimator, next.current);
     standstill_hold_preset(&drive->hold, drive->params.hold.current);
-    standstill_hold_enter(&drive->hold, drive->reference.next.position.fraction);
+    standstill_hold_enter(&drive->hold, next.position.fraction);
+    enter(drive, DRIVE_ALIGNING);
 }
 
 __attribute__((cold, noinline)) static void do_as_asked(struct drive *drive)
