@@ -48,6 +48,11 @@ static bool shows_index(const struct drive *drive)
            drive->board->facts->has_encoder_index;
 }
 
+uint8_t axis_homing_methods(const struct application *application)
+{
+    return shows_index(&application->drive) ? 6 : 4;
+}
+
 void axis_homing_give_up(struct application *application)
 {
     axis_motion_brake(application, false);

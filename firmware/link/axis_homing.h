@@ -33,7 +33,7 @@ struct axis_homing {
     float from;       /* of the reference: this approach to the stop */
     float led_from;   /* of the reference, as the load began to grow */
     float free;       /* of the rotor, likewise */
-    float furthest;   /* of the rotor, in this approach */
+    float furthest;   /* of the rotor, before that, in this approach */
     float place;      /* the stop as far as it is known */
     float way;        /* 1 up, -1 down, of the motor */
     uint16_t ms;      /* for which the reference rests, or the load has grown */
@@ -46,6 +46,9 @@ struct axis_homing {
 
 /* Whether 6098h may have this value. */
 bool axis_homing_is_method(int8_t method);
+
+/* How many of those in 60e3h the drive has: those on an index are its last two. */
+uint8_t axis_homing_methods(const struct application *application);
 
 /* Begins by 6098h. */
 void axis_homing_start(struct application *application);

@@ -136,8 +136,8 @@ static void fail(struct application *application)
     }
 }
 
-/* The rotor has come furthest at the stop: pressed against it, it induces nothing, and its estimate
-   may drift. */
+/* The stop is where the rotor has come furthest before: pressed against it, it induces nothing, and
+   its estimate drifts. */
 static void touch(struct application *application)
 {
     struct axis_homing *homing = homing_of(application);
@@ -158,17 +158,17 @@ static void touch(struct application *application)
     catch_rotor(application, HOMING_CATCHES);
 }
 
-/* The rotor as it is before the stop bears it, and where it has come furthest. */
+/* The rotor as it is, and where it has come furthest, before the stop bears it. */
 static void follow(struct axis_homing *homing, float rotor, float reference, bool free)
 {
     if (free) {
         homing->free = rotor;
+        homing->furthest = greater(homing->furthest, rotor);
         homing->led_from = reference;
         homing->ms = 0;
     } else if (homing->ms < GROWS_ms) {
         homing->ms++;
     }
-    homing->furthest = greater(homing->furthest, rotor);
 }
 
 static void seek(struct application *application)
@@ -237,7 +237,7 @@ static void settle(struct application *application)
 
     if (homing->touches == TOUCHES) {
         axis_homing_end(application, place_at_rad(application, homing->place));
-    } else if (homing->failures == FAILURES) {
+    } else if (homing->failures >= FAILURES) {
         axis_homing_give_up(application);
     } else {
         approach(application);

@@ -10,8 +10,8 @@
  * - since then the reference has gone on by a quarter of a full step, the rotor by less than half
  * as much;
  * - as that began, the synchronism was not in doubt.
- * The place is the furthest that the rotor has come: pressed against a stop it induces nothing, and
- * its estimate drifts.
+ * The place is the furthest that the rotor has come before the load grew: pressed against a stop it
+ * induces nothing, and its estimate drifts.
  *
  * A stop that is struck throws the rotor back. The estimate may lose it, or say that it goes on by
  * a quarter of a full step under three quarters of the torque. That is no fault here, the approach

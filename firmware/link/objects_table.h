@@ -39,6 +39,7 @@
     GROUP(0x6092, "Feed constant")                                                                 \
     GROUP(0x6099, "Homing speeds")                                                                 \
     GROUP(0x60c2, "Interpolation time period")                                                     \
+    GROUP(0x60e3, "Supported homing methods")                                                      \
     GROUP(0x60fe, "Digital outputs")
 
 #define LINK_OBJECTS(STORED, ASKED)                                                                \
@@ -141,12 +142,19 @@
     STORED(0x609a, 0, U32, RW, homing_acceleration, 0, "Homing acceleration")                      \
     STORED(0x60c2, 1, U8, RW, interval, 4, "Interpolation time period value")                      \
     STORED(0x60c2, 2, I8, RW, interval_exponent, -3, "Interpolation time index")                   \
+    ASKED(0x60e3, 0, U8, RO, 4, "Number of supported homing methods")                              \
     ASKED(0x60f4, 0, I32, RO_T, 0, "Following error actual value")                                 \
     ASKED(0x60fd, 0, U32, RO_T, 0, "Digital inputs")                                               \
     ASKED(0x60fe, 1, U32, RO_T, 0, "Physical outputs")                                             \
     STORED(0x60ff, 0, I32, RW_R, target_velocity, 0, "Target velocity")                            \
     ASKED(0x6502, 0, U32, RO, 0x000000a5, "Supported drive modes")                                 \
     STORED(0x607e, 0, U8, RW, polarity, 0, "Polarity")                                             \
+    STORED(0x60e3, 1, I8, RO, homing_method_1, 37, "Supported homing method 1")                    \
+    STORED(0x60e3, 2, I8, RO, homing_method_2, 35, "Supported homing method 2")                    \
+    STORED(0x60e3, 3, I8, RO, homing_method_3, -1, "Supported homing method 3")                    \
+    STORED(0x60e3, 4, I8, RO, homing_method_4, -2, "Supported homing method 4")                    \
+    STORED(0x60e3, 5, I8, RO, homing_method_5, 33, "Supported homing method 5")                    \
+    STORED(0x60e3, 6, I8, RO, homing_method_6, 34, "Supported homing method 6")                    \
     STORED(0x1010, 0, U8, RO, store_highest, 1, "Highest sub-index supported")                     \
     STORED(0x1011, 0, U8, RO, restore_highest, 1, "Highest sub-index supported")                   \
     STORED(0x1016, 0, U8, RO, consumer_highest, 1, "Highest sub-index supported")                  \

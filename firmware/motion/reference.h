@@ -134,7 +134,8 @@ static inline int64_t reference_jerk_sixth(const struct reference *reference)
 }
 
 /* At rest at a position. */
-void reference_reset(struct reference *reference, struct position position);
+__attribute__((noinline)) void reference_reset(struct reference *reference,
+                                               struct position position);
 
 /* Of a reference at rest while nothing follows it: the position is now this one. */
 void reference_place(struct reference *reference, struct position position);

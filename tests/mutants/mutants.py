@@ -1355,7 +1355,7 @@ MUTANTS = [
     Mutant(LINK + "axis_homing_stop.c", "axis_homing", "what_gives_way_is_no_stop",
            "on > yield_steps || ", ""),
     Mutant(LINK + "axis_homing_stop.c", "axis_homing", "what_gives_way_eight_times_is_an_error",
-           "homing->failures == FAILURES) {\n        axis_homing_give_up", "false) {\n        axis_homing_give_up"),
+           "homing->failures >= FAILURES) {\n        axis_homing_give_up", "false) {\n        axis_homing_give_up"),
     Mutant(LINK + "axis_homing_stop.c", "axis_homing", "a_rotor_out_of_step_is_caught_and_comes_again",
            "interrupt_view_synchronism(drive) > DRIVE_SYNCHRONISM_DOUBTFUL ||", ""),
     Mutant(DRIVE + "state_machine.c", "axis_homing", "a_rotor_out_of_step_is_caught_and_comes_again",
@@ -1393,6 +1393,9 @@ MUTANTS = [
     Mutant(LINK + "axis_homing_stop.c", "axis_homing", "an_observer_of_counts_alone_refuses_it",
            "settings->observer != DRIVE_OBSERVER_HIGH_GAIN", "true"),
     # ---- homing on the index ----
+    Mutant(LINK + "axis_homing.c", "axis_homing",
+           "its_methods_are_listed_those_on_an_index_where_there_is_one",
+           "shows_index(&application->drive) ? 6 : 4", "6"),
     Mutant(LINK + "axis_homing.c", "axis_homing", "the_index_of_an_axis_that_is_turned_round",
            "homing->way > 0.0f ?", "true ?"),
     Mutant(LINK + "axis_homing.c", "axis_homing", "an_index_at_which_the_rotor_rests_is_that_of_the_next_turn",

@@ -14,8 +14,8 @@ const char *const encoder = "drive.feedback = \"encoder\"\nplant.encoder_counts_
 
 void test_without_a_load_without_an_encoder()
 {
-    expect_homed({"", "float", "", -1, 0.0, 100.0, 65536}, 51);
-    expect_homed({"", "fixed", "", -2, 0.0, 100.0, 65536}, 48);
+    expect_homed({"", "float", "", -1, 0.0, 100.0, 65536}, 53);
+    expect_homed({"", "fixed", "", -2, 0.0, 100.0, 65536}, 49);
 }
 
 void test_against_a_quarter_of_the_rated_load_without_an_encoder()

@@ -18,7 +18,7 @@ void test_without_a_load()
 void test_against_a_quarter_of_the_rated_load()
 {
     expect_homed({"", "fixed", "", -1, 0.25, 100.0, 65536, 20.0, 0.02}, 55);
-    expect_homed({"", "float", "", -2, 0.25, 100.0, 65536, 20.0, 0.08}, 56);
+    expect_homed({"", "float", "", -2, 0.25, 100.0, 65536, 20.0, 0.08}, 55);
 }
 
 } // namespace
