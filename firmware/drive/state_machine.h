@@ -72,9 +72,9 @@ void state_machine_ask_for_fault(struct drive *drive, enum drive_fault fault);
 /*
  * Background, of a rotor that may be anywhere: the next interrupt aligns it anew, if the drive is
  * in operation still and no fault has been asked for. The reference stops where the rotor is
- * estimated, and the first hold begins anew, with all of its current, which
- * draws the rotor there to within whole electrical turns; then the drive is in operation again.
- * What is known of the winding stays; the position is uncertain.
+ * estimated, and the first hold begins anew, with all of its current, which draws the rotor there
+ * to within whole electrical turns; then the drive is in operation again. What is known of the
+ * winding stays; the position is uncertain.
  */
 void state_machine_ask_to_realign(struct drive *drive);
 

@@ -29,12 +29,13 @@ enum homing_phase {
 struct axis_homing {
     double began_rad; /* of the reference: the search */
     double index_rad;
-    /* full steps on the way from there */
-    float from;       /* of the reference: this approach to the stop */
-    float led_from;   /* of the reference, as the load began to grow */
-    float free;       /* of the rotor, likewise */
-    float furthest;   /* of the rotor, before that, in this approach */
-    float place;      /* the stop as far as it is known */
+    /* In full steps on the way from where the search began: */
+    float from;     /* of the reference: this approach to the stop */
+    float led_from; /* of the reference, as the load began to grow */
+    float free;     /* of the rotor, likewise */
+    float furthest; /* of the rotor, before that, in this approach */
+    float place;    /* the stop as far as it is known */
+
     float way;        /* 1 up, -1 down, of the motor */
     uint16_t ms;      /* for which the reference rests, or the load has grown */
     uint8_t phase;    /* enum homing_phase */

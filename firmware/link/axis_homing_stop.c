@@ -159,9 +159,10 @@ static void touch(struct application *application)
 }
 
 /* The rotor as it is, and where it has come furthest, before the stop bears it. */
-static void follow(struct axis_homing *homing, float rotor, float reference, bool free)
+static void follow(struct axis_homing *homing, float rotor, float reference, bool free, bool sure)
 {
     if (free) {
+        homing->doubtful = !sure;
         homing->free = rotor;
         homing->furthest = greater(homing->furthest, rotor);
         homing->led_from = reference;
@@ -184,8 +185,7 @@ static void seek(struct application *application)
     const bool free =
         torque_Nm < growing_share * stop_Nm || reference - homing->from < under_way_steps;
 
-    follow(homing, rotor, reference, free);
-    homing->doubtful = free ? now->synchronism != DRIVE_SYNCHRONISM_SURE : homing->doubtful;
+    follow(homing, rotor, reference, free, now->synchronism == DRIVE_SYNCHRONISM_SURE);
 
     const float on = rotor - homing->free;
     const float led = reference - homing->led_from;

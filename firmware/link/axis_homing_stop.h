@@ -18,7 +18,8 @@
  * has failed. Whatever it has come to, the rotor is caught (drive/state_machine.h), led back by a
  * hold, caught again where it is to begin, so that nothing of the stop is taken for a load, and
  * sent once more: some electrical turns beside its first course, perhaps, which is of no account,
- * and at another speed. After eight such approaches there is a homing error: what gives way is
+ * and at another speed: 6099h, 2, half of it or half as much again, but always well above the creep
+ * in which a hold leads it. After eight such approaches there is a homing error: what gives way is
  * softer than a quarter of the torque over a quarter of a full step, or the load is heavier than
  * the torque. So there is when the reference has gone the travel 2403h, 2.
  *

@@ -29,12 +29,17 @@ static struct axis_motion *motion_of(struct application *application)
     return &application->link->axis.motion;
 }
 
+static bool moves(const struct drive *drive)
+{
+    return interrupt_view_moves(drive) || command_queue_holds_any(&drive->commands);
+}
+
+/* Not while the drive aligns: it takes no motion then. */
 bool axis_motion_rests(const struct application *application)
 {
     const struct drive *drive = &application->drive;
 
-    return interrupt_view_state(drive) == DRIVE_OPERATION_ENABLED && !interrupt_view_moves(drive) &&
-           !command_queue_holds_any(&drive->commands);
+    return interrupt_view_state(drive) == DRIVE_OPERATION_ENABLED && !moves(drive);
 }
 
 /* ---- limits ---- */
@@ -157,7 +162,7 @@ void axis_motion_brake(struct application *application, bool quickly)
     motion_of(application)->speed_rad_s = 0.0f;
     motion_of(application)->at_limit = false;
     motion_of(application)->homing.phase = HOMING_ENDED;
-    if (!axis_motion_rests(application) &&
+    if (moves(&application->drive) &&
         !axis_motion_post(application, DRIVE_COMMAND_VELOCITY, 0.0, 0.0f, deceleration)) {
         (void)cia402_command(application, &stop);
     }

@@ -62,6 +62,7 @@ class Machine
             plant.stops.high_rad = stop_rad;
             plant.stops.stiffness_Nm_rad = std::fmax(
                 asked.stiffness_Nm_rad, asked.stiffness_rated * rated_Nm_ / full_step_rad_);
+            yields_rad_ = 0.7 * rated_Nm_ / plant.stops.stiffness_Nm_rad;
         }
         board_ = sil::Board::flashed(plant, *scenario::image_of(asked.numeric), machine.drive,
                                      machine.comparator_trip_A);
@@ -91,7 +92,7 @@ class Machine
         outcome.off_rad =
             board_->signals().theta_ref_rad - (board_->plant().state().theta_rad - way * stop_rad);
         outcome.full_step_rad = full_step_rad_;
-        outcome.yields_rad = 0.7 * rated_Nm_ / std::fmax(asked_.stiffness_Nm_rad, 1e-9);
+        outcome.yields_rad = yields_rad_;
         return outcome;
     }
 
@@ -174,7 +175,7 @@ class Machine
     std::unique_ptr<sil::Board> board_;
     std::string heard_;
     unsigned status_ = 0;
-    double rated_Nm_ = 0, full_step_rad_ = 0, speed_units_ = 0;
+    double rated_Nm_ = 0, full_step_rad_ = 0, speed_units_ = 0, yields_rad_ = 0;
 };
 
 /* Under a sanitizer all takes ten times as long: every eighth motor, and nothing is counted. */

@@ -22,7 +22,7 @@ START, ATTAINED, HOMING_ERROR = 0x10, 0x1000, 0x2000
 HOMING_METHODS = {"here": 37, "stop-down": -1, "stop-up": -2, "index-down": 33, "index-up": 34}
 STOP_TORQUE, STOP_TRAVEL = (0x2403, 1), (0x2403, 2)
 WHY_NOT = {"here": "the axis moves",
-           "stop": "within its travel nothing bore the torque and stood, or the rotor may have lost step, or the drive's law "
+           "stop": "within its travel nothing bore the torque and stood, or no place was found twice, or the drive's law "
                    "knows no load",
            "index": "none has passed in a turn, or the drive has no encoder with an index"}
 
