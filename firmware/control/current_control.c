@@ -12,7 +12,7 @@ struct current_control_params current_control_design(const struct motor_params *
     params.proportional = coef_from_double(proportional);
     params.integral = coef_from_double(integral);
     params.unwind = coef_from_double(integral / proportional);
-    params.reactance = coef_from_double(per_unit_reactance(base, motor));
+    params.reactance = coef_large_from_double(per_unit_reactance(base, motor));
     current_control_params_fit_coefficients(&params);
     return params;
 }

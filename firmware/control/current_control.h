@@ -68,7 +68,7 @@ current_control_step(struct current_control *control, const struct current_contr
                      num_t voltage_limit)
 {
     const struct current_control_params *gain = KNOWN(current_control_params, params);
-    const num_t reactance = num_mul_coef(speed.frame, gain->reactance);
+    const num_t reactance = num_mul_large(speed.frame, gain->reactance);
     const struct dq error = {reference.d - current.d, reference.q - current.q};
     const struct dq wanted = {num_mul_coef(error.d, gain->proportional) + control->integral.d -
                                   num_mul(reactance, current.q),

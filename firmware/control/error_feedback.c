@@ -16,9 +16,9 @@ struct error_feedback_params error_feedback_scale(const struct position_law_task
     const double speed = gains->speed_As_rad * base->speed_rad_s / base->current_A;
     struct error_feedback_params params = {
         .position = coef_from_double(position),
-        .speed = coef_from_double(speed),
-        .reference_acceleration = coef_from_double(gains->reference_acceleration_As2_rad *
-                                                   base->acceleration_rad_s2 / base->current_A),
+        .speed = coef_large_from_double(speed),
+        .reference_acceleration = coef_large_from_double(
+            gains->reference_acceleration_As2_rad * base->acceleration_rad_s2 / base->current_A),
         .reference_friction = coef_from_double(gains->reference_friction_As_rad *
                                                base->speed_rad_s / base->current_A),
         .position_error_limit = error_limit(position, POSITION_DIFFERENCE_MAX),

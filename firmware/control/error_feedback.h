@@ -50,8 +50,8 @@ static inline num_t error_feedback(const struct error_feedback_params *params,
     num_t speed_error =
         num_headroom(input->reference_speed - input->speed, params->speed_error_limit);
 
-    return num_mul_coef(position_error, gain->position) + num_mul_coef(speed_error, gain->speed) +
-           num_mul_coef(input->reference_acceleration, gain->reference_acceleration) +
+    return num_mul_coef(position_error, gain->position) + num_mul_large(speed_error, gain->speed) +
+           num_mul_large(input->reference_acceleration, gain->reference_acceleration) +
            num_mul_coef(input->reference_speed, gain->reference_friction);
 }
 

@@ -8,8 +8,8 @@ struct modulator_params modulator_design(uint32_t half_period_counts, double max
         .middle_counts = (int32_t)half,
         .swing_counts = (int32_t)(half * max),
         .max = UNIT(max),
-        .counts = coef_from_double(half * NUM_COUNT_SCALE),
-        .voltage_per_count = coef_from_double(NUM_CODE_SCALE / half),
+        .counts = coef_small_from_double(half * NUM_COUNT_SCALE),
+        .voltage_per_count = coef_large_from_double(NUM_CODE_SCALE / half),
     };
     modulator_params_fit_coefficients(&params);
     return params;

@@ -18,7 +18,8 @@ struct standstill_hold_params standstill_hold_design(const struct per_unit *base
     params.ramp_out = num_from_double(current * task->period_s / task->ramp_out_s);
     params.motion_current = num_from_double(task->motion_current_A / base->current_A);
     params.current_limit = num_from_double(task->current_limit_A / base->current_A);
-    params.damping = coef_from_double(task->damping_As_rad * base->speed_rad_s / base->current_A);
+    params.damping =
+        coef_large_from_double(task->damping_As_rad * base->speed_rad_s / base->current_A);
     params.enters_at_rest = task->enters_at_rest;
     params.delay_periods =
         task->enters_at_rest ? (uint32_t)(task->delay_s / task->period_s + 0.5) : UINT32_MAX;
@@ -107,7 +108,7 @@ num_t standstill_hold_torque_current(const struct standstill_hold_params *params
                                      num_t load_torque)
 {
     const struct standstill_hold_params *gain = KNOWN(standstill_hold_params, params);
-    num_t current = load_torque - num_mul_coef(speed, gain->damping);
+    num_t current = load_torque - num_mul_large(speed, gain->damping);
 
     return num_limit(current, params->current_limit);
 }

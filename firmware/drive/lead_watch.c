@@ -58,7 +58,7 @@ static num_t denied(const struct drive *drive, num_t change, num_t away)
     const double per_load = coef_to_double(drive->synchronism.params.voltage_per_sum_holding) /
                             coef_to_double(gain->load_q);
     const num_t returned =
-        num_mul_coef(away, gain->load_return) * (num_t)drive->synchronism.params.block_periods;
+        num_mul_small(away, gain->load_return) * (num_t)drive->synchronism.params.block_periods;
 
     return num_mul_coef(num_headroom(change + returned, NUM(4.0)), coef_from_double(per_load));
 }

@@ -21,7 +21,7 @@ struct offset_calibration_params offset_calibration_design(const struct hal_fact
         .delay = whole(delay_codes * OFFSET_SAMPLES),
         .shift_max = whole(shift_codes * OFFSET_SAMPLES),
         .deviation_max = whole(OFFSET_DEVIATION_CODES_MAX * finer * OFFSET_SAMPLES),
-        .drop = coef_from_double(drop_V / base->voltage_V * NUM_CODE_SCALE),
+        .drop = coef_large_from_double(drop_V / base->voltage_V * NUM_CODE_SCALE),
         .drop_resistance = num_from_double(motor->resistance_ohm / base->resistance_ohm),
     };
 }
@@ -116,14 +116,14 @@ static bool end_stage(struct offset_calibration *calibration,
     return true;
 }
 
-/* In whole codes, if the sum is larger than num_from_code takes: of a finer converter, or as what
-   is too large is shown. */
+/* In whole codes, if the sum is larger than num_from_code_sum takes: of a finer converter, or as
+   what is too large is shown. */
 __attribute__((noinline)) static num_t mean_offset(int32_t sum, coef_t per_code)
 {
     if (magnitude(sum) > OFFSET_CODES_MAX * OFFSET_SAMPLES) {
         return num_from_code(sum / OFFSET_SAMPLES, per_code);
     }
-    return num_mul(num_from_code(sum, per_code), NUM(1.0 / OFFSET_SAMPLES));
+    return num_mul(num_from_code_sum(sum, per_code), NUM(1.0 / OFFSET_SAMPLES));
 }
 
 struct phases offset_calibration_drop_error(const struct offset_calibration *calibration,

@@ -27,7 +27,7 @@ struct phase_balance_params phase_balance_design(const struct phase_balance_task
     return (struct phase_balance_params){
         .lead = lead,
         .look = look,
-        .per_look = coef_from_double(1.0 / (double)look),
+        .per_look = coef_small_from_double(1.0 / (double)look),
         .speed_per_turn = coef_from_double(1.0 / task->base->turns_per_period),
         .current_min =
             num_from_double(current_share_min * task->hold_current_A / task->base->current_A),
@@ -58,10 +58,10 @@ void phase_balance_start(struct phase_balance *balance, angle_t held)
 
 static void look(struct channels *mean, const struct channels *winding, coef_t share)
 {
-    mean->current.a += num_mul_coef_nearest(winding->current.a, share);
-    mean->current.b += num_mul_coef_nearest(winding->current.b, share);
-    mean->voltage.a += num_mul_coef_nearest(winding->voltage.a, share);
-    mean->voltage.b += num_mul_coef_nearest(winding->voltage.b, share);
+    mean->current.a += num_mul_small_nearest(winding->current.a, share);
+    mean->current.b += num_mul_small_nearest(winding->current.b, share);
+    mean->voltage.a += num_mul_small_nearest(winding->voltage.a, share);
+    mean->voltage.b += num_mul_small_nearest(winding->voltage.b, share);
 }
 
 /* From the means; false: beyond what is sound. */

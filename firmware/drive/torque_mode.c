@@ -24,7 +24,7 @@ static num_t current_within_speed(const struct drive *drive, num_t speed, num_t 
     const struct standstill_hold_params *hold = &drive->params.hold;
     const bool back = speed < NUM(0.0);
     const num_t excess = speed - (back ? -drive->torque.speed : drive->torque.speed);
-    const num_t keeping = load_torque - num_mul_coef(excess, hold->damping);
+    const num_t keeping = load_torque - num_mul_large(excess, hold->damping);
     const num_t current = drive->torque.current;
 
     return num_limit((keeping < current) != back ? keeping : current, hold->current_limit);

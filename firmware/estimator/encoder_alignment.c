@@ -44,7 +44,7 @@ static struct alignment_hold design_held(const struct encoder_alignment_task *ta
         .current = num_from_double(current),
         .tolerance = num_from_double(current_tolerance * current),
         .look = look,
-        .per_look = coef_from_double(1.0 / (double)look),
+        .per_look = coef_small_from_double(1.0 / (double)look),
         .lead = lead,
     };
 }
@@ -175,7 +175,7 @@ static void look(struct encoder_alignment *alignment, const struct encoder_align
         alignment->highest = count;
     }
     alignment->deviation = deviation(alignment, params, count);
-    alignment->mean += num_mul_coef_nearest(turns_from_angle(alignment->deviation), per_look);
+    alignment->mean += num_mul_small_nearest(turns_from_angle(alignment->deviation), per_look);
     alignment->looked++;
 }
 

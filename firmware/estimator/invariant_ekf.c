@@ -10,20 +10,21 @@ static struct invariant_ekf_gain_set scale(const struct per_unit *base,
     const double volts_per_turn = base->rad_per_turn / base->voltage_V;
     const bool odd = k->k_angle_d_rad_A != 0.0;
     struct invariant_ekf_gain_set set = {
-        .current = coef_from_double(0.5 * (k->k_current_d + k->k_current_q)),
+        .current = coef_large_from_double(0.5 * (k->k_current_d + k->k_current_q)),
         .speed_q = coef_from_double(k->k_speed_q_rad_As * i / base->speed_rad_s),
-        .angle_d = coef_from_double(k->k_angle_d_rad_A * turns_per_current / full_speed),
+        .angle_d = coef_large_from_double(k->k_angle_d_rad_A * turns_per_current / full_speed),
         .angle_q = coef_from_double(k->k_angle_q_rad_A * turns_per_current),
-        .load_q = coef_from_double(k->k_load_q_Nm_A * i / base->torque_Nm),
-        .bias_per_turn =
-            coef_from_double(odd ? k->k_bias_d_V_A / k->k_angle_d_rad_A * volts_per_turn : 0.0),
+        .load_q = coef_large_from_double(k->k_load_q_Nm_A * i / base->torque_Nm),
+        .bias_per_turn = coef_small_from_double(
+            odd ? k->k_bias_d_V_A / k->k_angle_d_rad_A * volts_per_turn : 0.0),
         .bias_q = coef_from_double(k->k_bias_q_V_A / base->resistance_ohm),
         .resistance = coef_from_double(k->k_resistance_ohm_A2 * i * i / base->resistance_ohm),
-        .load_return = coef_from_double(k->load_return),
+        .load_return = coef_small_from_double(k->load_return),
         .angle_return =
-            coef_from_double(k->angle_return_rad_Nm * base->torque_Nm / base->rad_per_turn),
-        .bias_return = coef_from_double(k->bias_return_V_Nm * base->torque_Nm / base->voltage_V),
-        .load_settle = coef_from_double(k->load_settle),
+            coef_small_from_double(k->angle_return_rad_Nm * base->torque_Nm / base->rad_per_turn),
+        .bias_return =
+            coef_small_from_double(k->bias_return_V_Nm * base->torque_Nm / base->voltage_V),
+        .load_settle = coef_small_from_double(k->load_settle),
     };
     invariant_ekf_gain_set_fit_coefficients(&set);
     return set;
@@ -64,7 +65,7 @@ struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params 
         .rest_periods = hold->rest_periods,
         .swing_periods = hold->swing_periods,
         .load_step = num_from_double(hold->load_step_Nm / base->torque_Nm),
-        .bias_settle = coef_from_double(SHARE_PER_BLOCK(BIAS_SETTLE_TIME_S)),
+        .bias_settle = coef_small_from_double(SHARE_PER_BLOCK(BIAS_SETTLE_TIME_S)),
         .usual_memory = coef_from_double(SHARE_PER_BLOCK(USUAL_CHANGE_TIME_S)),
     };
     return params;
@@ -133,8 +134,8 @@ static void settle_bias(struct invariant_ekf *ekf, const struct invariant_ekf_pa
     if (ekf->following_periods == 0u) {
         struct phases *settled = &ekf->settled_bias;
 
-        settled->a += num_mul_coef_nearest(ekf->bias.a - settled->a, params->bias_settle);
-        settled->b += num_mul_coef_nearest(ekf->bias.b - settled->b, params->bias_settle);
+        settled->a += num_mul_small_nearest(ekf->bias.a - settled->a, params->bias_settle);
+        settled->b += num_mul_small_nearest(ekf->bias.b - settled->b, params->bias_settle);
     }
 }
 

@@ -23,7 +23,7 @@ static inline num_t invariant_ekf_odd_turns(const struct invariant_ekf_params *p
     const num_t full = params->odd_gain_speed;
     const num_t direction = num_clamp(speed, -full, full);
 
-    return num_mul(innovation_d, num_mul_coef(direction, gain->angle_d));
+    return num_mul(innovation_d, num_mul_large(direction, gain->angle_d));
 }
 
 static inline struct invariant_ekf_correction
@@ -35,8 +35,8 @@ invariant_ekf_correct_in_motion(const struct invariant_ekf_params *params, num_t
 
     return (struct invariant_ekf_correction){
         .turns = odd + num_mul_coef(innovation.q, gain->angle_q),
-        .bias_q = num_mul_coef_nearest(odd, gain->bias_per_turn),
-        .load_torque = num_mul_coef(innovation.q, gain->load_q)};
+        .bias_q = num_mul_small_nearest(odd, gain->bias_per_turn),
+        .load_torque = num_mul_large(innovation.q, gain->load_q)};
 }
 
 /* `away`: of the load from the one settled at. */
@@ -47,11 +47,12 @@ invariant_ekf_correct_in_hold(const struct invariant_ekf_gain_set *gains, struct
     const struct invariant_ekf_gain_set *gain = KNOWN(invariant_ekf_gain_set, gains);
 
     return (struct invariant_ekf_correction){
-        .turns = num_mul_coef(innovation.q, gain->angle_q) + num_mul_coef(away, gain->angle_return),
+        .turns =
+            num_mul_coef(innovation.q, gain->angle_q) + num_mul_small(away, gain->angle_return),
         .bias_q = num_mul_coef_nearest(innovation.q, gain->bias_q) -
-                  num_mul_coef_nearest(away, gain->bias_return),
+                  num_mul_small_nearest(away, gain->bias_return),
         .load_torque =
-            num_mul_coef(innovation.q, gain->load_q) - num_mul_coef(away, gain->load_return)};
+            num_mul_large(innovation.q, gain->load_q) - num_mul_small(away, gain->load_return)};
 }
 
 static inline num_t invariant_ekf_away_from_settled_load(const struct invariant_ekf *ekf)
@@ -85,8 +86,8 @@ invariant_ekf_correct(struct invariant_ekf *ekf, const struct invariant_ekf_gain
     struct estimate *x = &ekf->estimate;
     const struct outlook *expected = &x->next;
 
-    x->current.a = innovation->current.a + num_mul_coef(innovation->error.a, gain->current);
-    x->current.b = innovation->current.b + num_mul_coef(innovation->error.b, gain->current);
+    x->current.a = innovation->current.a + num_mul_large(innovation->error.a, gain->current);
+    x->current.b = innovation->current.b + num_mul_large(innovation->error.b, gain->current);
     x->rotor.speed = expected->speed + num_mul_coef(innovation->in_frame.q, gain->speed_q);
     x->rotor.position = position_add(expected->position, angle_from_any_turns(by.turns));
     x->rotor.load_torque += by.load_torque;
@@ -122,7 +123,7 @@ invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_p
         return &params->holding;
     }
     ekf->settled_load +=
-        num_mul_coef(away, KNOWN(invariant_ekf_gain_set, &params->following)->load_settle);
+        num_mul_small(away, KNOWN(invariant_ekf_gain_set, &params->following)->load_settle);
     return &params->following;
 }
 

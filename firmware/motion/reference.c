@@ -15,7 +15,7 @@ struct reference_params reference_design(const struct per_unit *base, double per
     struct reference_params params;
 
     params.speed = coef_from_double(speed);
-    params.acceleration = coef_from_double(acceleration / ACCELERATION_SCALE);
+    params.acceleration = coef_large_from_double(acceleration / ACCELERATION_SCALE);
     params.jerk = coef_from_double(acceleration / JERK_SCALE);
     reference_params_fit_coefficients(&params);
     params.speed_remainder = coef_from_double(speed - coef_to_double(params.speed));

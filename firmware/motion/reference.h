@@ -269,7 +269,7 @@ static inline void reference_show_acceleration(struct reference *r,
         turns_from_angle((int32_t)(r->at.acceleration >> REFERENCE_ACCELERATION_SHIFT));
 
     r->next.acceleration =
-        num_mul_coef(acceleration, KNOWN(reference_params, params)->acceleration);
+        num_mul_large(acceleration, KNOWN(reference_params, params)->acceleration);
 }
 
 static inline void reference_count_slow(struct reference *r)

@@ -104,6 +104,20 @@ coef_t coef_of_shift(double x, int shift)
     return k;
 }
 
+coef_t coef_large_from_double(double x)
+{
+    const coef_t k = coef_from_double(x);
+
+    return k.right > 0u ? coef_of_shift(x, 0) : k;
+}
+
+coef_t coef_small_from_double(double x)
+{
+    const coef_t k = coef_from_double(x);
+
+    return k.left > 0u ? coef_of_shift(x, 0) : k;
+}
+
 double coef_to_double(coef_t k)
 {
     double x = (double)k.mantissa / 65536.0;
@@ -154,6 +168,16 @@ double num_to_double(num_t x)
 coef_t coef_from_double(double x)
 {
     return (coef_t)x;
+}
+
+coef_t coef_large_from_double(double x)
+{
+    return coef_from_double(x);
+}
+
+coef_t coef_small_from_double(double x)
+{
+    return coef_from_double(x);
 }
 
 double coef_to_double(coef_t k)

@@ -144,6 +144,59 @@ static void test_a_gain_is_rounded_down_once_and_shifted(void)
     }
 }
 
+/* The kinds of gain, and products of codes: the same as of a gain of any kind, to the last bit. */
+static void test_products_of_a_large_and_a_small_gain_are_those_of_any_gain(void)
+{
+    random_state = 8;
+    for (int i = 0; i < 1000000; i++) {
+        const int32_t a = (int32_t)random_bits() >> (random_bits() % 32u);
+        const int16_t mantissa = (int16_t)(random_bits() % 65535u - 32767u);
+        const unsigned shift = random_bits() % 16u;
+        const coef_t large = {.mantissa = mantissa, .left = (uint8_t)shift};
+        const coef_t small = {.mantissa = mantissa, .right = (uint8_t)shift};
+        const int64_t product = floor_of((int64_t)a * mantissa, 16) * ((int64_t)1 << shift);
+
+        if (product >= INT32_MIN && product <= INT32_MAX) {
+            TEST_ASSERT_EQUAL_INT32((int32_t)product, num_mul_large(a, large));
+        }
+        TEST_ASSERT_EQUAL_INT32(num_mul_coef(a, small), num_mul_small(a, small));
+        TEST_ASSERT_EQUAL_INT32(num_mul_coef_nearest(a, small), num_mul_small_nearest(a, small));
+    }
+}
+
+static void test_a_code_times_a_gain_is_its_floor_shifted(void)
+{
+    for (int32_t code = -65535; code <= 65535; code++) {
+        const coef_t k = {.mantissa = (int16_t)(code % 2 == 0 ? 32767 : -16384 - code % 997)};
+
+        TEST_ASSERT_EQUAL_INT32((int32_t)floor_of((int64_t)code * k.mantissa, 6),
+                                num_from_code(code, k));
+        if (code >= -4096 && code < 4096) {
+            const coef_t shifted = {.mantissa = k.mantissa, .left = 4u};
+
+            TEST_ASSERT_EQUAL_INT32((int32_t)floor_of((int64_t)code * k.mantissa, 6) * 16,
+                                    num_from_code(code, shifted));
+        }
+    }
+}
+
+static void test_a_gain_of_a_kind_is_never_shifted_to_the_other_side(void)
+{
+    for (double gain = 30000.0; gain > 1e-8; gain *= 0.73) {
+        const coef_t large = coef_large_from_double(-gain);
+        const coef_t small = coef_small_from_double(gain);
+
+        TEST_ASSERT_EQUAL_UINT8(0, large.right);
+        TEST_ASSERT_EQUAL_UINT8(0, small.left);
+        TEST_ASSERT_DOUBLE_WITHIN(gain / 32768.0 + 0.5 / 65536.0, -gain, coef_to_double(large));
+        if (gain < 32767.0 / 65536.0) {
+            TEST_ASSERT_DOUBLE_WITHIN(gain / 32768.0, gain, coef_to_double(small));
+        } else {
+            TEST_ASSERT_EQUAL_DOUBLE(32767.0 / 65536.0, coef_to_double(small));
+        }
+    }
+}
+
 static void ratio_is_the_floor_of_the_exact_one(int32_t a, int32_t u)
 {
     int64_t product = floor_of((int64_t)a * u, 15);
@@ -199,9 +252,13 @@ static void test_a_product_that_does_not_fit_is_seen(void)
     TEST_ASSERT_TRUE(new_overflows() > 0);
     (void)num_from_unit(UNIT(32.0));
     TEST_ASSERT_TRUE(new_overflows() > 0);
-    (void)num_from_code(1 << 21, two);
+    (void)num_from_code_sum(1 << 21, two);
     TEST_ASSERT_TRUE(new_overflows() > 0);
-    (void)counts_from_num(NUM(-16.1), two);
+    (void)num_mul_large(NUM(16.1), two);
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+    (void)num_from_code(-65536, (coef_t){.mantissa = 1});
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+    (void)num_from_code(65535, (coef_t){.mantissa = INT16_MAX, .left = 7u});
     TEST_ASSERT_TRUE(new_overflows() > 0);
 }
 #endif
@@ -218,6 +275,23 @@ static void test_a_second_factor_too_large_for_a_short_multiplication_is_seen(vo
     (void)num_mul_unit_nearest(NUM(1.0), UNIT(-2.1));
     TEST_ASSERT_TRUE(new_overflows() > 0);
 }
+
+#ifndef STEADYSTEP_COEFFICIENT_SHIFTS /* where a gain of either kind may have any shift */
+static void test_a_gain_of_the_other_kind_is_seen(void)
+{
+    const coef_t small = {.mantissa = INT16_MAX, .right = 1u};
+    const coef_t large = {.mantissa = INT16_MAX, .left = 1u};
+
+    (void)num_mul_large(NUM(1.0), small);
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+    (void)num_from_code(1, small);
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+    (void)num_mul_small(NUM(1.0), large);
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+    (void)num_mul_small_nearest(NUM(1.0), large);
+    TEST_ASSERT_TRUE(new_overflows() > 0);
+}
+#endif
 
 static void test_what_is_meant_to_go_round_is_none(void)
 {
@@ -383,20 +457,26 @@ static void test_a_gain_applied_is_the_gain_asked_for(void)
 
 static void test_a_converter_code_becomes_a_number(void)
 {
-    /* 12-bit currents, and the largest code the interface allows. */
+    /* 12-bit currents, the largest code the interface allows and the largest sum of codes. */
     const double current = 1.0 / 2048.0;
+    const double middle = 1.0 / 65536.0;
     const double fine = 1.0 / 2097152.0;
-    const coef_t per_code = coef_from_double(current * NUM_CODE_SCALE);
+    const coef_t per_code = coef_large_from_double(current * NUM_CODE_SCALE);
+    const coef_t per_middle_code = coef_large_from_double(middle * NUM_CODE_SCALE);
     const coef_t per_fine_code = coef_from_double(fine * NUM_CODE_SCALE);
 
     for (int32_t code = -2048; code < 2048; code++) {
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, code * current,
                                   num_to_double(num_from_code(code, per_code)));
     }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 65535 * middle,
+                              num_to_double(num_from_code(65535, per_middle_code)));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -65535 * middle,
+                              num_to_double(num_from_code(-65535, per_middle_code)));
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 2097151 * fine,
-                              num_to_double(num_from_code(2097151, per_fine_code)));
+                              num_to_double(num_from_code_sum(2097151, per_fine_code)));
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, -2097151 * fine,
-                              num_to_double(num_from_code(-2097151, per_fine_code)));
+                              num_to_double(num_from_code_sum(-2097151, per_fine_code)));
 }
 
 /* What the product is cut to before its last shift is less than a tenth of the resolution here. */
@@ -466,7 +546,7 @@ static void test_a_number_becomes_the_nearest_count(void)
     static const double counts[] = {4250.0, 2125.0, 32767.0};
 
     for (int i = 0; i < 3; i++) {
-        const coef_t k = coef_from_double(counts[i] * NUM_COUNT_SCALE);
+        const coef_t k = coef_small_from_double(counts[i] * NUM_COUNT_SCALE);
 
         for (double modulation = -0.92; modulation <= 0.92; modulation += 0.00037) {
             double exact = counts[i] * modulation;
@@ -476,7 +556,7 @@ static void test_a_number_becomes_the_nearest_count(void)
         }
         TEST_ASSERT_EQUAL_INT32(0, counts_from_num(NUM(0.0), k));
     }
-    const coef_t half_period = coef_from_double(4250.0 * NUM_COUNT_SCALE);
+    const coef_t half_period = coef_small_from_double(4250.0 * NUM_COUNT_SCALE);
 
     TEST_ASSERT_EQUAL_INT32(2125, counts_from_num(NUM(0.5), half_period));
     TEST_ASSERT_EQUAL_INT32(-2125, counts_from_num(NUM(-0.5), half_period));
@@ -602,6 +682,12 @@ int main(void)
     RUN_TEST(test_a_product_is_the_floor_with_a_coarse_second_factor);
     RUN_TEST(test_the_upper_half_of_a_16_bit_product_is_its_floor);
     RUN_TEST(test_a_gain_is_rounded_down_once_and_shifted);
+    RUN_TEST(test_products_of_a_large_and_a_small_gain_are_those_of_any_gain);
+    RUN_TEST(test_a_code_times_a_gain_is_its_floor_shifted);
+    RUN_TEST(test_a_gain_of_a_kind_is_never_shifted_to_the_other_side);
+#ifndef STEADYSTEP_COEFFICIENT_SHIFTS
+    RUN_TEST(test_a_gain_of_the_other_kind_is_seen);
+#endif
     RUN_TEST(test_a_ratio_is_the_floor_of_the_exact_one);
 #ifndef __arm__ /* whose cores' own products state no condition */
     RUN_TEST(test_a_product_that_does_not_fit_is_seen);
