@@ -30,7 +30,8 @@ static struct {
     uint32_t written, sent;
 } transmit;
 
-static uint32_t tried_in; /* period of the last way out of bus-off */
+static bool off;          /* bus-off, when state() looked last */
+static uint32_t tried_in; /* period of the last way out of it */
 
 static void configure_filters(const uint16_t *ids)
 {
@@ -134,9 +135,10 @@ static size_t room(void *context)
     return TRANSMIT_FRAMES - (transmit.written - transmit.sent);
 }
 
+/* While the bus is off nothing waits: what is heard first behind it is that it is back. */
 static void send(void *context, const struct can_frame *frame)
 {
-    if (room(context) > 0u) {
+    if (!off && room(context) > 0u) {
         transmit.frames[transmit.written % TRANSMIT_FRAMES] = *frame;
         transmit.written++;
         feed();
@@ -172,11 +174,11 @@ static uint32_t state(void *context)
     receive.lost = false;
     FDCAN3->ir = FDCAN_IR_RFL;
     passive = (psr & FDCAN_PSR_EP) != 0u || (passive && (psr & FDCAN_PSR_EW) != 0u);
-    if ((psr & FDCAN_PSR_BO) != 0u) {
+    off = (psr & FDCAN_PSR_BO) != 0u;
+    if (off) {
         leave_bus_off();
     }
-    return (passive ? HAL_CAN_PASSIVE : 0u) | ((psr & FDCAN_PSR_BO) != 0u ? HAL_CAN_OFF : 0u) |
-           (lost ? HAL_CAN_LOST : 0u);
+    return (passive ? HAL_CAN_PASSIVE : 0u) | (off ? HAL_CAN_OFF : 0u) | (lost ? HAL_CAN_LOST : 0u);
 }
 
 const struct hal_can fdcan = {

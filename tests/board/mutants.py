@@ -288,6 +288,14 @@ MUTANTS = [
         "then it says that it is back, first",
     ),
     Mutant(
+        "what is to be sent while the bus is off is sent behind it",
+        "fdcan.c",
+        "if (!off && room(context) > 0u)",
+        "if (room(context) > 0u)",
+        "can-bus-off",
+        "then it says that it is back, first",
+    ),
+    Mutant(
         "the index captures nothing",
         "encoder.c",
         "ENCODER->ccer = edge | INDEX_ON;",

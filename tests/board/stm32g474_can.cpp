@@ -224,7 +224,7 @@ void can_bus_off(Expectations &expectations, const std::string &image)
     run.run_for(10 * ms);
     expectations.expect(enable_by_bus(run) && run.bridge_on() && speed(run) > 3.0,
                         "a master turns the motor");
-    expectations.expect(put(run, 0x1017, 2, 10), "the node has a heartbeat");
+    expectations.expect(put(run, 0x1017, 2, 2), "the node has a heartbeat");
     run.device.can().disturb(~0u);
     run.run_for(100 * ms);
     expectations.expect(run.device.can().counters.bus_offs == 1, "its frames end in bus-off");
