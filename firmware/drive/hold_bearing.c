@@ -30,6 +30,7 @@ bool drive_hold_bearing_of(const struct drive_settings *given, double period_s,
         .load_step_Nm = HOLD_LOAD_STEP_SHARE * torque_Nm,
         .noticed_step_Nm = holding.load_step_Nm / hold_step_shown(&task, &holding.quiet),
         .creep_speed_rad_s = hold_creep_speed(motor, settings.hold_current_A),
+        .motion_current_A = settings.motion_current_A,
         .thrown_deg = invariant_ekf_thrown_deg(motor, period_s, &moving),
         .drop_deg = hold_drop_angle_deg(&task),
     };

@@ -41,11 +41,17 @@ void offset_calibration_reset(struct offset_calibration *calibration)
     }
     calibration->samples = 0;
     calibration->bridge_on = false;
+    calibration->noisy = 0u;
 }
 
 static int32_t magnitude(int32_t value)
 {
     return value < 0 ? -value : value;
+}
+
+static int32_t to_nearest(int32_t sum, int32_t count)
+{
+    return (sum < 0 ? sum - count / 2 : sum + count / 2) / count;
 }
 
 static void add(struct offset_calibration *calibration, const int32_t code[OFFSET_CHANNELS])
@@ -60,7 +66,7 @@ static void add(struct offset_calibration *calibration, const int32_t code[OFFSE
             channel->sum = 0;
             channel->deviation = 0;
         } else if (samples == OFFSET_REFERENCE_SAMPLES) {
-            channel->reference = channel->sum / OFFSET_REFERENCE_SAMPLES;
+            channel->reference = to_nearest(channel->sum, OFFSET_REFERENCE_SAMPLES);
         } else if (samples > OFFSET_REFERENCE_SAMPLES) {
             channel->deviation += magnitude(code[n] - channel->reference);
         }
@@ -100,6 +106,13 @@ static bool judge(struct offset_channel *channel, const struct offset_calibratio
     return true;
 }
 
+static bool is_noisy(const struct offset_channel *channel)
+{
+    const int32_t samples = OFFSET_SAMPLES - OFFSET_REFERENCE_SAMPLES;
+
+    return 4 * channel->deviation >= OFFSET_NOISE_QUARTERS * samples;
+}
+
 /* The last sample of a stage has been added. */
 static bool end_stage(struct offset_calibration *calibration,
                       const struct offset_calibration_params *params)
@@ -107,6 +120,9 @@ static bool end_stage(struct offset_calibration *calibration,
     for (int n = 0; n < OFFSET_CHANNELS; n++) {
         if (!judge(&calibration->channel[n], params, n < 2, calibration->bridge_on)) {
             return false;
+        }
+        if (!calibration->bridge_on && is_noisy(&calibration->channel[n])) {
+            calibration->noisy |= (uint8_t)(1u << n);
         }
     }
     if (!calibration->bridge_on) {

@@ -14,6 +14,10 @@
  * in stage 2 is no offset. If i was offset after all, current and voltage are off by i and R i, and
  * either way u - R i, the back-EMF at rest, is 0.
  *
+ * What a current channel's codes scatter by in stage 1 is its noise. One that has some can be told
+ * from one that is stuck (phase_watch.h). Two codes in turn are no sign of it: a mean between them
+ * shows them for next to none.
+ *
  * Calibration fails if an offset is too large to be one, or if what is read in stage 2 varies, or a
  * current lies further from stage 1, than a sensor's would: the rotor is being turned.
  */
@@ -38,6 +42,10 @@
    as in stage 1, which is noise. */
 #define OFFSET_SHIFT_CODES_MAX     12
 #define OFFSET_DEVIATION_CODES_MAX 1
+
+/* Quarters of a code: mean deviation from the nearest code to their mean, from which on samples are
+   noisy, of 0.8 codes rms and more. */
+#define OFFSET_NOISE_QUARTERS 3
 
 enum {
     OFFSET_CHANNELS = 4,
@@ -67,6 +75,7 @@ struct offset_calibration {
     struct offset_channel channel[OFFSET_CHANNELS]; /* currents, voltages */
     int32_t samples;                                /* of this stage; up to 0: settling */
     bool bridge_on;                                 /* stage 2 */
+    uint8_t noisy;                                  /* a bit of each channel that was in stage 1 */
 };
 
 struct offset_calibration_params offset_calibration_design(const struct hal_facts *facts,

@@ -103,8 +103,8 @@ static num_t pushed_on(num_t pushed, num_t push, uint32_t passed)
     return pushed;
 }
 
-/* Looks in a row with the very same code, up to SAME_MAX; of a rotor that rests without a hold
-   none. Returns whether it begins anew. */
+/* Looks in a row with the very same code, up to SAME_MAX; none if it says nothing: of a rotor that
+   rests without a hold, and of codes that need not scatter. Returns whether it begins anew. */
 static bool count_same(struct phase_count *count, uint8_t code, bool says)
 {
     if (code == count->last && count->same < SAME_MAX && says) {
@@ -139,7 +139,9 @@ static void take_code(struct phase_watch *watch, const struct phase_look *look, 
     struct phase_count *count = &watch->count[phase];
     const bool counts_anew = alive || count->same == SAME_MAX;
 
-    if (count_same(count, (uint8_t)look->code[phase], look->held || look->turns) && counts_anew) {
+    if (count_same(count, (uint8_t)look->code[phase],
+                   look->held || look->turns || look->noisy[phase]) &&
+        counts_anew) {
         watch->resistance = (uint8_t)look->resistance;
     }
 }
@@ -170,14 +172,16 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
         }
         count->followed = look->off[phase] < CURRENT_DEVIATION;
 
+        const bool dead = count->same == SAME_MAX && look->noisy[phase];
         const uint8_t name =
-            (uint8_t)((flows ? DRIVE_FAULT_CURRENT_SENSOR_A : DRIVE_FAULT_OPEN_PHASE_A) + phase);
+            (uint8_t)((flows || dead ? DRIVE_FAULT_CURRENT_SENSOR_A : DRIVE_FAULT_OPEN_PHASE_A) +
+                      phase);
 
         if ((gone || count->missed >= MISSED) && look->off[phase] >= furthest) {
             furthest = look->off[phase];
             watch->suspected = name;
         }
-        if (is_sure(count, num_abs(watch->pushed[phase]), gone, flows) ||
+        if (dead || is_sure(count, num_abs(watch->pushed[phase]), gone, flows) ||
             (count->same == SAME_MAX && alive && goes_elsewhere(look, watch->resistance))) {
             fault = (enum drive_fault)name;
         }
@@ -289,6 +293,8 @@ static void look_at(struct phase_look *look, const struct drive *drive)
     look->larger = num_abs(current.b) > num_abs(current.a);
     look->flows[0] = num_abs(current.a) > CURRENT_MIN;
     look->flows[1] = num_abs(current.b) > CURRENT_MIN;
+    look->noisy[0] = (drive->enabling.calibration.noisy & 1u) != 0u;
+    look->noisy[1] = (drive->enabling.calibration.noisy & 2u) != 0u;
     look->voltage_wrong =
         num_abs(actuation->loss.a) > VOLTAGE_WRONG || num_abs(actuation->loss.b) > VOLTAGE_WRONG;
     look->held = drive->hold.active;

@@ -25,8 +25,9 @@
  * bridge's dead time keeps the current of a rotor that is shaken at zero for as long.
  *
  * A converter that is alive is so by its noise, if by nothing else. It is dead that gives the very
- * same code of a current in 16 looks with a reference that has left it; or any code in 128 while
- * the other phase's changes, and the rotor turns by an electrical turn, in which no current stays
+ * same code of a current in 16 looks with a reference that has left it; or any code in 128, if its
+ * codes were seen to scatter as it was calibrated (offset_calibration.h). If they were not, while
+ * the other phase's change, and the rotor turns by an electrical turn, in which no current stays
  * within a code, or a settled hold's resistance moves by an eighth, as no winding's does so soon.
  *
  * Before that is certain, the rotor may have left the estimate or a comparator have tripped. So it
@@ -82,6 +83,7 @@ struct phase_look {
     uint16_t code[2];
     num_t push[2];   /* by how much the voltage would change the current in each period, at least */
     bool flows[2];   /* there is a current worth the name */
+    bool noisy[2];   /* as its sensor was calibrated its codes scattered */
     num_t wanted[2]; /* current; by a voltage law 0 */
     num_t off[2];    /* by how much the current is another one */
     uint16_t resistance; /* 2^-10 per unit */

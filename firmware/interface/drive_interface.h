@@ -242,6 +242,7 @@ struct drive_hold_bearing {
     double load_step_Nm;      /* the same of a load that comes at once, undamped */
     double noticed_step_Nm;   /* a load step of less is not followed: the rotor yields to it */
     double creep_speed_rad_s; /* up to it the hold leads the rotor */
+    double motion_current_A;  /* d-axis current in slow motion, as the drive chooses it */
     double thrown_deg;        /* electrical; the estimate in motion, by 25 % of the rated torque */
     double drop_deg;          /* electrical; the estimate, by 2.5 % of R x rated current in 1/w_h */
 };

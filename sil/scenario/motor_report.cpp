@@ -81,6 +81,7 @@ Figures figures_of(const drive_hold_bearing &bearing)
         {"hold_load_step_Nm", bearing.load_step_Nm},
         {"hold_noticed_step_Nm", bearing.noticed_step_Nm},
         {"hold_creep_speed_rad_s", bearing.creep_speed_rad_s},
+        {"motion_current_A", bearing.motion_current_A},
         {"load_step_angle_error_deg", bearing.thrown_deg},
         {"winding_drop_angle_error_deg", bearing.drop_deg},
     };

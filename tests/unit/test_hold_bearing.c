@@ -78,6 +78,19 @@ static void test_a_light_rotor_is_thrown_less_and_led_as_fast_as_its_back_emf_be
     near(1e-3, 0.6975, bearing.thrown_deg);
 }
 
+/* N L I / Km of 0.86, and of 3.4. */
+static void test_a_motor_of_little_magnet_flux_has_a_d_current_in_motion(void)
+{
+    ask();
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, bearing.motion_current_A);
+    settings.motor.inductance_H *= 4.0;
+    ask();
+    near(1e-9, 0.375 * 3.0, bearing.motion_current_A);
+    settings.motion_current_A = 0.5;
+    ask();
+    near(1e-9, 0.5, bearing.motion_current_A);
+}
+
 /* A step that the offset of a current feigns, 0.0385 N m: 50 x 0.157 x 1.5 N m/rad x 0.2 rad/s
  * x 10.9 ms x 1.5. */
 static void test_a_coarse_board_notices_less(void)
@@ -130,6 +143,7 @@ int main(void)
     RUN_TEST(test_the_reference_motor_is_held_by_its_rated_current);
     RUN_TEST(test_half_the_current_bears_half_as_much_for_a_quarter_of_the_heat);
     RUN_TEST(test_a_light_rotor_is_thrown_less_and_led_as_fast_as_its_back_emf_bears);
+    RUN_TEST(test_a_motor_of_little_magnet_flux_has_a_d_current_in_motion);
     RUN_TEST(test_a_coarse_board_notices_less);
     RUN_TEST(test_a_heavy_rotor_is_refused_with_what_the_winding_would_do);
     RUN_TEST(test_the_hold_is_damped_as_its_sampled_loop_is);

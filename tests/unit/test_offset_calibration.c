@@ -369,6 +369,35 @@ static void test_what_settles_takes_as_long_at_any_rate(void)
     TEST_ASSERT_EQUAL_INT(OFFSET_PERIODS + 200, periods);
 }
 
+/* Of seeds and places between two codes, how many times channel 0 and 1 are called noisy. */
+static int called_noisy(double noise_codes)
+{
+    int times = 0;
+
+    world.noise_codes = noise_codes;
+    for (int n = 0; n < 40; n++) {
+        world.seed = (uint32_t)n + 1u;
+        offsets(0.05 * n - 1.0, 1.5 - 0.05 * n, 0.0, 0.0);
+        TEST_ASSERT_EQUAL(OFFSETS_FOUND, calibrate());
+        times += (calibration.noisy & 1) + (calibration.noisy >> 1 & 1);
+    }
+    return times;
+}
+
+/* Of one within which a code may well stand for 128 looks none, wherever it lies. */
+static void test_a_current_whose_codes_scatter_is_noisy(void)
+{
+    TEST_ASSERT_EQUAL_INT(80, called_noisy(1.1));
+    TEST_ASSERT_EQUAL_INT(0, called_noisy(0.6));
+    TEST_ASSERT_EQUAL_INT(0, called_noisy(0.3));
+    TEST_ASSERT_EQUAL_INT(0, called_noisy(0.0));
+    world.noise_codes = 0.1;
+    world.turning_codes = 1.35; /* a current in stage 2 is no noise */
+    world.electrical_rad_s = 300.0;
+    TEST_ASSERT_EQUAL(OFFSETS_FOUND, calibrate());
+    TEST_ASSERT_EQUAL_UINT8(0, calibration.noisy);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -388,5 +417,6 @@ int main(void)
     RUN_TEST(test_finer_converters_have_as_many_more_codes);
     RUN_TEST(test_a_shift_passes_up_to_its_limit_and_not_beyond);
     RUN_TEST(test_what_settles_takes_as_long_at_any_rate);
+    RUN_TEST(test_a_current_whose_codes_scatter_is_noisy);
     return UNITY_END();
 }

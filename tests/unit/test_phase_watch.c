@@ -354,6 +354,24 @@ static void test_a_converter_without_noise_is_dead_while_the_rotor_turns(void)
     TEST_ASSERT_EQUAL_INT(NEVER, looks_until_dead(1, 0, 0, DRIVE_FAULT_NONE)); /* it rests */
 }
 
+/* At rest, whatever the other one does, and of a current of zero, too. */
+static void test_a_sensor_that_scattered_is_dead_as_soon_as_it_does_not(void)
+{
+    static const int others[] = {1, 64, 0};
+
+    for (int n = 0; n < 3; n++) {
+        setUp();
+        look.noisy[1] = true;
+        TEST_ASSERT_EQUAL_INT(129, looks_until_dead(others[n], 0, 0, DRIVE_FAULT_CURRENT_SENSOR_B));
+    }
+    setUp();
+    look.noisy[1] = true;
+    TEST_ASSERT_EQUAL_INT(NEVER, looks_until_dead(0, 128, 0, DRIVE_FAULT_NONE));
+    setUp();
+    look.noisy[0] = true; /* the other's noise is none of this one's */
+    TEST_ASSERT_EQUAL_INT(NEVER, looks_until_dead(1, 0, 0, DRIVE_FAULT_NONE));
+}
+
 /* 64 in 128 looks are more than 40 and 32 are less; a low byte wraps. */
 static void test_in_a_hold_it_is_dead_as_the_resistance_moves_by_an_eighth(void)
 {
@@ -427,6 +445,7 @@ int main(void)
     RUN_TEST(test_what_stands_for_long_goes_on_standing);
     RUN_TEST(test_a_hold_whose_current_stands_at_zero_against_its_voltage_is_open);
     RUN_TEST(test_a_converter_without_noise_is_dead_while_the_rotor_turns);
+    RUN_TEST(test_a_sensor_that_scattered_is_dead_as_soon_as_it_does_not);
     RUN_TEST(test_in_a_hold_it_is_dead_as_the_resistance_moves_by_an_eighth);
     RUN_TEST(test_a_code_that_its_reference_has_left_is_a_dead_sensors);
     return UNITY_END();
