@@ -41,7 +41,7 @@ static void subtract_lower_half(int n, const struct matrix *a, struct matrix *fr
 struct elimination {
     struct matrix_factors factors; /* D = L diag(1 / weight) L^T */
     struct matrix backward;        /* L^-1 B^T */
-    struct matrix product;         /* lower half of B D^-1 B^T */
+    struct matrix *product;        /* lower half of B D^-1 B^T */
 };
 
 /* E' of the header. False if D is not positive definite. */
@@ -56,20 +56,20 @@ static bool eliminate_before_newest(int n, struct trajectory *trajectory, struct
         }
     }
     matrix_forward_solve(n, &e->factors, &e->backward);
-    matrix_weighted_square(n, &e->backward, e->factors.weight, &e->product);
-    subtract_lower_half(n, &e->product, &trajectory->newest);
+    matrix_weighted_square(n, &e->backward, e->factors.weight, e->product);
+    subtract_lower_half(n, e->product, &trajectory->newest);
     return true;
 }
 
 /* D' and B' of the header. */
 static void eliminate_between_inner(int n, struct trajectory *trajectory, struct elimination *e)
 {
-    subtract_lower_half(n, &e->product, &trajectory->inner);
+    subtract_lower_half(n, e->product, &trajectory->inner);
     matrix_forward_solve(n, &e->factors, &trajectory->link);
-    matrix_weighted_square(n, &trajectory->link, e->factors.weight, &e->product);
-    subtract_lower_half(n, &e->product, &trajectory->inner);
-    matrix_weighted_product(n, &e->backward, e->factors.weight, &trajectory->link, &e->product);
-    trajectory->link = e->product;
+    matrix_weighted_square(n, &trajectory->link, e->factors.weight, e->product);
+    subtract_lower_half(n, e->product, &trajectory->inner);
+    matrix_weighted_product(n, &e->backward, e->factors.weight, &trajectory->link, e->product);
+    trajectory->link = *e->product;
 }
 
 /* (10) */
@@ -93,6 +93,7 @@ bool riccati_solve(const struct riccati_problem *problem, struct riccati_solutio
     struct trajectory trajectory;
     struct elimination elimination;
 
+    elimination.product = &solution->covariance; /* which is made last */
     every_period(problem, &trajectory);
     if (!eliminate_before_newest(n, &trajectory, &elimination)) {
         return false;

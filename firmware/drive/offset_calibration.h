@@ -14,9 +14,9 @@
  * in stage 2 is no offset. If i was offset after all, current and voltage are off by i and R i, and
  * either way u - R i, the back-EMF at rest, is 0.
  *
- * What a current channel's codes scatter by in stage 1 is its noise. One that has some can be told
- * from one that is stuck (phase_watch.h). Two codes in turn are no sign of it: a mean between them
- * shows them for next to none.
+ * What a current channel's codes scatter by in stage 1 is its noise. One that has some is
+ * distinguished from one that is stuck (phase_watch.h). Two codes in turn are no sign of it: a mean
+ * between them shows them for next to none.
  *
  * Calibration fails if an offset is too large to be one, or if what is read in stage 2 varies, or a
  * current lies further from stage 1, than a sensor's would: the rotor is being turned.

@@ -146,6 +146,12 @@ static void take_code(struct phase_watch *watch, const struct phase_look *look, 
     }
 }
 
+/* current: one that flows, or is said to */
+static uint8_t name_of(int phase, bool current)
+{
+    return (uint8_t)((current ? DRIVE_FAULT_CURRENT_SENSOR_A : DRIVE_FAULT_OPEN_PHASE_A) + phase);
+}
+
 enum drive_fault phase_watch_step(struct phase_watch *watch,
                                   const struct phase_watch_params *params,
                                   const struct phase_look *look)
@@ -173,9 +179,7 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
         count->followed = look->off[phase] < CURRENT_DEVIATION;
 
         const bool dead = count->same == SAME_MAX && look->noisy[phase];
-        const uint8_t name =
-            (uint8_t)((flows || dead ? DRIVE_FAULT_CURRENT_SENSOR_A : DRIVE_FAULT_OPEN_PHASE_A) +
-                      phase);
+        const uint8_t name = name_of(phase, flows || dead);
 
         if ((gone || count->missed >= MISSED) && look->off[phase] >= furthest) {
             furthest = look->off[phase];

@@ -1148,7 +1148,7 @@ MUTANTS = [
            "if (dead || is_sure(", "if (is_sure("),
     Mutant(DRIVE + "phase_watch.c", "phase_watch",
            "a_sensor_that_scattered_is_dead_as_soon_as_it_does_not",
-           "(flows || dead ?", "(flows ?"),
+           "flows || dead);", "flows);"),
     Mutant(DRIVE + "offset_calibration.c", "offset_calibration",
            "a_current_whose_codes_scatter_is_noisy",
            "to_nearest(channel->sum, OFFSET_REFERENCE_SAMPLES)",
