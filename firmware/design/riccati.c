@@ -104,7 +104,8 @@ bool riccati_solve(const struct riccati_problem *problem, struct riccati_solutio
             return false;
         }
     }
-    if (!matrix_invert(n, &trajectory.newest, &solution->covariance)) {
+    if (!matrix_invert(n, &trajectory.newest, &elimination.factors, &elimination.backward,
+                       &solution->covariance)) {
         return false;
     }
     kalman_gain(problem, solution);

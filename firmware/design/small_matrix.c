@@ -94,20 +94,18 @@ void matrix_forward_solve(int n, const struct matrix_factors *factors, struct ma
     }
 }
 
-bool matrix_invert(int n, const struct matrix *a, struct matrix *out)
+bool matrix_invert(int n, const struct matrix *a, struct matrix_factors *factors,
+                   struct matrix *inverse_lower, struct matrix *out)
 {
-    struct matrix_factors factors;
-    struct matrix inverse_lower;
-
-    if (!matrix_factor(n, a, &factors)) {
+    if (!matrix_factor(n, a, factors)) {
         return false;
     }
-    clear(n, &inverse_lower);
+    clear(n, inverse_lower);
     for (int i = 0; i < n; i++) {
-        inverse_lower.at[i][i] = 1.0;
+        inverse_lower->at[i][i] = 1.0;
     }
-    matrix_forward_solve(n, &factors, &inverse_lower);
-    matrix_weighted_product(n, &inverse_lower, factors.weight, &inverse_lower, out);
+    matrix_forward_solve(n, factors, inverse_lower);
+    matrix_weighted_product(n, inverse_lower, factors->weight, inverse_lower, out);
     return true;
 }
 

@@ -38,8 +38,10 @@ bool matrix_factor(int n, const struct matrix *a, struct matrix_factors *factors
 /* b becomes L^-1 b, so that b^T a^-1 b of the old b is the weighted square of the new. */
 void matrix_forward_solve(int n, const struct matrix_factors *factors, struct matrix *b);
 
-/* out = a^-1, symmetric; reads the lower half of a. False as matrix_factor. */
-bool matrix_invert(int n, const struct matrix *a, struct matrix *out);
+/* out = a^-1, symmetric; reads the lower half of a. It leaves a's factors and L^-1. False as
+   matrix_factor. */
+bool matrix_invert(int n, const struct matrix *a, struct matrix_factors *factors,
+                   struct matrix *inverse_lower, struct matrix *out);
 
 /*
  * out = e^a by its Taylor series to order 12 in Horner form, for a = (model) x (period) of a period

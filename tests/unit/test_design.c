@@ -108,9 +108,10 @@ static void matrix_exponential_of_a_rotation_is_sine_and_cosine(void)
 static void matrix_inverse_times_matrix_is_identity(void)
 {
     const struct matrix a = {{{4.0, 1.0, -2.0}, {1.0, 3.0, 0.5}, {-2.0, 0.5, 5.0}}};
-    struct matrix inverse, product;
+    struct matrix_factors factors;
+    struct matrix lower, inverse, product;
 
-    TEST_ASSERT_TRUE(matrix_invert(3, &a, &inverse));
+    TEST_ASSERT_TRUE(matrix_invert(3, &a, &factors, &lower, &inverse));
     matrix_multiply(3, &a, &inverse, &product);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
@@ -122,9 +123,10 @@ static void matrix_inverse_times_matrix_is_identity(void)
 static void indefinite_matrix_has_no_factors(void)
 {
     const struct matrix a = {{{1.0, 2.0}, {2.0, 1.0}}};
-    struct matrix inverse;
+    struct matrix_factors factors;
+    struct matrix lower, inverse;
 
-    TEST_ASSERT_FALSE(matrix_invert(2, &a, &inverse));
+    TEST_ASSERT_FALSE(matrix_invert(2, &a, &factors, &lower, &inverse));
 }
 
 /* ---- Riccati: P = P / (1 + P) + 1 is solved by the golden ratio ---- */
