@@ -1,5 +1,10 @@
 #include "firmware/control/current_control.h"
 
+coef_t current_control_reactance(const struct motor_params *motor, const struct per_unit *base)
+{
+    return coef_large_from_double(per_unit_reactance(base, motor));
+}
+
 struct current_control_params current_control_design(const struct motor_params *motor,
                                                      const struct per_unit *base, double period_s,
                                                      double bandwidth_rad_s)
@@ -12,7 +17,7 @@ struct current_control_params current_control_design(const struct motor_params *
     params.proportional = coef_from_double(proportional);
     params.integral = coef_from_double(integral);
     params.unwind = coef_from_double(integral / proportional);
-    params.reactance = coef_large_from_double(per_unit_reactance(base, motor));
+    params.reactance = current_control_reactance(motor, base);
     current_control_params_fit_coefficients(&params);
     return params;
 }

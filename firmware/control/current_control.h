@@ -49,6 +49,10 @@ struct current_control {
     struct dq integral; /* z */
 };
 
+/* N w_base L, per-unit: a large gain. */
+__attribute__((cold)) coef_t current_control_reactance(const struct motor_params *motor,
+                                                       const struct per_unit *base);
+
 __attribute__((cold)) struct current_control_params
 current_control_design(const struct motor_params *motor, const struct per_unit *base,
                        double period_s, double bandwidth_rad_s);

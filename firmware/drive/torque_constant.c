@@ -38,7 +38,7 @@ static void put_in_force(struct drive *drive, num_t change)
         motor_model_design(&motor, &drive->base, period_s, facts->bridge_resistance_ohm);
     const struct reference_params reference =
         reference_design(&drive->base, period_s, (struct creep_limits){0.0, 0.0});
-    const coef_t reactance = coef_from_double(per_unit_reactance(&drive->base, &motor));
+    const coef_t reactance = current_control_reactance(&motor, &drive->base);
 
     hal_defer_interrupts(drive->board, true);
     renew(&drive->params, &model, reactance, &reference);

@@ -204,9 +204,10 @@ static inline num_t num_mul_coef_nearest(num_t a, coef_t k)
 }
 
 /*
- * Of a gain more may be known. A large one is never shifted to the right: below a half it has fewer
- * digits. A small one, below a half, is never shifted to the left. Each saves two instructions of a
- * dozen. In an image for one motor either may have any shift, and the compiler knows it.
+ * Of a gain more may be known. A large one is never shifted to the right: below a quarter it has
+ * fewer digits. A small one, below a half, is never shifted to the left. Each saves two
+ * instructions of a dozen. In an image for one motor either may have any shift, and the compiler
+ * knows it.
  */
 #if defined(STEADYSTEP_COEFFICIENT_SHIFTS) || !defined(__arm__)
 #define COEF_MANTISSA(k) ((k).mantissa)

@@ -120,6 +120,21 @@ static void test_a_drive_that_begins_with_it_is_as_one_that_has_learned_it(void)
                               drive.base.speed_rad_s);
 }
 
+/* 0.15: the interrupt multiplies by a large gain, which is never shifted to the right. */
+static void test_a_reactance_below_a_quarter_is_a_large_gain_as_before(void)
+{
+    struct motor_params motor;
+
+    settings.motor.inductance_H *= 0.08;
+    power_up();
+    torque_constant_put(&drive, NUM(-0.1));
+    motor = settings.motor;
+    TEST_ASSERT_DOUBLE_WITHIN(0.03, 0.15, per_unit_reactance(&drive.base, &motor));
+    TEST_ASSERT_EQUAL_HEX32(
+        coef_bits(coef_large_from_double(per_unit_reactance(&drive.base, &motor))),
+        coef_bits(drive.params.current_control.reactance));
+}
+
 /* Of a rotor whose speed is imposed on the estimate. */
 static void test_it_looks_for_13_ms_whatever_the_period(void)
 {
@@ -163,6 +178,7 @@ int main(void)
     RUN_TEST(test_one_as_the_settings_say_changes_nothing);
     RUN_TEST(test_it_is_put_in_force_while_interrupts_are_held_back);
     RUN_TEST(test_a_drive_that_begins_with_it_is_as_one_that_has_learned_it);
+    RUN_TEST(test_a_reactance_below_a_quarter_is_a_large_gain_as_before);
     RUN_TEST(test_it_looks_for_13_ms_whatever_the_period);
     return UNITY_END();
 }
