@@ -212,6 +212,9 @@ void Board::Impl::receive()
 
 void Board::Impl::send()
 {
+    if (hal.to_host.count == 0) {
+        return;
+    }
     std::uint8_t bytes[HAL_SIL_STREAM_BYTES];
     const std::size_t count = hal_sil_host_read(&hal, bytes, sizeof bytes);
     output.append(reinterpret_cast<const char *>(bytes), count);
@@ -258,7 +261,7 @@ void Board::advance()
 
 std::string Board::take_output()
 {
-    return std::exchange(impl_->output, {});
+    return impl_->output.empty() ? std::string() : std::exchange(impl_->output, {});
 }
 
 const drive_signals &Board::signals() const

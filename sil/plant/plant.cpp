@@ -278,6 +278,10 @@ void Plant::set_motor(const MotorConfig &config)
     Parts &plant = *parts_;
     std::visit(
         [&](auto &motor) {
+            if (!plant.track_energy) {
+                motor.set_parameters(config);
+                return;
+            }
             plant.magnetic_reference_J -= motor.magnetic_J();
             plant.kinetic_reference_J -= motor.kinetic_J();
             motor.set_parameters(config);

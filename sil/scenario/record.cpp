@@ -30,22 +30,6 @@ std::vector<const signal_row *> signals_of_columns()
 
 const std::vector<const signal_row *> column_signals = signals_of_columns();
 
-/* Columns of the drive: real numbers, which are most and are copied, and the rest. */
-std::vector<std::size_t> columns_of_drive(bool real)
-{
-    std::vector<std::size_t> columns;
-    for (std::size_t column = 0; column < COLUMNS; ++column) {
-        const signal_row *const signal = column_signals[column];
-        if (signal != nullptr && (signal->type == SIGNAL_REAL) == real) {
-            columns.push_back(column);
-        }
-    }
-    return columns;
-}
-
-const std::vector<std::size_t> real_columns = columns_of_drive(true);
-const std::vector<std::size_t> other_columns = columns_of_drive(false);
-
 } // namespace
 
 const char *column_name(Column column)
@@ -60,11 +44,14 @@ const char *column_name(Column column)
 
 void put_signals(Row &row, const drive_signals &signals)
 {
-    const char *const first = reinterpret_cast<const char *>(&signals);
-    for (const std::size_t column : real_columns) {
-        std::memcpy(&row[column], first + column_signals[column]->offset, sizeof(double));
-    }
-    for (const std::size_t column : other_columns) {
+#define OF_DRIVE(column, member, ...) row[column] = static_cast<double>(signals.member);
+#define OF_PLANT(column, name)
+#define RENAMED(column, member, name) OF_DRIVE(column, member)
+    TRACE_COLUMNS(OF_DRIVE, OF_PLANT, RENAMED)
+#undef OF_DRIVE
+#undef OF_PLANT
+#undef RENAMED
+    for (std::size_t column = NAMED_COLUMNS; column < COLUMNS; ++column) {
         row[column] = signal_get(&signals, column_signals[column]);
     }
 }

@@ -32,7 +32,11 @@ void SerialLine::type(const std::string &line, const std::string &origin, double
 void SerialLine::listen()
 {
     begun_ = true;
-    partial_ += board_.take_output();
+    const std::string output = board_.take_output();
+    if (output.empty()) {
+        return;
+    }
+    partial_ += output;
     for (std::size_t end = 0; (end = partial_.find('\n')) != std::string::npos;) {
         const std::string line = partial_.substr(0, end);
         partial_.erase(0, end + 1);

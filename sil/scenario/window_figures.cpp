@@ -208,7 +208,11 @@ void WindowFigures::add(const Moment &moment)
     if (fault_ == 0) {
         fault_ = row[DRIVE_FAULT_CODE];
     }
-    last_ = row;
+    last_position_error_ = position_error;
+    last_estimate_error_ = estimate_error;
+    last_load_error_Nm_ = row[LOAD_TORQUE] - row[LOAD_TORQUE_EST];
+    last_resistance_ohm_ = row[RESISTANCE];
+    last_resistance_est_ohm_ = row[RESISTANCE_EST];
     ++rows_;
 }
 
@@ -246,19 +250,18 @@ Metrics WindowFigures::metrics() const
     const auto of_phases = [&](Pair squares) {
         return std::sqrt((squares[0] + squares[1]) / (2 * count));
     };
-    const Row &last = last_;
     metrics.position_error_max_rad = errors_.max[0];
     metrics.position_error_rms_rad = rms(errors_.squares[0]);
-    metrics.position_error_final_rad = std::fabs(last[THETA_REF] - last[THETA]);
+    metrics.position_error_final_rad = std::fabs(last_position_error_);
     cruise_.mean(metrics.position_error_steady_rad, metrics.lag_s);
     metrics.estimate_error_max_rad = errors_.max[1];
     metrics.estimate_error_rms_rad = rms(errors_.squares[1]);
-    metrics.estimate_error_final_rad = std::fabs(last[THETA] - last[THETA_EST]);
+    metrics.estimate_error_final_rad = std::fabs(last_estimate_error_);
     metrics.speed_error_max_rad_s = rates_.max[0];
     metrics.speed_error_rms_rad_s = rms(rates_.squares[0]);
     metrics.load_torque_error_max_Nm = rates_.max[1];
     metrics.load_torque_error_rms_Nm = rms(rates_.squares[1]);
-    metrics.load_torque_error_final_Nm = std::fabs(last[LOAD_TORQUE] - last[LOAD_TORQUE_EST]);
+    metrics.load_torque_error_final_Nm = std::fabs(last_load_error_Nm_);
     metrics.load_torque_t90_s = load_steps_.longest() * period_s_;
     metrics.overshoot_rad = overshoot_;
     metrics.settling_time_s = outside_ == 0 ? 0
@@ -276,7 +279,7 @@ Metrics WindowFigures::metrics() const
     metrics.position_ripple_rms_rad = ripples[1];
     metrics.slip_full_steps = std::floor(slip_.max[0] + 0.5);
     metrics.resistance_estimate_error_ratio =
-        std::fabs(last[RESISTANCE_EST] - last[RESISTANCE]) / last[RESISTANCE];
+        std::fabs(last_resistance_est_ohm_ - last_resistance_ohm_) / last_resistance_ohm_;
     metrics.synchronism_worst = slip_.max[1];
     if (fault_ != 0) {
         metrics.fault = drive_fault_name(static_cast<drive_fault>(static_cast<int>(fault_)));

@@ -152,7 +152,8 @@ class WindowFigures
     double overshoot_ = 0;
     std::size_t reference_arrived_ = 0; /* last row of its motion */
     std::size_t outside_ = 0;           /* rows up to the last since then beyond the band, or 0 */
-    Row last_ = {};
+    double last_position_error_ = 0, last_estimate_error_ = 0, last_load_error_Nm_ = 0;
+    double last_resistance_ohm_ = 0, last_resistance_est_ohm_ = 0;
 };
 
 } // namespace scenario
