@@ -261,7 +261,7 @@ void Board::advance()
 
 std::string Board::take_output()
 {
-    return impl_->output.empty() ? std::string() : std::exchange(impl_->output, {});
+    return std::exchange(impl_->output, {});
 }
 
 const drive_signals &Board::signals() const

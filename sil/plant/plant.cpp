@@ -139,6 +139,21 @@ struct Plant::Parts {
         spring_reference_J = spring_of(machine);
     }
 
+    /* What a change adds to the stored energies came from nowhere: it is not counted. */
+    template <typename AnyMotor, typename Change>
+    void without_energy(const AnyMotor &machine, const Change &change)
+    {
+        if (!track_energy) {
+            change();
+            return;
+        }
+        magnetic_reference_J -= machine.magnetic_J();
+        kinetic_reference_J -= machine.kinetic_J();
+        change();
+        magnetic_reference_J += machine.magnetic_J();
+        kinetic_reference_J += machine.kinetic_J();
+    }
+
     Config config; /* motor and bus as they are by now */
     Bridge bridge;
     Sensors sensors;
@@ -272,22 +287,11 @@ void Plant::vibrate(double load_torque_Nm, double frequency_Hz)
     load_shaft();
 }
 
-/* Energy that a change of L or J adds to what is stored came from nowhere: it is not counted. */
 void Plant::set_motor(const MotorConfig &config)
 {
     Parts &plant = *parts_;
     std::visit(
-        [&](auto &motor) {
-            if (!plant.track_energy) {
-                motor.set_parameters(config);
-                return;
-            }
-            plant.magnetic_reference_J -= motor.magnetic_J();
-            plant.kinetic_reference_J -= motor.kinetic_J();
-            motor.set_parameters(config);
-            plant.magnetic_reference_J += motor.magnetic_J();
-            plant.kinetic_reference_J += motor.kinetic_J();
-        },
+        [&](auto &motor) { plant.without_energy(motor, [&] { motor.set_parameters(config); }); },
         plant.motor);
     plant.config.motor = config;
     look();
@@ -314,9 +318,7 @@ void Plant::set_magnet_rise(double rise_K)
 {
     Parts &plant = *parts_;
     change_real_motor([&](RealMotor &motor) {
-        plant.magnetic_reference_J -= motor.magnetic_J();
-        motor.set_magnet_rise(rise_K);
-        plant.magnetic_reference_J += motor.magnetic_J();
+        plant.without_energy(motor, [&] { motor.set_magnet_rise(rise_K); });
     });
     plant.config.imperfections.magnet_rise_K = rise_K;
 }

@@ -186,13 +186,14 @@ void WindowFigures::add(const Moment &moment)
     const Row &row = moment.row;
     const double position_error = row[THETA_REF] - row[THETA];
     const double estimate_error = row[THETA] - row[THETA_EST];
+    const double load_error_Nm = row[LOAD_TORQUE] - row[LOAD_TORQUE_EST];
     if (rows_ == 0) {
         first_estimate_error_ = estimate_error;
         voltage_q_least_ = voltage_q_most_ = row[U_Q];
     }
     const double full_steps_per_rad = settings_.rotor_teeth / quarter_turn;
     errors_.add(Pair{position_error, estimate_error});
-    rates_.add(Pair{row[OMEGA] - row[OMEGA_EST], row[LOAD_TORQUE] - row[LOAD_TORQUE_EST]});
+    rates_.add(Pair{row[OMEGA] - row[OMEGA_EST], load_error_Nm});
     currents_.add(Pair{row[I_A], row[I_B]});
     voltages_.add(Pair{row[U_A], row[U_B]});
     slip_.add(
@@ -210,7 +211,7 @@ void WindowFigures::add(const Moment &moment)
     }
     last_position_error_ = position_error;
     last_estimate_error_ = estimate_error;
-    last_load_error_Nm_ = row[LOAD_TORQUE] - row[LOAD_TORQUE_EST];
+    last_load_error_Nm_ = load_error_Nm;
     last_resistance_ohm_ = row[RESISTANCE];
     last_resistance_est_ohm_ = row[RESISTANCE_EST];
     ++rows_;
