@@ -245,9 +245,8 @@ std::string BytePort::read()
     return bytes;
 }
 
-void BytePort::write(const std::string &bytes)
+void BytePort::write(const std::string &bytes, bool more_comes)
 {
-    in_line_ = bytes.empty() ? in_line_ : !ends_line(bytes.back());
     if (terminal_open_) {
         keep(to_terminal_, behind_line(bytes, terminal_skips_));
         flush(terminal_, to_terminal_);
@@ -256,6 +255,9 @@ void BytePort::write(const std::string &bytes)
         keep(to_client_, behind_line(bytes, client_skips_));
         flush(client_, to_client_);
     }
+    in_line_ = more_comes && (bytes.empty() ? in_line_ : !ends_line(bytes.back()));
+    terminal_skips_ = terminal_skips_ && in_line_;
+    client_skips_ = client_skips_ && in_line_;
 }
 
 } // namespace serve

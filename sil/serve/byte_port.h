@@ -1,8 +1,8 @@
 /*
  * A line of bytes that other programs open: a pseudo-terminal, as a serial adapter would be, and,
  * if asked for, TCP on the loopback interface. What comes in on either is one stream; what goes out
- * goes to both, for who opens one from the next line on. Nothing waits: bytes for a program that
- * does not read them are lost, as on a wire.
+ * goes to both, for who opens one in the middle of a line from the next one on. Nothing waits:
+ * bytes for a program that does not read them are lost, as on a wire.
  */
 #ifndef STEADYSTEP_SERVE_BYTE_PORT_H
 #define STEADYSTEP_SERVE_BYTE_PORT_H
@@ -40,7 +40,8 @@ class BytePort
     /* What has come since the last call. */
     std::string read();
 
-    void write(const std::string &bytes);
+    /* `more_comes`: the next call goes on with what these bytes begin. */
+    void write(const std::string &bytes, bool more_comes = false);
 
   private:
     void open_terminal();
@@ -56,7 +57,7 @@ class BytePort
     int terminal_ = -1, listener_ = -1, client_ = -1;
     unsigned tcp_port_ = 0;
     bool terminal_open_ = false; /* by a program */
-    bool in_line_ = false;       /* what was written last has not ended its line */
+    bool in_line_ = false;       /* what was written last is a line, and has not ended */
     bool terminal_skips_ = false, client_skips_ = false; /* the rest of it */
     bool linked_ = false;
     std::string to_terminal_, to_client_; /* not taken yet */

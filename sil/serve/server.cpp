@@ -151,7 +151,7 @@ void Server::pass_period_of(Station &station)
     station.board->advance();
     const std::string sent = station.pace_out.take(station.from_drive);
     if (stations_.size() == 1) {
-        serial_.write(sent);
+        serial_.write(sent, !station.from_drive.empty());
     } else {
         share_frames(station, sent);
     }

@@ -159,11 +159,11 @@ class Session:
         self.draw.choice((self.it_turns, self.it_moves))()
         self.cut()
         self.pass_time(1e-3 * LOST_ms + STOPPED_s)
-        before = self.truth()["theta_rad"]
-        self.say(self.knobs.ask("state"))
+        before, state = self.truth()["theta_rad"], self.knobs.ask("state")
+        self.say(state)
         self.pass_time(0.3)
         off = abs(self.truth()["theta_rad"] - before)
-        self.check(off < 0.015, f"it turns by {off:.3f} rad, {STOPPED_s} s after its master is gone")
+        self.check(off < 0.015, f"it turns by {off:.3f} rad, {STOPPED_s} s after its master is gone: {state}")
         self.connect()
 
     def a_client_leaves(self):

@@ -58,18 +58,25 @@ def what_cannot_be_is_refused(drive):
             CHECKS.that(True, "")
 
 
-def another_client_reads_it(place):
-    def mbpoll(*words):
-        done = subprocess.run(["mbpoll", "-m", "rtu", "-a", "1", "-0", "-1", "-b", "921600", "-P",
-                               "none", "-B", *words[:-1], str(place), *words[-1]],
-                              capture_output=True, text=True, timeout=20)
-        return done.stdout
+def mbpoll(place, *words, values=()):
+    done = subprocess.run(["mbpoll", "-m", "rtu", "-a", "1", "-0", "-1", "-b", "921600", "-P", "none", *words,
+                           str(place), *values], capture_output=True, text=True, timeout=20)
+    return done.stdout
 
-    said = mbpoll("-t", "4:int", "-r", str(POSITION), [])
+
+def another_client_reads_it(place):
+    said = mbpoll(place, "-B", "-t", "4:int", "-r", str(POSITION))
     CHECKS.that(abs(int(said.split(f"[{POSITION}]:")[-1].split()[0]) + 30000) < 100, "mbpoll reads")
-    mbpoll("-t", "4:int", "-r", str(TARGET), ["12345"])
-    said = mbpoll("-t", "4:int", "-r", str(TARGET), [])
+    mbpoll(place, "-B", "-t", "4:int", "-r", str(TARGET), values=["12345"])
+    said = mbpoll(place, "-B", "-t", "4:int", "-r", str(TARGET))
     CHECKS.that("12345" in said, "and writes")
+
+
+def clients_come_one_by_one(place):
+    """Each opens the line and closes it, as programs do that ask once."""
+    for _ in range(3):
+        said = mbpoll(place, "-r", str(LIMIT), "-c", "4")
+        CHECKS.that(f"[{LIMIT}]:" in said, f"who comes when another has gone is answered: {said}")
 
 
 def it_is_kept(drive):
@@ -105,6 +112,9 @@ with Served() as served:
     it_speaks_modbus_from_power_up(drive)
     knobs.close()
     drive.serial.close()
+    console.close()
+    clients_come_one_by_one(served.link)
+    console = Line(str(served.link))
     console.send("C\r")
     time.sleep(0.2)  # a silence: it stands alone
     console.send("state\n")
