@@ -58,14 +58,23 @@ static double law_bandwidth_max(const struct drive_settings *settings, double pe
     }
 }
 
-/* Behind a spring that gives the law's gain acts on the rotor alone: there it is as designed. */
+/*
+ * Behind a spring that gives the law's gain acts on the rotor alone: there it is as designed.
+ *
+ * An inductance that is off by dL feigns a speed dL / Km di_q/dt, and the law answers a speed with
+ * i_q = 2 w0 J / Km of it: a loop of dL / L (w0 / w_em)^2 and more. So without an encoder it is no
+ * quicker than the winding swings.
+ */
 static double law_bandwidth_wanted(const struct drive_settings *settings)
 {
     const bool stiff = settings->law == POSITION_LAW_FEEDBACK_LINEARISATION ||
                        settings->law == POSITION_LAW_STATE_FEEDBACK;
     const double rigid_rad_s = fast(settings) ? 900.0 : stiff ? 300.0 : 200.0;
+    const double wanted_rad_s = 0.01 * settings->rotor_inertia_percent * rigid_rad_s;
 
-    return 0.01 * settings->rotor_inertia_percent * rigid_rad_s;
+    return settings->feedback == DRIVE_FEEDBACK_SENSORLESS
+               ? smaller(wanted_rad_s, electromechanical_frequency(&settings->motor))
+               : wanted_rad_s;
 }
 
 static bool bears(const struct drive_settings *settings, double period_s, double hold_current_A)

@@ -64,7 +64,7 @@
          "track the series resistance while holding")                                              \
     REAL(0x2110, law_bandwidth_rad_s, "rad/s", FIXED(1.0), FIXED(1e4), FOLLOWS, AT_ENABLE,         \
          "w0 of the position law, a pair of poles: 200, of the default law 300, with an encoder "  \
-         "900, or what the period bears")                                                          \
+         "900, or what the period bears; sensorless at most Km / sqrt(J L)")                       \
     REAL(0x2111, current_bandwidth_rad_s, "rad/s", FIXED(10.0), FIXED(1e6), FOLLOWS, AT_ENABLE,    \
          "of the current loop inside it: 1500, with feedback-linearisation 2000, twice the swing " \
          "of a quicker hold, or what the period bears")                                            \

@@ -322,6 +322,26 @@ static void test_a_law_s_bandwidth_is_less_where_most_of_the_inertia_is_behind_a
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.3 * 300.0, settings.law_bandwidth_rad_s);
 }
 
+/* A heavy load on a winding of much inductance, Km / sqrt(J L) = 419 / 2: sensorless alone. */
+static void test_a_sensorless_law_is_no_quicker_than_the_winding_swings(void)
+{
+    const struct drive_settings light = settings;
+    struct drive_settings encoder;
+
+    settings.motor.inertia_kgm2 *= 2.0;
+    settings.motor.inductance_H *= 2.0;
+    encoder = settings;
+    default_settings_apply(&settings, 1e-4, 0u);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9,
+                              light.motor.torque_constant_Nm_A /
+                                  sqrt(4.0 * light.motor.inertia_kgm2 * light.motor.inductance_H),
+                              settings.law_bandwidth_rad_s);
+    TEST_ASSERT_DOUBLE_WITHIN(10.0, 210.0, settings.law_bandwidth_rad_s);
+    drive_settings_select_feedback(&encoder, DRIVE_FEEDBACK_ENCODER);
+    default_settings_apply(&encoder, 1e-4, 4000u);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 900.0, encoder.law_bandwidth_rad_s);
+}
+
 /* The rotor alone: in the hold of half the rated current, and against a winding of little L. */
 static void test_an_observer_follows_a_light_rotor(void)
 {
@@ -532,6 +552,7 @@ int main(void)
     RUN_TEST(test_what_is_given_stays);
     RUN_TEST(test_defaults_fit_a_longer_period);
     RUN_TEST(test_a_law_s_bandwidth_is_less_where_most_of_the_inertia_is_behind_a_belt);
+    RUN_TEST(test_a_sensorless_law_is_no_quicker_than_the_winding_swings);
     RUN_TEST(test_an_observer_follows_a_light_rotor);
     RUN_TEST(test_an_observer_does_not_chase_counts);
     RUN_TEST(test_every_setting_is_refused_beyond_its_range_by_name_bound_and_unit);
