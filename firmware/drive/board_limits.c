@@ -98,27 +98,56 @@ __attribute__((noinline)) double default_speed_limit_rad_s(const struct motor_pa
     return SPEED_LIMIT_SHARE * motor->supply_V / motor->torque_constant_Nm_A;
 }
 
-/* The largest modulation of the supply = R i + Km w, with the current Kv w / Km of the friction. */
-static double supplied_speed_rad_s(const struct motor_params *motor, const struct hal_facts *facts)
+/* The largest modulation of the supply = R i + |Km w + R Kv w / Km + j N w L i|. */
+static double supplied_speed_rad_s(const struct motor_params *motor, const struct hal_facts *facts,
+                                   double current_A)
 {
     const double modulation = modulation_max(facts->low_state_s, facts->control_period_s);
-    const double friction_V_s_rad =
+    const double friction_Vs =
         motor->resistance_ohm * motor->viscous_friction_Nms_rad / motor->torque_constant_Nm_A;
+    const double along_Vs = motor->torque_constant_Nm_A + friction_Vs;
+    const double across_Vs = motor->rotor_teeth * motor->inductance_H * current_A;
 
-    return modulation * motor->supply_V / (motor->torque_constant_Nm_A + friction_V_s_rad);
+    return (modulation * motor->supply_V - motor->resistance_ohm * current_A) /
+           square_root(along_Vs * along_Vs + across_Vs * across_Vs);
 }
+
+__attribute__((noinline)) double no_load_speed_rad_s(const struct drive_settings *settings,
+                                                     const struct hal_facts *facts)
+{
+    return smaller(settings->speed_limit_rad_s, supplied_speed_rad_s(&settings->motor, facts, 0.0));
+}
+
+/*
+ * Without an encoder a rotor that lags for want of voltage is lost: there the supply has to drive
+ * the current of a default ramp, too, a quarter of the rated one, and a tenth for friction. Its
+ * voltage is taken as if it were along that of the speed, which is rather too much.
+ */
+#define RAMP_CURRENT_SHARE 0.35
+
+/* What is sampled ends at 0.24 turns a period (drive.c); a rotor swings about its reference. */
+#define SAMPLED_TURNS 0.2
 
 struct speed_limit board_limits_speed(const struct drive_settings *settings,
                                       const struct hal_facts *facts)
 {
-    const struct motor_params *motor = &settings->motor;
-    const double supplied_rad_s = supplied_speed_rad_s(motor, facts);
-    const double default_rad_s = default_speed_limit_rad_s(motor);
+    const double sampled_rad_s =
+        SAMPLED_TURNS * 6.283185307179586 / (settings->motor.rotor_teeth * facts->control_period_s);
+    const double current_A = settings->feedback == DRIVE_FEEDBACK_SENSORLESS
+                                 ? RAMP_CURRENT_SHARE * settings->motor.rated_current_A
+                                 : 0.0;
+    const double supplied_rad_s = supplied_speed_rad_s(&settings->motor, facts, current_A);
+    const double default_rad_s = default_speed_limit_rad_s(&settings->motor);
     const bool widened = settings->speed_limit_rad_s > default_rad_s;
+    struct speed_limit limit = {settings->speed_limit_rad_s, "limit of the drive"};
 
-    return widened || settings->speed_limit_rad_s < supplied_rad_s
-               ? (struct speed_limit){settings->speed_limit_rad_s, "limit of the drive"}
-               : (struct speed_limit){supplied_rad_s, "where the back-EMF takes up the supply"};
+    if (!widened && supplied_rad_s < limit.rad_s) {
+        limit = (struct speed_limit){supplied_rad_s, "where the back-EMF takes up the supply"};
+    }
+    if (sampled_rad_s < limit.rad_s) {
+        limit = (struct speed_limit){sampled_rad_s, "a fifth of an electrical turn in a period"};
+    }
+    return limit;
 }
 
 __attribute__((noinline)) double drive_blind_speed_rad_s(const struct drive_settings *settings,

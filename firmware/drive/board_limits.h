@@ -58,9 +58,15 @@ struct speed_limit {
     const char *reason;
 };
 
-/* The speed at which back-EMF and friction leave nothing of the supply, or speed_limit_rad_s if
-   that is less, or beyond its default: then motion that lags for want of voltage is what is asked
-   for. */
+/* rad/s: at which back-EMF and friction leave nothing of the supply, or speed_limit_rad_s. */
+double no_load_speed_rad_s(const struct drive_settings *settings, const struct hal_facts *facts);
+
+/*
+ * At which reference speeds end: at a fifth of an electrical turn in a period; where back-EMF and
+ * friction leave nothing of the supply, without an encoder nothing but what drives a default ramp;
+ * and at speed_limit_rad_s. Is that beyond its default, it counts instead of the supply: then
+ * motion that lags for want of voltage is what is asked for.
+ */
 struct speed_limit board_limits_speed(const struct drive_settings *settings,
                                       const struct hal_facts *facts);
 

@@ -10,7 +10,8 @@
    whatever their period: how far apart a current is looked at, and for how many one look stands. */
 #define NOISE_CODES       8u
 #define NOISE_SHARE       0.02
-#define LOOK_PERIODS      4u       /* from look to look, or one more */
+#define LOOK_PERIODS      4u /* from look to look, or up to five more in turn */
+#define LOOKS_APART       6u
 #define LOOKS             4u       /* two currents of a moving rotor can be the same */
 #define LAG_S             12.8e-3  /* a fault carries the estimate away within less */
 #define GAP_PERIODS       14u      /* of one voltage, as it was at the look */
@@ -125,9 +126,9 @@ static bool goes_elsewhere(const struct phase_look *look, uint8_t resistance)
 }
 
 /* gone: a hold's current that is asked for; flows: there is one. */
-static bool is_sure(const struct phase_count *count, num_t pushed, bool gone, bool flows)
+static bool is_sure(const struct phase_count *count, num_t pushed, bool gone, bool flows, bool fast)
 {
-    return (count->looks >= LOOKS && pushed > PUSHED_MAX) ||
+    return (count->looks >= (fast ? LOOKS_MAX : LOOKS) && pushed > PUSHED_MAX) ||
            (count->looks >= GONE_LOOKS && pushed > PUSHED_GONE && gone) ||
            (count->same >= SAME_MISSED && count->missed >= MISSED_SAME && flows);
 }
@@ -161,6 +162,7 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
     num_t furthest = NUM(0.0);
 
     watch->period = look->period;
+    watch->apart = (uint8_t)((watch->apart + 1u) % LOOKS_APART);
     watch->suspected = look->voltage_wrong ? DRIVE_FAULT_LOST_SYNCHRONISM : DRIVE_FAULT_NONE;
     for (int phase = 0; phase < 2; phase++) {
         struct phase_count *count = &watch->count[phase];
@@ -185,7 +187,9 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
             furthest = look->off[phase];
             watch->suspected = name;
         }
-        if (dead || is_sure(count, num_abs(watch->pushed[phase]), gone, flows) ||
+        if (dead ||
+            (is_sure(count, num_abs(watch->pushed[phase]), gone, flows, look->fast) &&
+             !(look->fast && watch->count[1 - phase].looks >= LOOKS)) ||
             (count->same == SAME_MAX && alive && goes_elsewhere(look, watch->resistance))) {
             fault = (enum drive_fault)name;
         }
@@ -304,6 +308,7 @@ static void look_at(struct phase_look *look, const struct drive *drive)
     look->held = drive->hold.active;
     look->settled = drive->synchronism.monitor.held >= drive->synchronism.params.settled_blocks;
     look->turns = is_faster(drive, SLOW_TURNS);
+    look->fast = is_faster(drive, FAST_TURNS);
     look->resistance = counts_of(drive->estimator.estimate.winding.resistance);
     look->eighth = counts_of(drive->params.model.nominal_resistance) / 8u;
 }
@@ -322,11 +327,12 @@ static enum drive_fault judge_resistance(const struct drive *drive, const struct
 }
 
 /* Never at the same place of what repeats itself. From a sixteenth of an electrical turn in a
-   period on half a turn may pass from look to look, and a current that goes through zero stands. */
+   period on half a turn may pass from look to look, and a current that goes through zero stands;
+   at two ninths of it what is seen four and five periods apart stands for ever. */
 static uint32_t interval(const struct drive *drive)
 {
     return phase_watch_chatters(drive) || is_faster(drive, FAST_TURNS)
-               ? LOOK_PERIODS + drive->phase_watch.period / LOOK_PERIODS % 2u
+               ? LOOK_PERIODS + drive->phase_watch.apart
                : LOOK_PERIODS;
 }
 

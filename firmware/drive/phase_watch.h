@@ -10,9 +10,11 @@
  * its observer see; over the periods in which a current law misses its reference by 15 % of the
  * rated current, or a voltage law acts. But for feedback linearisation voltage laws may change
  * their voltage's sign from period to period: of these the sum is of |...| with the sign of
- * u - R i - e. They are looked at four and five periods apart in turn, as are all from a
- * sixteenth of an electrical turn a period on: half a turn leads from zero to zero of a current. A
- * rotor that has pulled out shows a back-EMF that is not its estimate's, too, but with currents
+ * u - R i - e. They are looked at four to nine periods apart in turn, as are all from a sixteenth
+ * of an electrical turn a period on: whatever the speed, in seven looks each current differs by six
+ * tenths of its amplitude. One that is small may not, within noise; then no more does the other
+ * phase's, and nothing is sure.
+ * A rotor that has pulled out shows a back-EMF that is not its estimate's, too, but with currents
  * that follow. Without an encoder e is that of the reference, turned by what the estimate has been
  * beside it over the last 13 ms: with the reference's alone a rotor that lags, on a belt that
  * swings, was a broken lead.
@@ -71,6 +73,7 @@ struct phase_watch {
     uint16_t code[2]; /* at which the current stands */
     struct phase_count count[2];
     uint8_t suspected;  /* fault: what another one comes of */
+    uint8_t apart;      /* periods that the next look is later than it might be */
     uint8_t resistance; /* low byte of the look's, when a code last changed of two that do */
     int32_t lag;        /* of the estimate behind the reference of late, 2^-32 turns */
     num_t wanted[2];    /* current, when it came to stand there */
@@ -91,6 +94,7 @@ struct phase_look {
     bool held;
     bool settled;       /* and for so long that its resistance is found */
     bool turns;         /* by an electrical turn within the looks of one code */
+    bool fast;          /* by one within sixteen periods */
     bool larger;        /* the phase of the larger one */
     bool voltage_wrong; /* what is measured of a leg is not what was commanded */
 };

@@ -20,7 +20,7 @@ enum { QUICKLY = 2 }; /* option code of a halt */
 static const float jerk_share = 0.25f;
 static const float jerk_min_s = 2e-3f;
 
-/* Of homing: of the largest speed, and ten turns. */
+/* Of homing: of the speed without load, and ten turns. */
 static const float homing_share = 0.04f;
 static const float homing_travel_rad = 62.831853f;
 
@@ -96,6 +96,10 @@ void axis_motion_put_defaults(struct application *application)
     struct link_objects *objects = &application->link->objects;
     const float unit_rad = units(application);
     const float acceleration = axis_motion_acceleration_limit(application) / unit_rad;
+    const struct drive *drive = &application->drive;
+    const float homing = homing_share * 0.999f *
+                         (float)no_load_speed_rad_s(&drive->settings, drive->board->facts) /
+                         unit_rad;
 
     put_default(&objects->max_speed_rpm, axis_motion_speed_limit(application) / AXIS_RAD_S_PER_RPM);
     put_default(&objects->profile_velocity,
@@ -103,10 +107,8 @@ void axis_motion_put_defaults(struct application *application)
     put_default(&objects->profile_acceleration, 0.25f * acceleration);
     put_default(&objects->profile_deceleration, 0.25f * acceleration);
     put_default(&objects->quick_stop_deceleration, 0.5f * acceleration);
-    put_default(&objects->homing_speed,
-                homing_share * axis_motion_speed_limit(application) / unit_rad);
-    put_default(&objects->homing_zero_speed,
-                homing_share * axis_motion_speed_limit(application) / unit_rad);
+    put_default(&objects->homing_speed, homing);
+    put_default(&objects->homing_zero_speed, homing);
     put_default(&objects->homing_acceleration, 0.25f * acceleration);
     put_default(&objects->homing_travel, homing_travel_rad / unit_rad);
 }

@@ -100,6 +100,58 @@ static void test_the_lag_is_a_mean_over_13_ms_whatever_the_period(void)
     }
 }
 
+/* Looks at a rotor that turns by so much in a period, each with as large a voltage; `stuck`: b is.
+   The periods until a fault is said, or so many. */
+static int fast_looks(double turns, double angle_turns, double amplitude, bool stuck, int periods,
+                      enum drive_fault *fault)
+{
+    setUp();
+    look.fast = true;
+    look.push[0] = look.push[1] = NUM(0.2);
+    look.flows[0] = look.flows[1] = true;
+    for (*fault = DRIVE_FAULT_NONE;
+         look.period < (uint32_t)periods && *fault == DRIVE_FAULT_NONE;) {
+        look.period += 4u + watch.apart;
+        const double at = TWO_PI * (angle_turns + turns * (double)look.period);
+
+        look.code[0] = (uint16_t)lrint(ZERO + amplitude * cos(at));
+        look.code[1] = stuck ? ZERO + 50 : (uint16_t)lrint(ZERO + amplitude * sin(at));
+        *fault = phase_watch_step(&watch, &params, &look);
+    }
+    return (int)look.period;
+}
+
+/* At 2/9 of a turn in a period what is seen four and five periods apart is one value for ever. */
+static void test_no_current_of_a_fast_rotor_stands_whatever_its_speed(void)
+{
+    enum drive_fault fault;
+
+    for (double turns = 0.0625; turns < 0.205; turns += 1.0 / 1440.0) {
+        for (double angle = 0.0; angle < 1.0; angle += 1.0 / 64.0) {
+            (void)fast_looks(turns, angle, 1.8 * params.noise_codes, false, 300, &fault);
+            TEST_ASSERT_EQUAL_STRING("none", drive_fault_name(fault));
+        }
+    }
+}
+
+static void test_small_currents_of_a_fast_rotor_stand_and_say_nothing(void)
+{
+    enum drive_fault fault;
+
+    (void)fast_looks(0.1, 0.0, 0.5 * params.noise_codes, false, 300, &fault);
+    TEST_ASSERT_EQUAL_STRING("none", drive_fault_name(fault));
+}
+
+static void test_a_stuck_sensor_of_a_fast_rotor_is_found_in_seven_looks(void)
+{
+    enum drive_fault fault;
+
+    for (double turns = 0.0625; turns < 0.205; turns += 1.0 / 144.0) {
+        TEST_ASSERT_LESS_THAN(60, fast_looks(turns, 0.3, 100.0, true, 300, &fault));
+        TEST_ASSERT_EQUAL_STRING("current-sensor-b", drive_fault_name(fault));
+    }
+}
+
 static void test_noise_stands_and_more_does_not(void)
 {
     look.push[0] = NUM(0.1);
@@ -431,6 +483,9 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_phase_that_does_not_move_is_named_as_soon_as_it_would_have_had_to);
     RUN_TEST(test_the_lag_is_a_mean_over_13_ms_whatever_the_period);
+    RUN_TEST(test_no_current_of_a_fast_rotor_stands_whatever_its_speed);
+    RUN_TEST(test_small_currents_of_a_fast_rotor_stand_and_say_nothing);
+    RUN_TEST(test_a_stuck_sensor_of_a_fast_rotor_is_found_in_seven_looks);
     RUN_TEST(test_noise_stands_and_more_does_not);
     RUN_TEST(test_four_looks_at_least_find_it_standing);
     RUN_TEST(test_without_a_push_a_current_may_stand);

@@ -520,7 +520,7 @@ static const double more = 1e-4, less = -1e-4;
 static void test_speeds_are_taken_up_to_their_bounds(void)
 {
     const double acceleration = 3.0 * 0.157 / 15.62e-5;
-    const double slowest = 2.0 * 140.0 / (1073741824.0 * 1e-4);
+    const double slowest = 2.0 * 131.74 / (1073741824.0 * 1e-4);
     struct drive_command command = velocity(1.0);
 
     holds_to(&command, &command.acceleration_rad_s2, acceleration, more,
@@ -558,7 +558,7 @@ static void test_sines_are_taken_up_to_their_bounds(void)
     holds_to(&command, &command.amplitude_rad, 1e-6, less, "range of amplitudes");
     holds_to(&command, &command.amplitude_rad, -1e-6, less, "range of amplitudes");
     command.frequency_Hz = 1.0;
-    holds_to(&command, &command.amplitude_rad, 139.9 / TWO_PI, 0.01, "where the back-EMF");
+    holds_to(&command, &command.amplitude_rad, 131.7 / TWO_PI, 0.01, "where the back-EMF");
     command.frequency_Hz = 100.0;
     holds_to(&command, &command.amplitude_rad, acceleration / pow(TWO_PI * 100.0, 2.0), more,
              "acceleration of the sine");
@@ -684,11 +684,11 @@ static void test_with_a_known_encoder_zero_motion_is_refused_until_the_drive_is_
     must_refuse(move_to(0.1), refusal); /* the state is still that before the disable */
 }
 
-/* 140 rad/s: 0.92 of 24 V over Km and what friction takes. */
+/* 131.7 rad/s: 0.92 of 24 V, over Km and what friction and a default ramp take. */
 static void test_no_motion_is_taken_that_the_back_emf_forbids(void)
 {
     static const char reason[] =
-        "must be at most 140 rad/s, where the back-EMF takes up the supply";
+        "must be at most 131.7 rad/s, where the back-EMF takes up the supply";
     struct drive_command fast_retarget = retarget(100.0);
     struct drive_command fast_move = move_to(100.0);
     struct drive_command fast_sine = sine(10.0, 0.1);
@@ -704,10 +704,10 @@ static void test_no_motion_is_taken_that_the_back_emf_forbids(void)
     for (size_t i = 0; i < sizeof beyond / sizeof beyond[0]; i++) {
         TEST_ASSERT_FALSE(drive_command(&drive, &beyond[i], error));
         TEST_ASSERT_TRUE_MESSAGE(strstr(error, reason) != NULL ||
-                                     strstr(error, "must be at least -140 rad/s") != NULL,
+                                     strstr(error, "must be at least -131.7 rad/s") != NULL,
                                  error);
     }
-    must_post(velocity(139.0));
+    must_post(velocity(131.0));
 }
 
 int main(void)
