@@ -15,6 +15,12 @@ import sys
 import tempfile
 from typing import NamedTuple
 
+try:
+    import elftools  # noqa: F401, what fields.py reads the objects with
+except ImportError:
+    print("left out: python3-pyelftools is not installed (tools/setup)")
+    sys.exit(77)
+
 
 class Mutant(NamedTuple):
     what: str
