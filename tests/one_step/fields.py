@@ -66,6 +66,8 @@ def size_of(kind):
         for subrange in kind.iter_children():
             size *= count_of(subrange)
         return size
+    if "DW_AT_byte_size" not in kind.attributes and kind.tag == "DW_TAG_pointer_type":
+        return kind.cu["address_size"]  # clang leaves it out
     return kind.attributes["DW_AT_byte_size"].value
 
 
@@ -74,7 +76,9 @@ def members_of(kind):
     for child in kind.iter_children():
         if child.tag == "DW_TAG_member":
             offset = child.attributes.get("DW_AT_data_member_location")
-            yield (name_of(child), offset.value if offset else 0, *type_of(child))
+            bits = child.attributes.get("DW_AT_data_bit_offset")  # then it is the byte that holds it
+            at = offset.value if offset else bits.value // 8 if bits else 0
+            yield (name_of(child), at, *type_of(child))
 
 
 def leaf_kind(kind, typedefs):

@@ -104,7 +104,7 @@ double State::number(const Field &field, Memory memory) const
     }
     const unsigned char *const at = memory.at + field.tested;
     if (!fixed_) {
-        return read<float>(at);
+        return static_cast<double>(read<float>(at));
     }
     switch (field.kind) {
     case Kind::num:
