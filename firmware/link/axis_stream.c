@@ -235,7 +235,7 @@ bool axis_stream_follows(const struct axis_stream *stream)
 void axis_stream_background(struct application *application)
 {
     if (!is_open(application) || application->link->axis.stream.at_sync) {
-        return; /* the controlword of a PDO comes before its target */
+        return; /* a controlword of this SYNC may come before the target */
     }
     if (application->link->axis.stream.by_sync) {
         advance(application);

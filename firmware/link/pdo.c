@@ -3,7 +3,7 @@
 #include "firmware/application/application.h"
 #include "firmware/link/link.h"
 
-enum { ID_BITS = 0x7ff, NOT_PROCESSED = 0x8210 };
+enum { ID_BITS = 0x7ff, NOT_PROCESSED = 0x8210, CONTROLWORD = 0x6040 };
 
 #define NO_REMOTE 0x40000000u
 
@@ -177,9 +177,11 @@ enum object_abort pdo_obey(struct pdos *pdos, const struct object *object, const
 
 /* ---- received ---- */
 
+/* A controlword begins what the other objects say, wherever it is mapped: it acts behind them. */
 static void act(struct application *application, const struct pdo *pdo)
 {
     const uint8_t *from = pdo->frame.data;
+    const uint8_t *controlword = NULL;
 
     for (size_t i = 0; i < pdo->count; i++) {
         uint8_t value[OBJECT_BYTES_MAX] = {0};
@@ -188,9 +190,16 @@ static void act(struct application *application, const struct pdo *pdo)
         if (objects_find((uint16_t)(pdo->map[i] >> 16), (uint8_t)(pdo->map[i] >> 8), &object) ==
             OBJECT_DONE) {
             memcpy(value, from, object_bytes(&object));
-            (void)object_put(application, &object, value);
+            if (object.index == CONTROLWORD) {
+                controlword = from;
+            } else {
+                (void)object_put(application, &object, value);
+            }
             from += object_bytes(&object);
         }
+    }
+    if (controlword != NULL) {
+        cia402_control(application, (uint16_t)can_get(controlword, 2));
     }
 }
 

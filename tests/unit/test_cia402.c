@@ -120,6 +120,17 @@ static void test_a_set_point_is_acknowledged_and_reached(void)
     TEST_ASSERT_TRUE(get(0x6062) == TURN / 4);
 }
 
+/* As RPDO3 is mapped from the start: 6040h, 607Ah. */
+static void test_a_controlword_begins_the_move_to_the_target_in_its_own_frame(void)
+{
+    put(0x1402, 1, 4, 0x401);
+    enable(1);
+    put(0x607a, 0, 4, TURN);
+    (void)link_bench_say("t40161F0000200000", 20);
+    (void)link_bench_say("t40160F0000200000", 4000);
+    TEST_ASSERT_EQUAL(TURN / 8, get(0x6062));
+}
+
 static void test_software_limits_cut_a_target(void)
 {
     enable(1);
@@ -488,6 +499,7 @@ int main(void)
     RUN_TEST(test_states_follow_the_controlword);
     RUN_TEST(test_a_fault_stays_until_it_is_reset);
     RUN_TEST(test_a_set_point_is_acknowledged_and_reached);
+    RUN_TEST(test_a_controlword_begins_the_move_to_the_target_in_its_own_frame);
     RUN_TEST(test_software_limits_cut_a_target);
     RUN_TEST(test_a_new_target_waits_or_preempts);
     RUN_TEST(test_halt_stops_and_lets_go_on);
