@@ -20,10 +20,6 @@ enum { QUICKLY = 2 }; /* option code of a halt */
 static const float jerk_share = 0.25f;
 static const float jerk_min_s = 2e-3f;
 
-/* Of homing: of the speed without load, and ten turns. */
-static const float homing_share = 0.04f;
-static const float homing_travel_rad = 62.831853f;
-
 static struct axis_motion *motion_of(struct application *application)
 {
     return &application->link->axis.motion;
@@ -83,34 +79,62 @@ static float units(const struct application *application)
     return (float)cia402_unit_rad(&application->link->objects);
 }
 
-static void put_default(uint32_t *units, float value)
-{
-    if (*units == 0u) {
-        *units = value < 4e9f ? (uint32_t)value : 4000000000u;
+/* What a default is a share of; of all but the first in units. */
+enum default_base { SPEED_rpm, SPEED, NO_LOAD_SPEED, ACCELERATION, TURN };
+
+#define DEFAULT(member, base, share)                                                               \
+    {                                                                                              \
+        share, offsetof(struct link_objects, member), base                                         \
     }
+
+/* As the console's moves (default_move.h). */
+static const struct {
+    float share;
+    uint16_t at;
+    uint16_t base; /* enum default_base */
+} defaults[AXIS_DEFAULTS] = {
+    DEFAULT(max_speed_rpm, SPEED_rpm, 1.0f),
+    DEFAULT(profile_velocity, SPEED, 0.25f),
+    DEFAULT(profile_acceleration, ACCELERATION, 0.25f),
+    DEFAULT(profile_deceleration, ACCELERATION, 0.25f),
+    DEFAULT(quick_stop_deceleration, ACCELERATION, 0.5f),
+    DEFAULT(homing_speed, NO_LOAD_SPEED, 0.04f),
+    DEFAULT(homing_zero_speed, NO_LOAD_SPEED, 0.04f),
+    DEFAULT(homing_acceleration, ACCELERATION, 0.25f),
+    DEFAULT(homing_travel, TURN, 10.0f),
+    DEFAULT(following_window, TURN, 2048.0f / 65536.0f),
+    DEFAULT(target_window, TURN, 100.0f / 65536.0f),
+};
+
+/* A whole number of units, one at least. */
+static uint32_t whole_units(float value)
+{
+    return value < 1.0f ? 1u : value < 4e9f ? (uint32_t)value : 4000000000u;
 }
 
-/* A share of what the motor can, as the console's moves (default_move.h); what is given stays. */
 void axis_motion_put_defaults(struct application *application)
 {
-    struct link_objects *objects = &application->link->objects;
+    struct link *link = application->link;
     const float unit_rad = units(application);
-    const float acceleration = axis_motion_acceleration_limit(application) / unit_rad;
     const struct drive *drive = &application->drive;
-    const float homing = homing_share * 0.999f *
-                         (float)no_load_speed_rad_s(&drive->settings, drive->board->facts) /
-                         unit_rad;
+    const float speed = axis_motion_speed_limit(application);
+    const float bases[] = {
+        [SPEED_rpm] = speed / AXIS_RAD_S_PER_RPM,
+        [SPEED] = speed / unit_rad,
+        [NO_LOAD_SPEED] =
+            0.999f * (float)no_load_speed_rad_s(&drive->settings, drive->board->facts) / unit_rad,
+        [ACCELERATION] = axis_motion_acceleration_limit(application) / unit_rad,
+        [TURN] = 6.2831853f / unit_rad,
+    };
 
-    put_default(&objects->max_speed_rpm, axis_motion_speed_limit(application) / AXIS_RAD_S_PER_RPM);
-    put_default(&objects->profile_velocity,
-                0.25f * axis_motion_speed_limit(application) / unit_rad);
-    put_default(&objects->profile_acceleration, 0.25f * acceleration);
-    put_default(&objects->profile_deceleration, 0.25f * acceleration);
-    put_default(&objects->quick_stop_deceleration, 0.5f * acceleration);
-    put_default(&objects->homing_speed, homing);
-    put_default(&objects->homing_zero_speed, homing);
-    put_default(&objects->homing_acceleration, 0.25f * acceleration);
-    put_default(&objects->homing_travel, homing_travel_rad / unit_rad);
+    for (size_t i = 0; i < AXIS_DEFAULTS; i++) {
+        uint32_t *value = (void *)((uint8_t *)&link->objects + defaults[i].at);
+
+        if (*value == link->defaults[i]) {
+            *value = whole_units(defaults[i].share * bases[defaults[i].base]);
+            link->defaults[i] = *value;
+        }
+    }
 }
 
 /* A steeper ramp ends as quickly as it began: by the jerk of a gentler one the speed would go on

@@ -9,7 +9,7 @@
 
 struct application;
 
-/* Profile speed, acceleration and quick stop of the motor's settings, where none is given. */
+/* What has been given none has a share of what the motor can, in the units of the factor group. */
 void axis_motion_put_defaults(struct application *application);
 
 /* OPERATION ENABLED begins. */

@@ -205,6 +205,7 @@ void link_reset_communication(struct application *application)
 
     link->node = (uint8_t)application->chosen.node_id;
     objects_put_presets(&link->objects, link->node);
+    memset(link->defaults, 0, sizeof link->defaults);
     pdo_put_presets(&link->pdos, link->node);
     link->sdo.state = SDO_IDLE;
     link->nmt = LINK_PRE_OPERATIONAL;

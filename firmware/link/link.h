@@ -47,6 +47,7 @@ struct link {
     struct sdo_server sdo;
     struct pdos pdos;
     struct cia402 axis;
+    uint32_t defaults[AXIS_DEFAULTS]; /* of objects, as put last: another value is given */
     struct capture capture;
     struct drive_command command; /* parameters put by 2201h and on, for 2200h */
     const struct hal_can *can;    /* NULL: the board has no bus */

@@ -196,6 +196,10 @@ void link_has_put(struct application *application, const struct object *object)
     case 0x1016:
         application->link->heard = false;
         break;
+    case 0x6091:
+    case 0x6092:
+        axis_motion_put_defaults(application);
+        break;
     case 0x607a:
         axis_motion_cycle(application);
         break;

@@ -131,6 +131,29 @@ static void test_a_controlword_begins_the_move_to_the_target_in_its_own_frame(vo
     TEST_ASSERT_EQUAL(TURN / 8, get(0x6062));
 }
 
+/* Of 65,536 units in a turn, then of 360. */
+static void test_defaults_follow_the_unit_and_what_is_given_stays(void)
+{
+    const uint32_t speed = get(0x6081), acceleration = get(0x6083), rpm = get(0x6080);
+
+    TEST_ASSERT_EQUAL(2048, get(0x6065));
+    TEST_ASSERT_EQUAL(100, get(0x6067));
+    TEST_ASSERT_EQUAL(10 * TURN, link_bench_get(0x2403, 2));
+    put(0x6084, 0, 4, 5 * TURN);
+    put(0x6072, 0, 2, 500); /* the default of an acceleration depends on it */
+    put(0x6092, 1, 4, 360);
+    TEST_ASSERT_INT_WITHIN(1, speed * 360.0 / TURN, get(0x6081));
+    TEST_ASSERT_INT_WITHIN(1, speed * 0.16 * 360.0 / TURN, link_bench_get(0x6099, 2));
+    TEST_ASSERT_LESS_OR_EQUAL(acceleration * 360.0 / TURN, get(0x6083));
+    TEST_ASSERT_EQUAL(5 * TURN, get(0x6084));
+    TEST_ASSERT_EQUAL(11, get(0x6065));
+    TEST_ASSERT_EQUAL(1, get(0x6067));
+    TEST_ASSERT_EQUAL(3600, link_bench_get(0x2403, 2));
+    TEST_ASSERT_EQUAL(rpm, get(0x6080));
+    put(0x6091, 2, 4, 2); /* two turns of the shaft are one of the motor */
+    TEST_ASSERT_INT_WITHIN(1, speed * 720.0 / TURN, get(0x6081));
+}
+
 static void test_software_limits_cut_a_target(void)
 {
     enable(1);
@@ -500,6 +523,7 @@ int main(void)
     RUN_TEST(test_a_fault_stays_until_it_is_reset);
     RUN_TEST(test_a_set_point_is_acknowledged_and_reached);
     RUN_TEST(test_a_controlword_begins_the_move_to_the_target_in_its_own_frame);
+    RUN_TEST(test_defaults_follow_the_unit_and_what_is_given_stays);
     RUN_TEST(test_software_limits_cut_a_target);
     RUN_TEST(test_a_new_target_waits_or_preempts);
     RUN_TEST(test_halt_stops_and_lets_go_on);
