@@ -56,8 +56,14 @@ const struct drive_signals *cia402_signals(struct application *application)
     const uint32_t period = interrupt_view_period(&application->drive);
 
     if (period != axis->signals_in) {
+        const enum drive_state drive = interrupt_view_state(&application->drive);
+
         axis->signals_in = period;
         drive_signals_read(&application->drive, &axis->signals);
+        if (drive == DRIVE_FAULT || drive == DRIVE_SWITCH_ON_DISABLED) {
+            axis->signals.omega_est_rad_s = 0.0; /* stays what it was */
+            axis->signals.omega_ref_rad_s = 0.0;
+        }
     }
     return &axis->signals;
 }

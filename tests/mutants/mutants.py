@@ -1207,6 +1207,8 @@ MUTANTS = [
     Mutant(LINK + "axis_motion.c", "cia402",
            "defaults_follow_the_unit_and_what_is_given_stays",
            "*value == link->defaults[i]", "true"),
+    Mutant(LINK + "cia402.c", "cia402", "a_bridge_that_is_off_shows_no_speed",
+           "axis->signals.omega_est_rad_s = 0.0;", ""),
     Mutant(LINK + "link.c", "modbus", "whatever_comes_the_node_goes_on",
            "console->line_length < MODBUS_REQUEST_BYTES", "true"),
     Mutant(LINK + "sdo.c", "canopen", "a_setting_is_written_in_segments",

@@ -100,6 +100,24 @@ static void test_a_fault_stays_until_it_is_reset(void)
     assert_state(0x21, control(0x06));
 }
 
+/* A bridge that opens in motion ends the estimates and the steps of the reference. */
+static void test_a_bridge_that_is_off_shows_no_speed(void)
+{
+    enable(3);
+    put(0x60ff, 0, 4, TURN);
+    bench_periods(3000);
+    TEST_ASSERT_INT_WITHIN(10, TURN, (int)get(0x606b));
+    bench.samples.bus_voltage = 0;
+    bench_periods(20);
+    bench.application.drive.estimator.estimate.rotor.speed = NUM(0.1); /* as it was left */
+    assert_state(0x08, get(0x6041));
+    TEST_ASSERT_EQUAL(0, get(0x606b));
+    TEST_ASSERT_EQUAL(0, get(0x606c));
+    bench.samples.bus_voltage = 3151;
+    assert_state(0x40, control(0x80));
+    TEST_ASSERT_EQUAL(0, get(0x606c));
+}
+
 static void test_a_set_point_is_acknowledged_and_reached(void)
 {
     uint32_t status;
@@ -521,6 +539,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_states_follow_the_controlword);
     RUN_TEST(test_a_fault_stays_until_it_is_reset);
+    RUN_TEST(test_a_bridge_that_is_off_shows_no_speed);
     RUN_TEST(test_a_set_point_is_acknowledged_and_reached);
     RUN_TEST(test_a_controlword_begins_the_move_to_the_target_in_its_own_frame);
     RUN_TEST(test_defaults_follow_the_unit_and_what_is_given_stays);
