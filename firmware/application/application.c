@@ -85,15 +85,23 @@ static void leave_out(struct application *application)
     }
 }
 
-static bool start_with_stored(struct application *application, char error[DRIVE_ERROR_TEXT])
+static bool read_stored(struct application *application)
 {
     if (!settings_record_read(&application->board, &application->chosen)) {
         return false;
     }
-    application->settings_from = APPLICATION_SETTINGS_STORED;
     if (!SETTINGS_CARRIED) {
         leave_out(application);
     }
+    return true;
+}
+
+static bool start_with_stored(struct application *application, char error[DRIVE_ERROR_TEXT])
+{
+    if (!read_stored(application)) {
+        return false;
+    }
+    application->settings_from = APPLICATION_SETTINGS_STORED;
     return design(application, &application->chosen, true, error) ||
            design_refuse(application->stored_refusal, error);
 }
@@ -148,6 +156,19 @@ bool application_settings_wait(const struct application *application, uint32_t a
 
     return (found == DRIVE_SWITCH_ON_DISABLED || found == DRIVE_FAULT) &&
            !command_queue_enable_waits(&drive->commands);
+}
+
+void application_recall_settings(struct application *application)
+{
+    const uint32_t period = interrupt_view_period(&application->drive);
+
+    if (!application_settings_wait(application, period + application_typed_delay(application))) {
+        return;
+    }
+    if (!read_stored(application) && application->settings_from != APPLICATION_SETTINGS_GIVEN) {
+        drive_settings_default(&application->chosen, &application->chosen.motor);
+    }
+    application->awaits_enable = true;
 }
 
 /* Before an enable that would begin with it: puts in force what was set. */

@@ -66,6 +66,11 @@ bool application_init(struct application *application, const struct hal *board,
 bool application_init_with(struct application *application, const struct hal *board,
                            const struct drive_settings *settings, char error[DRIVE_ERROR_TEXT]);
 
+/* Back to what is stored, as behind a power cycle; without any to the defaults, of the motor that
+   is set. Nothing changes while the bridge is on, and where settings were given and none is stored.
+ */
+void application_recall_settings(struct application *application);
+
 /* Behind the start-up: a fieldbus link, which stays where it is. */
 void application_put_link(struct application *application, struct link *link);
 

@@ -24,9 +24,18 @@ enum nmt_command {
  */
 enum { MILLISECOND_us = 1000, MODBUS_SILENCE_us = 5000, ERRORS_KEPT = 4 };
 
+/* Of the profile and our own: defaults follow as soon as communication begins. */
+static void put_presets(struct link *link)
+{
+    objects_put_presets(&link->objects);
+    memset(link->defaults, 0, sizeof link->defaults);
+    memset(&link->command, 0, sizeof link->command);
+}
+
 void link_init(struct link *link)
 {
     *link = (struct link){.open = false};
+    put_presets(link);
 }
 
 CALLED_FROM_OUTSIDE void link_put_memory(struct link *link, uint32_t *memory, size_t words)
@@ -204,8 +213,7 @@ void link_reset_communication(struct application *application)
     struct link *link = application->link;
 
     link->node = (uint8_t)application->chosen.node_id;
-    objects_put_presets(&link->objects, link->node);
-    memset(link->defaults, 0, sizeof link->defaults);
+    objects_put_communication(&link->objects, link->node);
     pdo_put_presets(&link->pdos, link->node);
     link->sdo.state = SDO_IDLE;
     link->nmt = LINK_PRE_OPERATIONAL;
@@ -239,6 +247,8 @@ static void obey_nmt(struct application *application, enum nmt_command command)
         break;
     case NMT_RESET_NODE:
         cia402_control(application, 0);
+        application_recall_settings(application);
+        put_presets(link);
         link_reset_communication(application);
         break;
     case NMT_RESET_COMMUNICATION:

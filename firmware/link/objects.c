@@ -36,9 +36,15 @@ static const struct {
 
 enum { COMMAND_INDEX = 0x2200 };
 
-void objects_put_presets(struct link_objects *objects, uint8_t node)
+void objects_put_presets(struct link_objects *objects)
 {
     *objects = presets;
+}
+
+/* Members lie in the rows' order; counts of sub-indexes, behind all others, never change. */
+void objects_put_communication(struct link_objects *objects, uint8_t node)
+{
+    memcpy(objects, &presets, offsetof(struct link_objects, capture_divider));
     objects->emergency_cob_id += node;
     objects->sdo_request += node;
     objects->sdo_response += node;

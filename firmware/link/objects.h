@@ -96,8 +96,9 @@ enum { OBJECT_BYTES_MAX = 8 }; /* of a value; a text is longer */
 
 struct application;
 
-/* As a node of this number starts. */
-void objects_put_presets(struct link_objects *objects, uint8_t node);
+/* As a node starts: all of them; those of communication, 1000h to 1fffh, of one of this number. */
+void objects_put_presets(struct link_objects *objects);
+void objects_put_communication(struct link_objects *objects, uint8_t node);
 
 /* OBJECT_DONE, OBJECT_MISSING or OBJECT_SUB_MISSING. */
 enum object_abort objects_find(uint16_t index, uint8_t sub, struct object *found);

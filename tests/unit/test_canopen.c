@@ -223,6 +223,56 @@ static void test_a_number_of_the_node_acts_when_communication_is_reset(void)
     link_bench_heard("t5858", link_bench_say("t60584025210000000000", 2));
 }
 
+/* 1017h is of communication, 2403h is ours, 6060h and 6083h are of the profile. */
+static void put_and_reset(unsigned command)
+{
+    TEST_ASSERT_EQUAL(0, link_bench_put(0x1017, 0, 2, 500));
+    TEST_ASSERT_EQUAL(0, link_bench_put(0x2403, 1, 2, 600));
+    TEST_ASSERT_EQUAL(0, link_bench_put(0x6060, 0, 1, 3));
+    TEST_ASSERT_EQUAL(0, link_bench_put(0x6083, 0, 4, 65536));
+    if (command != 0u) {
+        link_bench_heard("t701100\r", link_bench_nmt(command, 2));
+    } else {
+        (void)link_bench_say("C", 1);
+        link_bench_heard("t701100\r", link_bench_say("O", 2));
+    }
+    TEST_ASSERT_EQUAL(0, link_bench_get(0x1017, 0));
+}
+
+static void test_communication_that_begins_anew_leaves_the_profile(void)
+{
+    link_bench_open();
+    for (unsigned command = 0; command <= 0x82u; command += 0x82u) {
+        put_and_reset(command);
+        TEST_ASSERT_EQUAL(600, link_bench_get(0x2403, 1));
+        TEST_ASSERT_EQUAL(3, link_bench_get(0x6060, 0));
+        TEST_ASSERT_EQUAL(65536, link_bench_get(0x6083, 0));
+        TEST_ASSERT_EQUAL(2, link_bench_get(0x2403, 0));
+    }
+}
+
+static void test_a_node_that_is_reset_is_as_from_power_up(void)
+{
+    link_bench_open();
+    const uint32_t acceleration = link_bench_get(0x6083, 0);
+
+    put_and_reset(0x81);
+    TEST_ASSERT_EQUAL(700, link_bench_get(0x2403, 1));
+    TEST_ASSERT_EQUAL(1, link_bench_get(0x6060, 0));
+    TEST_ASSERT_EQUAL(acceleration, link_bench_get(0x6083, 0));
+}
+
+static void test_a_node_that_is_reset_has_the_settings_that_are_stored(void)
+{
+    link_bench_open();
+    bench.application.chosen.current_limit_A = 2.0;
+    TEST_ASSERT_EQUAL(0, link_bench_put(0x1010, 1, 4, 0x65766173));
+    TEST_ASSERT_EQUAL(0, link_bench_put(0x6072, 0, 2, 500));
+    TEST_ASSERT_TRUE(bench.application.chosen.current_limit_A == 1.5);
+    (void)link_bench_nmt(0x81, 2);
+    TEST_ASSERT_TRUE(bench.application.chosen.current_limit_A == 2.0);
+}
+
 static void test_pdos_wait_for_sync(void)
 {
     link_bench_open();
@@ -325,6 +375,9 @@ int main(int count, char **arguments)
     RUN_TEST(test_identifiers_that_the_bus_needs_are_not_to_be_had);
     RUN_TEST(test_a_pdo_that_is_too_short_is_an_emergency_once);
     RUN_TEST(test_a_number_of_the_node_acts_when_communication_is_reset);
+    RUN_TEST(test_communication_that_begins_anew_leaves_the_profile);
+    RUN_TEST(test_a_node_that_is_reset_is_as_from_power_up);
+    RUN_TEST(test_a_node_that_is_reset_has_the_settings_that_are_stored);
     RUN_TEST(test_pdos_wait_for_sync);
     RUN_TEST(test_whatever_comes_the_node_goes_on);
     return UNITY_END();
