@@ -6,7 +6,7 @@
 #include "firmware/link/link.h"
 
 /* Bits of the statusword. */
-enum { VOLTAGE_ENABLED = 0x0010, WARNING = 0x0080, REMOTE = 0x0200 };
+enum { VOLTAGE_ENABLED = 0x0010, WARNING = 0x0080, REMOTE = 0x0200, REACHED = 0x0400 };
 
 /* Modes of operation, a bit each from 1 on. */
 enum {
@@ -26,6 +26,8 @@ static uint16_t statusword(struct application *application)
     status |= axis->refused || (axis->state == CIA402_OPERATION_ENABLED && doubtful) ? WARNING : 0u;
     if (axis->state == CIA402_OPERATION_ENABLED) {
         status |= axis_motion_status(application);
+    } else if (axis->state == CIA402_QUICK_STOP_ACTIVE && axis_motion_rests(application)) {
+        status |= REACHED;
     }
     return status;
 }

@@ -374,13 +374,25 @@ static void test_a_quick_stop_brakes_and_ends_as_its_option_says(void)
     TEST_ASSERT_LESS_THAN(500, quickly);
     TEST_ASSERT_INT_WITHIN(50, slowly, rests_after_quick_stop(5));
     bench_periods(600);
-    assert_state(0x07, get(0x6041));
+    TEST_ASSERT_EQUAL_HEX16(0x0407, get(0x6041) & 0x046fu);
     TEST_ASSERT_INT_WITHIN(50, quickly, rests_after_quick_stop(6));
     assert_state(0x07, get(0x6041));
     (void)rests_after_quick_stop(0);
     bench_periods(20);
     assert_state(0x40, get(0x6041));
     TEST_ASSERT_EQUAL(DRIVE_SWITCH_ON_DISABLED, bench.application.drive.supervision.state);
+}
+
+static void test_a_quick_stop_that_stays_has_reached_its_end_at_rest(void)
+{
+    put(0x605a, 0, 2, 6);
+    put(0x6085, 0, 4, 4 * TURN);
+    enable(3);
+    put(0x60ff, 0, 4, TURN);
+    bench_periods(3000);
+    TEST_ASSERT_EQUAL_HEX16(0x0007, control(0x0b) & 0x046fu);
+    (void)rests_after();
+    TEST_ASSERT_EQUAL_HEX16(0x0407, get(0x6041) & 0x046fu);
 }
 
 static void test_a_speed_falls_with_the_deceleration(void)
@@ -551,6 +563,7 @@ int main(void)
     RUN_TEST(test_cyclic_positions_that_do_not_come_are_made_up_for);
     RUN_TEST(test_cyclic_positions_that_end_bring_it_to_rest);
     RUN_TEST(test_a_quick_stop_brakes_and_ends_as_its_option_says);
+    RUN_TEST(test_a_quick_stop_that_stays_has_reached_its_end_at_rest);
     RUN_TEST(test_a_speed_falls_with_the_deceleration);
     RUN_TEST(test_a_halt_brakes_as_its_option_says);
     RUN_TEST(test_torque_is_limited_in_thousandths_of_the_rated_one);
