@@ -99,9 +99,10 @@ uint8_t link_error_register(const struct application *application)
                                       [6] = 0x20, [7] = 0x20, [8] = 0x10, [15] = 0x80};
     const enum drive_fault fault = application->link->reported;
 
-    return (
-        uint8_t)((fault == DRIVE_FAULT_NONE ? 0u : 0x01u | kinds[fault_at(fault)->code >> 12]) |
-                 (application->link->unheard || application->link->bus_errors != 0u ? 0x11u : 0u));
+    return (uint8_t)((fault == DRIVE_FAULT_NONE ? 0u : 0x01u | kinds[fault_at(fault)->code >> 12]) |
+                     (application->link->unheard != 0u || application->link->bus_errors != 0u
+                          ? 0x11u
+                          : 0u));
 }
 
 static void keep_error(struct link *link, uint32_t error)
@@ -152,29 +153,30 @@ static void report_faults(struct application *application)
 
 /* ---- who commands ---- */
 
+/* What may be lost, in bits, and its emergency. */
+enum lost { HEARTBEAT = 1, SYNC = 2 };
 enum { HEARTBEAT_LOST = 0x8130, COMMUNICATION_LOST = 0x8100 };
 
-static void lose(struct application *application, uint16_t code)
+static void lose(struct application *application, enum lost what)
 {
     struct link *link = application->link;
 
     link->heard = false;
     link->synced = false;
-    link->unheard = true;
-    send_emergency(application, code, 0);
+    link->unheard |= (uint8_t)what;
+    send_emergency(application, what == SYNC ? COMMUNICATION_LOST : HEARTBEAT_LOST, 0);
     cia402_lose(application);
 }
 
-/* What was lost has come back. */
-static void find_again(struct application *application)
+/* What was lost has come back, or nobody waits for it any more. */
+static void find_again(struct application *application, enum lost what)
 {
     struct link *link = application->link;
+    const uint8_t before = link->unheard;
 
-    if (link->unheard) {
-        link->unheard = false;
-        if (link->reported == DRIVE_FAULT_NONE) {
-            send_emergency(application, 0, 0);
-        }
+    link->unheard &= (uint8_t) ~(unsigned)what;
+    if (before == (uint8_t)what && link->reported == DRIVE_FAULT_NONE) {
+        send_emergency(application, 0, 0);
     }
 }
 
@@ -186,7 +188,7 @@ static void hear(struct application *application, const struct can_frame *frame)
     if ((consumer & 0xffffu) != 0u && frame->id == ID_HEARTBEAT + (consumer >> 16 & 0x7fu)) {
         link->heard = true;
         link->heard_us = link->now_us;
-        find_again(application);
+        find_again(application, HEARTBEAT);
     }
 }
 
@@ -197,12 +199,18 @@ static void watch(struct application *application)
     const uint32_t heartbeat_ms = link->objects.consumer_heartbeat & 0xffffu;
     const uint32_t period_us = link->objects.sync_period_us;
 
+    if (heartbeat_ms == 0u) {
+        find_again(application, HEARTBEAT);
+    }
+    if (period_us == 0u) {
+        find_again(application, SYNC);
+    }
     if (link->heard && heartbeat_ms > 0u &&
         link_since(link, link->heard_us) > 1000u * heartbeat_ms) {
-        lose(application, HEARTBEAT_LOST);
+        lose(application, HEARTBEAT);
     } else if (link->synced && period_us > 0u && link->nmt == LINK_OPERATIONAL &&
                link_since(link, link->synced_us) > period_us + period_us / 2u) {
-        lose(application, COMMUNICATION_LOST);
+        lose(application, SYNC);
     }
 }
 
@@ -221,7 +229,7 @@ void link_reset_communication(struct application *application)
     link->errors = 0;
     link->heard = false;
     link->synced = false;
-    link->unheard = false;
+    link->unheard = 0;
     cia402_start(application);
     send_state(application, 0); /* boot-up */
 }
@@ -279,7 +287,7 @@ void link_receive(struct application *application, const struct can_frame *frame
         if (frame->id == (link->objects.sync_cob_id & 0x7ffu)) {
             link->synced = true;
             link->synced_us = link->now_us;
-            find_again(application);
+            find_again(application, SYNC);
             axis_stream_sync(application);
             pdo_sync(application);
             link->axis.stream.at_sync = false;

@@ -30,7 +30,7 @@ struct link {
     bool on_bus;               /* the bus: the line is the console's */
     bool heard;                /* the heartbeat that 1016h names, at least once */
     bool synced;               /* SYNC has come, at least once */
-    bool unheard;              /* either no more: an emergency said so */
+    uint8_t unheard;           /* which no more, in bits: an emergency said so */
     bool listens_only;         /* the client does: it sends nothing */
     bool modbus;               /* the line carries Modbus RTU (modbus.h), not frames */
     bool byte_came;            /* of Modbus, in this pass */

@@ -1216,6 +1216,8 @@ MUTANTS = [
     Mutant(LINK + "cia402_objects.c", "cia402",
            "a_quick_stop_that_stays_has_reached_its_end_at_rest",
            "CIA402_QUICK_STOP_ACTIVE && axis_motion_rests(application)", "CIA402_QUICK_STOP_ACTIVE"),
+    Mutant(LINK + "link.c", "cia402", "what_is_not_supervised_any_more_is_no_error",
+           "find_again(application, SYNC);\n            axis_stream_sync", "find_again(application, HEARTBEAT);\n            axis_stream_sync"),
     Mutant(LINK + "link.c", "modbus", "whatever_comes_the_node_goes_on",
            "console->line_length < MODBUS_REQUEST_BYTES", "true"),
     Mutant(LINK + "sdo.c", "canopen", "a_setting_is_written_in_segments",

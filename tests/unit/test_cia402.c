@@ -468,6 +468,24 @@ static void test_a_heartbeat_that_comes_back_ends_its_emergency(void)
     TEST_ASSERT_EQUAL_HEX8(0x00, get(0x1001));
 }
 
+static void test_what_is_not_supervised_any_more_is_no_error(void)
+{
+    put(0x1016, 1, 4, 0x00050014);
+    (void)link_bench_say("t705105", 300);
+    TEST_ASSERT_EQUAL_HEX8(0x11, get(0x1001));
+    (void)link_bench_say("t0800", 20); /* SYNC is no heartbeat */
+    TEST_ASSERT_EQUAL_HEX8(0x11, get(0x1001));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1016, 1, 4, 0));
+    link_bench_heard("t08180000000000000000\r", link_bench_say("", 20));
+    TEST_ASSERT_EQUAL_HEX8(0x00, get(0x1001));
+    put(0x1006, 0, 4, 4000);
+    (void)link_bench_say("t0800", 100);
+    TEST_ASSERT_EQUAL_HEX8(0x11, get(0x1001));
+    put(0x1006, 0, 4, 0);
+    link_bench_heard("t08180000000000000000\r", link_bench_say("", 20));
+    TEST_ASSERT_EQUAL_HEX8(0x00, get(0x1001));
+}
+
 static void test_a_quick_stop_that_stays_ends_when_the_heartbeat_is_lost(void)
 {
     put(0x1016, 1, 4, 0x00050014);
@@ -570,6 +588,7 @@ int main(void)
     RUN_TEST(test_homing_makes_here_the_offset);
     RUN_TEST(test_a_lost_heartbeat_stops_and_switches_off);
     RUN_TEST(test_a_heartbeat_that_comes_back_ends_its_emergency);
+    RUN_TEST(test_what_is_not_supervised_any_more_is_no_error);
     RUN_TEST(test_a_quick_stop_that_stays_ends_when_the_heartbeat_is_lost);
     RUN_TEST(test_a_node_that_is_stopped_stops_and_switches_off);
     RUN_TEST(test_communication_that_is_reset_leaves_nothing_moving);
