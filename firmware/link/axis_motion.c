@@ -246,14 +246,10 @@ static void take_set_point(struct application *application)
     motion->in_window_ms = 0;
 }
 
-static void go_to_target(struct application *application)
+void axis_motion_go(struct application *application)
 {
     const struct link_objects *objects = &application->link->objects;
     struct axis_motion *motion = motion_of(application);
-
-    if (!motion->waits || motion->halted || !(motion->at_once || axis_motion_rests(application))) {
-        return;
-    }
     const float speed = axis_motion_speed(application, objects->profile_velocity);
 
     /* a new target has one for both ends */
@@ -265,6 +261,15 @@ static void go_to_target(struct application *application)
         !axis_motion_post(application, DRIVE_COMMAND_RETARGET, motion->target_rad, speed, lesser) ||
         motion->limited;
     motion->waits = false;
+}
+
+static void go_to_target(struct application *application)
+{
+    const struct axis_motion *motion = motion_of(application);
+
+    if (motion->waits && !motion->halted && (motion->at_once || axis_motion_rests(application))) {
+        axis_motion_go(application);
+    }
 }
 
 /* ---- profile velocity ---- */

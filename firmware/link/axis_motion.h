@@ -25,6 +25,9 @@ void axis_motion_look(struct application *application);
 /* To rest, with the quick stop's deceleration or the profile's. */
 void axis_motion_brake(struct application *application, bool quickly);
 
+/* To `target_rad`, with the profile's speed and acceleration. */
+void axis_motion_go(struct application *application);
+
 /* A target position has come: of cyclic synchronous position. */
 void axis_motion_cycle(struct application *application);
 

@@ -232,9 +232,27 @@ bool axis_stream_follows(const struct axis_stream *stream)
     return stream->owed == 0u && stream->ahead <= 1.0f;
 }
 
+/* The targets have ended, and the axis rests beside the last one: goes there, once. */
+static void end(struct application *application)
+{
+    struct axis_stream *stream = &application->link->axis.stream;
+    const struct axis_motion *motion = &application->link->axis.motion;
+
+    if (stream->last_rad != motion->target_rad && !motion->halted &&
+        late(application) > (float)OWED_MAX && axis_motion_rests(application)) {
+        stream->last_rad = motion->target_rad;
+        stream->before_rad = motion->target_rad;
+        axis_motion_go(application);
+    }
+}
+
 void axis_stream_background(struct application *application)
 {
-    if (!is_open(application) || application->link->axis.stream.at_sync) {
+    if (!is_open(application)) {
+        end(application);
+        return;
+    }
+    if (application->link->axis.stream.at_sync) {
         return; /* a controlword of this SYNC may come before the target */
     }
     if (application->link->axis.stream.by_sync) {

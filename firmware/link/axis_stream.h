@@ -3,7 +3,7 @@
  * is a set-point of the drive (motion/set_points.h), which passes them by its own clock.
  *
  * On reception: a target is passed three intervals and 1.3 ms after it came. Of up to three that do
- * not come, the motion's going on takes the place; then it comes to rest.
+ * not come, the motion's going on takes the place; then it comes to rest, and goes to the last one.
  *
  * With SYNC, the clock is the SYNC count: each SYNC is one interval, whether it brought a target or
  * not. Of its arrival an error of more than a quarter of an interval alone, which is a drift or

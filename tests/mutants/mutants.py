@@ -1218,6 +1218,8 @@ MUTANTS = [
            "CIA402_QUICK_STOP_ACTIVE && axis_motion_rests(application)", "CIA402_QUICK_STOP_ACTIVE"),
     Mutant(LINK + "link.c", "cia402", "what_is_not_supervised_any_more_is_no_error",
            "find_again(application, SYNC);\n            axis_stream_sync", "find_again(application, HEARTBEAT);\n            axis_stream_sync"),
+    Mutant(LINK + "axis_stream.c", "cia402", "cyclic_positions_that_end_bring_it_to_the_last_one",
+           "stream->last_rad != motion->target_rad", "false"),
     Mutant(LINK + "link.c", "modbus", "whatever_comes_the_node_goes_on",
            "console->line_length < MODBUS_REQUEST_BYTES", "true"),
     Mutant(LINK + "sdo.c", "canopen", "a_setting_is_written_in_segments",

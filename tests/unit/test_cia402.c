@@ -325,6 +325,23 @@ static void test_cyclic_positions_that_end_bring_it_to_rest(void)
     TEST_ASSERT_EQUAL(1, bench.application.drive.planner.underruns);
 }
 
+/* One target alone, and a motion that ends: at 400 units in 4 ms it goes on by three of them. */
+static void test_cyclic_positions_that_end_bring_it_to_the_last_one(void)
+{
+    enable_cyclic();
+    put(0x607a, 0, 4, 50);
+    bench_periods(4000);
+    TEST_ASSERT_TRUE(rests());
+    TEST_ASSERT_EQUAL(50, get(0x6062));
+    setUp();
+    enable_cyclic();
+    (void)follow(4, always);
+    bench_periods(9000);
+    TEST_ASSERT_TRUE(rests());
+    TEST_ASSERT_EQUAL(target_of(199), get(0x6062));
+    TEST_ASSERT_EQUAL(1, bench.application.drive.planner.underruns);
+}
+
 /* Periods until the reference rests. */
 static int rests_after(void)
 {
@@ -580,6 +597,7 @@ int main(void)
     RUN_TEST(test_cyclic_positions_are_followed);
     RUN_TEST(test_cyclic_positions_that_do_not_come_are_made_up_for);
     RUN_TEST(test_cyclic_positions_that_end_bring_it_to_rest);
+    RUN_TEST(test_cyclic_positions_that_end_bring_it_to_the_last_one);
     RUN_TEST(test_a_quick_stop_brakes_and_ends_as_its_option_says);
     RUN_TEST(test_a_quick_stop_that_stays_has_reached_its_end_at_rest);
     RUN_TEST(test_a_speed_falls_with_the_deceleration);
