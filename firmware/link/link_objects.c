@@ -155,6 +155,8 @@ bool link_accepts(const struct application *application, const struct object *ob
     switch (object->index) {
     case 0x1005:
         return pdo_may_have(number); /* it makes none, and has no identifiers of 29 bits */
+    case 0x1016:
+        return number >> 16 <= 127u;
     case 0x2400:
         return object->sub != 2u || number > 0u;
     case 0x2403:

@@ -224,6 +224,9 @@ enum object_abort object_get(struct application *application, const struct objec
     }
     switch (object->kind) {
     case OBJECT_STORED:
+        if (object->index == 0x1003u && object->sub > link->errors) {
+            return OBJECT_NO_DATA;
+        }
         memcpy(value, (const uint8_t *)&link->objects + object->at, object_bytes(object));
         return OBJECT_DONE;
     case OBJECT_SETTING:

@@ -6,6 +6,7 @@
 enum { ID_BITS = 0x7ff, NOT_PROCESSED = 0x8210, CONTROLWORD = 0x6040 };
 
 #define NO_REMOTE 0x40000000u
+#define EXTENDED  0x20000000u /* of 29 bits */
 
 /* The statusword comes at least so often: python-canopen takes what has come twice for periodic,
    and gives up if it does not come for 0.2 s. */
@@ -154,7 +155,8 @@ enum object_abort pdo_obey(struct pdos *pdos, const struct object *object, const
     }
     switch (object->sub) {
     case 1:
-        if ((number & PDO_INVALID) == 0u && !pdo_may_have(number & ~NO_REMOTE)) {
+        if ((number & EXTENDED) != 0u ||
+            ((number & PDO_INVALID) == 0u && !pdo_may_have(number & ~NO_REMOTE))) {
             return OBJECT_OUT_OF_RANGE;
         }
         pdo->cob_id = number;

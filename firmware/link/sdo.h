@@ -30,7 +30,7 @@ struct sdo_server {
     uint8_t toggle;
     uint8_t block;    /* segments of one */
     uint8_t sequence; /* of the last segment of this block */
-    bool checked;     /* the client sends a checksum */
+    bool checked;     /* the client sends a checksum, or asks for one */
     uint16_t crc;     /* of what has been sent */
     uint32_t length;  /* bytes that have come, or that there are to send */
     uint32_t done;    /* that have been sent; of blocks, that are acknowledged, or have come */

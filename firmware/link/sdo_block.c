@@ -58,6 +58,7 @@ static uint32_t begin_upload(struct application *application, const struct can_f
         return ABORT_BLOCK_SIZE;
     }
     sdo->block = request->data[4];
+    sdo->checked = (request->data[0] & CHECKED) != 0u;
     sdo->state = SDO_BLOCK_OPEN;
     response->data[0] = UPLOAD_BEGINS;
     memcpy(&response->data[1], &request->data[1], 3);
@@ -93,7 +94,7 @@ static uint32_t acknowledge(struct application *application, const struct can_fr
 
         sdo->state = SDO_BLOCK_ENDS;
         response->data[0] = (uint8_t)(UPLOAD_ENDS | (over == 0u ? 0u : 7u - over) << 2);
-        can_put(&response->data[1], sdo->crc, 2);
+        can_put(&response->data[1], sdo->checked ? sdo->crc : 0u, 2);
         *answers = true;
     }
     return OBJECT_DONE;

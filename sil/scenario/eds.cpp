@@ -276,6 +276,16 @@ Lines=1
 Line1=firmware/link/README.md says how to connect.
 )";
 
+/* Of elements of one type: ARRAY; else RECORD. */
+const char *type_of_several(unsigned number)
+{
+    static const unsigned arrays[] = {0x1003, 0x1010, 0x1011, 0x1016, 0x2401, 0x607d,
+                                      0x608f, 0x6091, 0x6092, 0x6099, 0x60e3, 0x60fe};
+    const bool is_array =
+        std::find(std::begin(arrays), std::end(arrays), number) != std::end(arrays);
+    return is_array ? "0x8" : "0x9";
+}
+
 std::string sections(unsigned number, const Index &index)
 {
     const std::string name = format("%04X", number);
@@ -283,7 +293,8 @@ std::string sections(unsigned number, const Index &index)
         return section(name, index.subs.at(0));
     }
     std::string text = "\n[" + name + "]\nParameterName=" + index.name +
-                       "\nObjectType=0x9\nSubNumber=" + std::to_string(index.subs.size()) + "\n";
+                       "\nObjectType=" + type_of_several(number) +
+                       "\nSubNumber=" + std::to_string(index.subs.size()) + "\n";
     for (const auto &[sub, object] : index.subs) {
         text += section(name + format("sub%X", sub), object);
     }

@@ -96,6 +96,14 @@ static void test_blocks_are_sent_acknowledged_and_checked(void)
     TEST_ASSERT_EQUAL_STRING("8000220001000106", link_bench_sdo("A400220002000000"));
 }
 
+static void test_a_block_has_no_checksum_unless_it_is_asked_for(void)
+{
+    link_bench_open();
+    TEST_ASSERT_EQUAL_STRING("C620210008000000", link_bench_sdo("A020210002000000"));
+    (void)link_bench_say("t6018A300000000000000", 2);
+    TEST_ASSERT_EQUAL_STRING("D900000000000000", link_bench_sdo("A202020000000000"));
+}
+
 static void test_more_than_was_sent_is_not_acknowledged(void)
 {
     link_bench_open();
@@ -195,6 +203,10 @@ static void test_identifiers_that_the_bus_needs_are_not_to_be_had(void)
     TEST_ASSERT_EQUAL_STRING("8000180130000906", link_bench_sdo("2300180101070040"));
     TEST_ASSERT_EQUAL_STRING("8000140130000906", link_bench_sdo("2300140102060000"));
     TEST_ASSERT_EQUAL_STRING("8005100030000906", link_bench_sdo("2305100080000040")); /* makes it */
+    TEST_ASSERT_EQUAL_STRING("8000180130000906", link_bench_sdo("23001801900100A0")); /* 29 bits */
+    TEST_ASSERT_EQUAL_STRING("8016100130000906", link_bench_sdo("2316100114008000")); /* node 128 */
+    TEST_ASSERT_EQUAL_STRING("8016100130000906", link_bench_sdo("2316100114000501"));
+    TEST_ASSERT_EQUAL_STRING("6016100100000000", link_bench_sdo("2316100114007F00"));
     TEST_ASSERT_EQUAL_STRING("6000180100000000", link_bench_sdo("2300180100000080")); /* none */
     TEST_ASSERT_EQUAL_STRING("6000180100000000", link_bench_sdo("2300180190010040"));
 }
@@ -209,7 +221,7 @@ static void test_a_pdo_that_is_too_short_is_an_emergency_once(void)
     link_bench_heard("t08181082000000000000\r", link_bench_say("t2010", 3));
     TEST_ASSERT_EQUAL_STRING("4F03100002000000", link_bench_sdo("4003100000000000"));
     TEST_ASSERT_EQUAL_STRING("6003100000000000", link_bench_sdo("2F03100000000000"));
-    TEST_ASSERT_EQUAL_STRING("4303100200000000", link_bench_sdo("4003100200000000"));
+    TEST_ASSERT_EQUAL_STRING("8003100124000008", link_bench_sdo("4003100100000000")); /* none */
 }
 
 static void test_a_number_of_the_node_acts_when_communication_is_reset(void)
@@ -366,6 +378,7 @@ int main(int count, char **arguments)
     RUN_TEST(test_what_is_not_there_is_said_by_its_abort_code);
     RUN_TEST(test_a_setting_is_written_in_segments);
     RUN_TEST(test_blocks_are_sent_acknowledged_and_checked);
+    RUN_TEST(test_a_block_has_no_checksum_unless_it_is_asked_for);
     RUN_TEST(test_more_than_was_sent_is_not_acknowledged);
     RUN_TEST(test_blocks_are_received_and_checked);
     RUN_TEST(test_a_setting_that_waits_is_refused_while_the_drive_is_ready);
