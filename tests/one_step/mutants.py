@@ -1,3 +1,4 @@
+#!/usr/bin/python3
 """Proves that one_step can fail: breaks an image in one place at a time, and not that in double.
 
 usage: mutants.py ROOT BUILD NINJA

@@ -1,3 +1,4 @@
+#!/usr/bin/python3
 """Each period of a number format is that in double, but for its rounding: runs one_step.
 
 usage: one_step.py PROGRAM OBJECT OBJECT_IN_DOUBLE README FORMAT SCENARIO...
