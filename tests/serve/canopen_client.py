@@ -24,6 +24,8 @@ def every_object_is_served_as_the_sheet_says(node):
             name = f"{variable.index:04x}sub{variable.subindex} {variable.name}"
             if not variable.readable or variable.data_type == canopen.objectdictionary.DOMAIN:
                 continue
+            if variable.index == 0x1003 and variable.subindex > 0:
+                continue  # no error has come
             data = node.sdo.upload(variable.index, variable.subindex)
             if variable.data_type == canopen.objectdictionary.VISIBLE_STRING:
                 CHECKS.that(data, name)

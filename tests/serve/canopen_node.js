@@ -84,6 +84,10 @@ async function everyObject(drive, eds) {
             if (!object || object.accessType === 'wo' || object.dataType === DataType.DOMAIN) {
                 continue;
             }
+            if (entry.index === 0x1003 && object.subIndex > 0) { // no error has come
+                await refused(drive.read(entry.index, object.subIndex, null), 0x08000024);
+                continue;
+            }
             const data = await drive.read(entry.index, object.subIndex || 0, null);
             const text = object.dataType === DataType.VISIBLE_STRING;
             if (!text && object.size && data.length !== object.size) {
