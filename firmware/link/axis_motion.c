@@ -79,32 +79,37 @@ static float units(const struct application *application)
     return (float)cia402_unit_rad(&application->link->objects);
 }
 
-/* What a default is a share of; of all but the first in units. */
-enum default_base { SPEED_rpm, SPEED, NO_LOAD_SPEED, ACCELERATION, TURN };
+/* What a default is a multiple of: hundredths of what the motor can and of a turn, units of the
+   unit's own default. */
+enum default_base { SPEED_rpm, SPEED, NO_LOAD_SPEED, ACCELERATION, TURN, UNIT };
 
-#define DEFAULT(member, base, share)                                                               \
+#define DEFAULT(member, base, multiple)                                                            \
     {                                                                                              \
-        share, offsetof(struct link_objects, member), base                                         \
+        (uint8_t) offsetof(struct link_objects, member), base, multiple                            \
     }
+
+_Static_assert(sizeof(struct link_objects) <= UINT8_MAX, "an offset is a byte");
 
 /* As the console's moves (default_move.h). */
 static const struct {
-    float share;
-    uint16_t at;
-    uint16_t base; /* enum default_base */
-} defaults[AXIS_DEFAULTS] = {
-    DEFAULT(max_speed_rpm, SPEED_rpm, 1.0f),
-    DEFAULT(profile_velocity, SPEED, 0.25f),
-    DEFAULT(profile_acceleration, ACCELERATION, 0.25f),
-    DEFAULT(profile_deceleration, ACCELERATION, 0.25f),
-    DEFAULT(quick_stop_deceleration, ACCELERATION, 0.5f),
-    DEFAULT(homing_speed, NO_LOAD_SPEED, 0.04f),
-    DEFAULT(homing_zero_speed, NO_LOAD_SPEED, 0.04f),
-    DEFAULT(homing_acceleration, ACCELERATION, 0.25f),
-    DEFAULT(homing_travel, TURN, 10.0f),
-    DEFAULT(following_window, TURN, 2048.0f / 65536.0f),
-    DEFAULT(target_window, TURN, 100.0f / 65536.0f),
+    uint8_t at;
+    uint8_t base; /* enum default_base */
+    uint16_t multiple;
+} defaults[] = {
+    DEFAULT(max_speed_rpm, SPEED_rpm, 100),
+    DEFAULT(profile_velocity, SPEED, 25),
+    DEFAULT(profile_acceleration, ACCELERATION, 25),
+    DEFAULT(profile_deceleration, ACCELERATION, 25),
+    DEFAULT(quick_stop_deceleration, ACCELERATION, 50),
+    DEFAULT(homing_speed, NO_LOAD_SPEED, 4),
+    DEFAULT(homing_zero_speed, NO_LOAD_SPEED, 4),
+    DEFAULT(homing_acceleration, ACCELERATION, 25),
+    DEFAULT(homing_travel, TURN, 1000),
+    DEFAULT(following_window, UNIT, 2048),
+    DEFAULT(target_window, UNIT, 100),
 };
+
+enum { AXIS_DEFAULTS = sizeof defaults / sizeof defaults[0] };
 
 /* A whole number of units, one at least. */
 static uint32_t whole_units(float value)
@@ -117,22 +122,31 @@ void axis_motion_put_defaults(struct application *application)
     struct link *link = application->link;
     const float unit_rad = units(application);
     const struct drive *drive = &application->drive;
-    const float speed = axis_motion_speed_limit(application);
+    const float speed = 0.01f * axis_motion_speed_limit(application);
     const float bases[] = {
         [SPEED_rpm] = speed / AXIS_RAD_S_PER_RPM,
         [SPEED] = speed / unit_rad,
         [NO_LOAD_SPEED] =
-            0.999f * (float)no_load_speed_rad_s(&drive->settings, drive->board->facts) / unit_rad,
-        [ACCELERATION] = axis_motion_acceleration_limit(application) / unit_rad,
-        [TURN] = 6.2831853f / unit_rad,
+            9.99e-3f * (float)no_load_speed_rad_s(&drive->settings, drive->board->facts) / unit_rad,
+        [ACCELERATION] = 0.01f * axis_motion_acceleration_limit(application) / unit_rad,
+        [TURN] = 0.062831853f / unit_rad,
+        [UNIT] = 6.2831853f / 65536.0f / unit_rad,
     };
 
     for (size_t i = 0; i < AXIS_DEFAULTS; i++) {
         uint32_t *value = (void *)((uint8_t *)&link->objects + defaults[i].at);
 
-        if (*value == link->defaults[i]) {
-            *value = whole_units(defaults[i].share * bases[defaults[i].base]);
-            link->defaults[i] = *value;
+        if ((link->given >> i & 1u) == 0u) {
+            *value = whole_units((float)defaults[i].multiple * bases[defaults[i].base]);
+        }
+    }
+}
+
+void axis_motion_note_given(struct application *application, uint16_t at)
+{
+    for (size_t i = 0; i < AXIS_DEFAULTS; i++) {
+        if (defaults[i].at == at) {
+            application->link->given |= (uint16_t)(1u << i);
         }
     }
 }

@@ -12,6 +12,9 @@ struct application;
 /* What has been given none has a share of what the motor can, in the units of the factor group. */
 void axis_motion_put_defaults(struct application *application);
 
+/* The member of struct link_objects with this offset has been given a value. */
+void axis_motion_note_given(struct application *application, uint16_t at);
+
 /* OPERATION ENABLED begins. */
 void axis_motion_start(struct application *application);
 

@@ -36,8 +36,6 @@ enum cia402_mode {
 
 struct application;
 
-enum { AXIS_DEFAULTS = 11 }; /* objects that have one of the motor's: axis_motion.c */
-
 /* What the motion of a mode goes by: axis_motion.c. */
 struct axis_motion {
     struct axis_homing homing;

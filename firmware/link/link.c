@@ -28,7 +28,7 @@ enum { MILLISECOND_us = 1000, MODBUS_SILENCE_us = 5000, ERRORS_KEPT = 4 };
 static void put_presets(struct link *link)
 {
     objects_put_presets(&link->objects);
-    memset(link->defaults, 0, sizeof link->defaults);
+    link->given = 0;
     memset(&link->command, 0, sizeof link->command);
 }
 

@@ -37,6 +37,7 @@ struct link {
     uint8_t node;              /* its number: the setting's when communication began */
     uint8_t nmt;               /* enum link_nmt */
     uint8_t errors;            /* in the field 1003h */
+    uint16_t given;            /* of the objects with a default of the motor's, in bits */
     enum drive_fault reported; /* by an emergency */
     uint32_t now_us;           /* of this pass; wraps */
     uint32_t beaten_us;        /* last heartbeat */
@@ -47,7 +48,6 @@ struct link {
     struct sdo_server sdo;
     struct pdos pdos;
     struct cia402 axis;
-    uint32_t defaults[AXIS_DEFAULTS]; /* of objects, as put last: another value is given */
     struct capture capture;
     struct drive_command command; /* parameters put by 2201h and on, for 2200h */
     const struct hal_can *can;    /* NULL: the board has no bus */

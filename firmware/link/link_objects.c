@@ -206,6 +206,7 @@ void link_has_put(struct application *application, const struct object *object)
         axis_motion_cycle(application);
         break;
     default:
+        axis_motion_note_given(application, object->at);
         break;
     }
 }

@@ -107,9 +107,9 @@
     ASKED(0x6061, 0, I8, RO_T, 1, "Modes of operation display")                                    \
     ASKED(0x6062, 0, I32, RO_T, 0, "Position demand value")                                        \
     ASKED(0x6064, 0, I32, RO_T, 0, "Position actual value")                                        \
-    STORED(0x6065, 0, U32, RW, following_window, 0, "Following error window")                      \
+    STORED(0x6065, 0, U32, RW, following_window, 2048, "Following error window")                   \
     STORED(0x6066, 0, U16, RW, following_ms, 10, "Following error time out")                       \
-    STORED(0x6067, 0, U32, RW, target_window, 0, "Position window")                                \
+    STORED(0x6067, 0, U32, RW, target_window, 100, "Position window")                              \
     STORED(0x6068, 0, U16, RW, target_ms, 10, "Position window time")                              \
     ASKED(0x606b, 0, I32, RO_T, 0, "Velocity demand value")                                        \
     ASKED(0x606c, 0, I32, RO_T, 0, "Velocity actual value")                                        \

@@ -132,8 +132,7 @@ std::string preset_of(const Row &row)
     const bool follows = (row.index >= 0x6080 && row.index <= 0x6085) ||
                          (row.index >= 0x6072 && row.index <= 0x6076) ||
                          (row.index == 0x6099 && row.sub != 0) || row.index == 0x609a ||
-                         (row.index == 0x2403 && row.sub == 2) || row.index == 0x6065 ||
-                         row.index == 0x6067;
+                         (row.index == 0x2403 && row.sub == 2);
     const bool shows = row.index >= 0x6000 && row.index != 0x6061 && row.access.word == RO_T.word &&
                        row.access.mapped;
     if (row.type == text_visible || row.type == domain || follows || shows) {

@@ -1206,7 +1206,7 @@ MUTANTS = [
            "object.index == CONTROLWORD", "false"),
     Mutant(LINK + "axis_motion.c", "cia402",
            "defaults_follow_the_unit_and_what_is_given_stays",
-           "*value == link->defaults[i]", "true"),
+           "(link->given >> i & 1u) == 0u", "true"),
     Mutant(LINK + "cia402.c", "cia402", "a_bridge_that_is_off_shows_no_speed",
            "axis->signals.omega_est_rad_s = 0.0;", ""),
     Mutant(LINK + "objects.c", "canopen", "communication_that_begins_anew_leaves_the_profile",
