@@ -119,10 +119,6 @@ enum object_abort link_obey(struct application *application, const struct object
             return OBJECT_OUT_OF_RANGE;
         }
         application->link->errors = 0;
-        application->link->objects.error_1 = 0;
-        application->link->objects.error_2 = 0;
-        application->link->objects.error_3 = 0;
-        application->link->objects.error_4 = 0;
         return OBJECT_DONE;
     case 0x1010:
         return store(application, can_get(value, 4));

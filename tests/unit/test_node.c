@@ -185,7 +185,7 @@ static void test_the_last_four_errors_are_kept_until_they_are_deleted(void)
     TEST_ASSERT_EQUAL_HEX32(OBJECT_OUT_OF_RANGE, link_bench_put(0x1003, 0, 1, 1));
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1003, 0, 1, 0));
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(0x1003, 0));
-    TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(0x1003, 1));
+    TEST_ASSERT_EQUAL_STRING("8003100124000008", link_bench_sdo("4003100100000000"));
 }
 
 /* ---- who commands ---- */
