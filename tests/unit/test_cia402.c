@@ -153,6 +153,7 @@ static void test_a_controlword_begins_the_move_to_the_target_in_its_own_frame(vo
 static void test_defaults_follow_the_unit_and_what_is_given_stays(void)
 {
     const uint32_t speed = get(0x6081), acceleration = get(0x6083), rpm = get(0x6080);
+    const uint32_t homing = (uint32_t)link_bench_get(0x6099, 2);
 
     TEST_ASSERT_EQUAL(2048, get(0x6065));
     TEST_ASSERT_EQUAL(100, get(0x6067));
@@ -161,7 +162,7 @@ static void test_defaults_follow_the_unit_and_what_is_given_stays(void)
     put(0x6072, 0, 2, 500); /* the default of an acceleration depends on it */
     put(0x6092, 1, 4, 360);
     TEST_ASSERT_INT_WITHIN(1, speed * 360.0 / TURN, get(0x6081));
-    TEST_ASSERT_INT_WITHIN(1, speed * 0.16 * 360.0 / TURN, link_bench_get(0x6099, 2));
+    TEST_ASSERT_INT_WITHIN(1, homing * 360.0 / TURN, link_bench_get(0x6099, 2));
     TEST_ASSERT_LESS_OR_EQUAL(acceleration * 360.0 / TURN, get(0x6083));
     TEST_ASSERT_EQUAL(5 * TURN, get(0x6084));
     TEST_ASSERT_EQUAL(11, get(0x6065));

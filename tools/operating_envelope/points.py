@@ -11,6 +11,7 @@ QUICK_LOADS = (0.0, 0.3, 0.6)
 
 ACCELERATION = 0.2  # of what the rated torque gives the rotor: three times the inertia can follow
 JERK_TIME_s = 5e-3
+SPEED_LIMIT = 1.4   # above its default of 1.3, so that references may lag for want of voltage
 AT_REST_s = 1.0     # at no speed: a hold that is going to swing does so within it
 AT_SPEED_s = 0.1    # from the end of the acceleration to the load step
 WINDOW_s = 0.3      # from the load step on: what is judged
@@ -82,6 +83,7 @@ def scenario_of(point, motor, plant):
                        f"{point.load_Nm:g} Nm",
         "motor": f"./{motor.file.name}",
         "duration_s": end_s,
+        "drive": {"speed_limit_rad_s": rounded(SPEED_LIMIT * motor.limit_speed_rad_s)},
         "plant": {"model": plant, **point.panel.settings},
         "event": [*events, {"time_s": load_s, "load_torque_Nm": point.load_Nm}],
         "report": [
