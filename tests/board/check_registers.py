@@ -383,8 +383,8 @@ PLANTED = [
     (PIN_MAP, "#define LED_PIN 5", "#define LED_PIN 6"),
     ("memory.ld", "ORIGIN = 0x10000000", "ORIGIN = 0x10001000"),
     ("memory.ld", "ORIGIN = 0x20016340, LENGTH = 7360", "ORIGIN = 0x20016340, LENGTH = 8K"),
-    ("memory.ld", "ORIGIN = 0x20016340", "ORIGIN = 0x20012B00"),
-    ("memory.ld", "ORIGIN = 0x20012B00, LENGTH = 14400", "ORIGIN = 0x20012B00, LENGTH = 15K"),
+    ("memory.ld", "ORIGIN = 0x20016340", "ORIGIN = 0x20011C00"),
+    ("memory.ld", "ORIGIN = 0x20011C00, LENGTH = 18240", "ORIGIN = 0x20011C00, LENGTH = 18K"),
 ]
 
 

@@ -12,7 +12,7 @@
 
 /* The host has memory for a drive in double too. */
 #ifdef __arm__
-enum { DRIVE_BYTES_LIMIT = 8632 }; /* with its application: settings in force and as set */
+enum { DRIVE_BYTES_LIMIT = 8640 }; /* with its application: settings in force and as set */
 #else
 enum { DRIVE_BYTES_LIMIT = 16384 };
 #endif
