@@ -259,6 +259,12 @@ Drawn written(std::uint64_t seed, const Tolerances &tolerances, const CampaignMo
     return {text.finish(), "", ""};
 }
 
+constexpr double rated_torque_Nm = 0.471; /* of the reference motor */
+const double flux_per_K = plant::ImperfectionConfig().magnet_flux_per_K;
+constexpr double borne = 0.9; /* of the plant's Km x the rated current */
+constexpr double settled_s = 0.2, stays_s = 0.3;
+constexpr double slowest_Nm_s = 0.05, fastest_Nm_s = 5;
+
 } // namespace
 
 const char *const as_built_course_names[as_built_courses] = {
@@ -280,6 +286,36 @@ Drawn draw_as_built_corner(std::uint64_t seed, double, const CampaignMotor &moto
 {
     const std::uint64_t cell = (seed + as_built_cells - 1) % as_built_cells;
     return written(seed, corners[cell / as_built_courses], motor);
+}
+
+bool as_built_load_is_borne(std::uint64_t seed)
+{
+    return seed % 2 == 0;
+}
+
+Drawn draw_as_built_load(std::uint64_t seed, double, const CampaignMotor &motor)
+{
+    Draw loads(seed, 1);
+    const Tolerances tolerances = drawn_tolerances(Draw(seed, 0));
+    const double rise_K = rounded(tolerances.warmth * motor.spread * most_rise_K, 10);
+    const double share = as_built_load_is_borne(seed) ? borne : loads.between(1.05, 2, 100);
+    const double torque_Nm =
+        rounded(loads.either_sign(share) * (1 + flux_per_K * rise_K) * rated_torque_Nm, 1e5);
+    const double rate_Nm_s = loads.over_octaves(slowest_Nm_s, fastest_Nm_s);
+    const double ramp_s =
+        rounded((torque_Nm < 0 ? -torque_Nm : torque_Nm) / rate_Nm_s, period_parts);
+    ScenarioText text;
+    text.text("description", "a load that grows, at rest, on a motor and a board as built");
+    text.text("motor", motor.name);
+    text.integer("seed", seed);
+    text.number("duration_s", rounded(settled_s + ramp_s + stays_s, period_parts));
+    text.event(settled_s, "load_torque_Nm = " + shortest(times(torque_Nm, motor.scales.torque)) +
+                              ", ramp_s = " + shortest(ramp_s));
+    write_tolerances(text, tolerances, motor);
+    if (as_built_load_is_borne(seed)) {
+        text.expect("metric = \"fault\", equals = \"none\"");
+    }
+    return {text.finish(), "", ""};
 }
 
 } // namespace scenario

@@ -96,8 +96,14 @@ void check_order(const Catalogue &catalogue, const CampaignOrder &order)
 const std::vector<const CampaignKind *> &campaign_kinds()
 {
     static const std::vector<const CampaignKind *> kinds = {
-        &long_run_campaign,         &slip_campaign,   &load_campaign,       &as_built_campaign,
-        &as_built_corners_campaign, &motors_campaign, &any_motors_campaign,
+        &long_run_campaign,
+        &slip_campaign,
+        &load_campaign,
+        &as_built_campaign,
+        &as_built_corners_campaign,
+        &as_built_loads_campaign,
+        &motors_campaign,
+        &any_motors_campaign,
     };
     return kinds;
 }

@@ -110,8 +110,9 @@ const std::vector<const CampaignKind *> &campaign_kinds();
 extern const CampaignKind long_run_campaign;                            /* campaign_long_run.cpp */
 extern const CampaignKind slip_campaign;                                /* campaign_slip.cpp */
 extern const CampaignKind load_campaign;                                /* campaign_load.cpp */
-extern const CampaignKind as_built_campaign, as_built_corners_campaign; /* campaign_as_built.cpp */
-extern const CampaignKind motors_campaign, any_motors_campaign;         /* campaign_motors.cpp */
+extern const CampaignKind as_built_campaign, as_built_corners_campaign, /* campaign_as_built.cpp */
+    as_built_loads_campaign;
+extern const CampaignKind motors_campaign, any_motors_campaign; /* campaign_motors.cpp */
 
 struct CampaignOrder {
     const CampaignKind *kind = nullptr;

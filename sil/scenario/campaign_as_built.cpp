@@ -1,10 +1,13 @@
 /*
  * Campaigns "as-built" and "as-built-corners": does a drive that believes its motor file and an
  * ideal board live with what is built? The runs are those of as_built_scenario.h. Held: no fault,
- * and the estimate never off by more than 45 degrees electrical from ready on.
+ * and the estimate never off by more than 45 degrees electrical from ready on. Of "as-built-loads":
+ * a hold bears 0.9 of the plant's Km x rated current without a fault, and of an overload a fault
+ * comes soon behind the rotor's passing half an electrical turn.
  */
 #include "sil/scenario/campaign.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sil/scenario/as_built_scenario.h"
@@ -63,6 +66,56 @@ std::vector<CampaignFigure> figures()
             {"start_under_load_deg", false}};
 }
 
+/* Up to the fault, if one comes. */
+class AsBuiltLoad : public CampaignWatch
+{
+  public:
+    explicit AsBuiltLoad(const Scenario &scenario)
+        : degrees_(scenario.motor.params.rotor_teeth * 180 / pi)
+    {
+    }
+
+    void read(const Record &record, const Row &row) override
+    {
+        if (record.rows() < record.time_zero_row() || fault_.came()) {
+            return;
+        }
+        const double off_deg = std::fabs(row[THETA] - row[THETA_REF]) * degrees_;
+        fault_.note(record, row[DRIVE_STATE] == double(DRIVE_FAULT));
+        passed_.note(record, !fault_.came() && off_deg > 180);
+        largest_deg_ = std::max(largest_deg_, off_deg);
+        last_s_ = record.time_s(record.rows());
+    }
+
+    CampaignOutcome judge(const Result &result) const override
+    {
+        const bool borne = as_built_load_is_borne(result.seed);
+        const double delay_s = (fault_.came() ? fault_.time_s : last_s_) - passed_.time_s;
+        CampaignOutcome outcome;
+        outcome.verdict = borne && fault_.came()               ? "fault " + result.all.metrics.fault
+                          : passed_.came() && borne            ? "slipped"
+                          : passed_.came() && delay_s > most_s ? "late"
+                                                               : "held";
+        outcome.figures.assign(3, Metrics::none);
+        outcome.figures[0] = !borne && passed_.came() ? 1 : 0;
+        outcome.figures[1] =
+            !borne && passed_.came() && fault_.came() ? 1e3 * delay_s : Metrics::none;
+        outcome.figures[2] = borne ? largest_deg_ : Metrics::none;
+        return outcome;
+    }
+
+  private:
+    static constexpr double most_s = 0.1;
+
+    double degrees_, largest_deg_ = 0, last_s_ = 0;
+    First fault_, passed_; /* half an electrical turn */
+};
+
+std::unique_ptr<CampaignWatch> watch_as_built_load(const Scenario &scenario)
+{
+    return std::make_unique<AsBuiltLoad>(scenario);
+}
+
 } // namespace
 
 const CampaignKind as_built_campaign = {
@@ -86,6 +139,19 @@ const CampaignKind as_built_corners_campaign = {
     false,
     true,
     as_built_cells,
+};
+
+const CampaignKind as_built_loads_campaign = {
+    "as-built-loads",
+    "held rotors as built: a load that grows to 0.9 of what is borne, or an overload",
+    CampaignKind::own_duration,
+    {{"overloads_beyond_half_a_turn", true},
+     {"overload_delay_ms", false},
+     {"borne_largest_deg", false}},
+    draw_as_built_load,
+    watch_as_built_load,
+    false,
+    true,
 };
 
 } // namespace scenario

@@ -323,8 +323,9 @@ void require_fitting(const Options &options, const CampaignKind &kind)
         throw InputError(std::string("--duration: each run of ") + kind.name + " has its own");
     }
     if (options.campaign_stretch && !kind.has_bounds) {
-        throw InputError(std::string("--stretch: ") + kind.name +
-                         " draws no tolerances within bounds; as-built and as-built-corners do");
+        throw InputError(
+            std::string("--stretch: ") + kind.name +
+            " draws no tolerances within bounds; as-built, as-built-corners and as-built-loads do");
     }
 }
 
