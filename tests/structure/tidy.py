@@ -17,12 +17,13 @@ SKIPPED = 77
 
 
 def jobs(root, build, numeric):
-    """(source, compiler arguments) of each source."""
+    """(source, compiler arguments) of each source, once: the image for one motor is in fixed point, too."""
     definition = f"-DSTEADYSTEP_NUM=NUM_{numeric.upper()}"
     commands = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
-    for entry in commands:
-        source = pathlib.Path(entry["file"])
-        if definition in entry["command"].split() and (root / "firmware") in source.parents:
+    sources = {pathlib.Path(entry["file"]) for entry in commands
+               if definition in entry["command"].split()}
+    for source in sources:
+        if (root / "firmware") in source.parents:
             yield str(source), ["-std=c11", "-ffp-contract=off", "-Wall", "-Wextra",
                                 "-Wconversion", f"-I{root}", definition]
 
