@@ -5,6 +5,7 @@ function(add_image_run program)
   add_executable(${program} ${ARGN})
   target_link_libraries(${program} PRIVATE virtual_board sil_board drive_interface)
   target_compile_options(${program} PRIVATE -O0) # compiles quickly; the image runs in virtual_board
+  compile_together(8 ${program})
 endfunction()
 
 add_image_run(stm32g474_disturbances

@@ -41,3 +41,12 @@ function(precompile_headers target)
       <functional> <map> <memory> <optional> <stdexcept> <string> <vector> ${ARGN})
   endif()
 endfunction()
+
+# compile_together(<number> <target>...): so many sources of a target at a time, whose headers and
+# templates are then read and instantiated once; again not behind a compiler launcher, for which a
+# source is as much as changes.
+function(compile_together number)
+  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set_target_properties(${ARGN} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${number})
+  endif()
+endfunction()
