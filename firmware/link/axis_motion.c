@@ -198,7 +198,6 @@ void axis_motion_brake(struct application *application, bool quickly)
         quickly ? objects->quick_stop_deceleration : objects->profile_deceleration;
     struct drive_command stop = {.kind = DRIVE_COMMAND_STOP};
 
-    motion_of(application)->waits = false;
     motion_of(application)->speed_rad_s = 0.0f;
     motion_of(application)->at_limit = false;
     motion_of(application)->homing.phase = HOMING_ENDED;
@@ -260,7 +259,7 @@ static void take_set_point(struct application *application)
     motion->in_window_ms = 0;
 }
 
-void axis_motion_go(struct application *application)
+void axis_motion_go(struct application *application, double position_rad)
 {
     const struct link_objects *objects = &application->link->objects;
     struct axis_motion *motion = motion_of(application);
@@ -272,17 +271,24 @@ void axis_motion_go(struct application *application)
                                 : objects->profile_acceleration;
 
     motion->limited =
-        !axis_motion_post(application, DRIVE_COMMAND_RETARGET, motion->target_rad, speed, lesser) ||
+        !axis_motion_post(application, DRIVE_COMMAND_RETARGET, position_rad, speed, lesser) ||
         motion->limited;
-    motion->waits = false;
 }
 
+/* A set-point begins when the one before has ended, or at once. A halt ends none. */
 static void go_to_target(struct application *application)
 {
-    const struct axis_motion *motion = motion_of(application);
+    struct axis_motion *motion = motion_of(application);
+    const bool ended = !motion->pending && (motion->halted || axis_motion_rests(application));
 
-    if (motion->waits && !motion->halted && (motion->at_once || axis_motion_rests(application))) {
-        axis_motion_go(application);
+    if (motion->waits && (motion->at_once || ended)) {
+        motion->waits = false;
+        motion->begun_rad = motion->target_rad;
+        motion->pending = true;
+    }
+    if (motion->pending && !motion->halted) {
+        motion->pending = false;
+        axis_motion_go(application, motion->begun_rad);
     }
 }
 
@@ -401,6 +407,15 @@ static void go_at_speed(struct application *application)
 
 /* ---- all ---- */
 
+static void halt(struct application *application, bool quickly)
+{
+    struct axis_motion *motion = motion_of(application);
+
+    motion->pending = motion->pending || !axis_motion_rests(application);
+    motion->halted = true;
+    axis_motion_brake(application, quickly);
+}
+
 void axis_motion_control(struct application *application, uint16_t risen)
 {
     struct cia402 *axis = &application->link->axis;
@@ -408,9 +423,7 @@ void axis_motion_control(struct application *application, uint16_t risen)
     const bool halted = (axis->controlword & HALT) != 0u;
 
     if (halted && !motion->halted) {
-        axis_motion_brake(application, application->link->objects.halt_option == QUICKLY);
-    } else if (!halted && motion->halted && axis->mode == CIA402_PROFILE_POSITION) {
-        motion->waits = !motion->reached; /* goes on */
+        halt(application, application->link->objects.halt_option == QUICKLY);
     }
     motion->halted = halted;
     if ((risen & NEW_SET_POINT) != 0u && axis->mode == CIA402_PROFILE_POSITION) {
@@ -431,8 +444,7 @@ static bool changes_mode(struct application *application)
     if (axis_motion_rests(application)) {
         axis_motion_start(application);
     } else if (!motion_of(application)->halted) {
-        axis_motion_brake(application, false);
-        motion_of(application)->halted = true;
+        halt(application, false);
     }
     return true;
 }

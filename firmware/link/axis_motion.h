@@ -28,8 +28,8 @@ void axis_motion_look(struct application *application);
 /* To rest, with the quick stop's deceleration or the profile's. */
 void axis_motion_brake(struct application *application, bool quickly);
 
-/* To `target_rad`, with the profile's speed and acceleration. */
-void axis_motion_go(struct application *application);
+/* With the profile's speed and acceleration. */
+void axis_motion_go(struct application *application, double position_rad);
 
 /* A target position has come: of cyclic synchronous position. */
 void axis_motion_cycle(struct application *application);

@@ -242,7 +242,7 @@ static void end(struct application *application)
         late(application) > (float)OWED_MAX && axis_motion_rests(application)) {
         stream->last_rad = motion->target_rad;
         stream->before_rad = motion->target_rad;
-        axis_motion_go(application);
+        axis_motion_go(application, motion->target_rad);
     }
 }
 

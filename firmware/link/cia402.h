@@ -40,6 +40,7 @@ struct application;
 struct axis_motion {
     struct axis_homing homing;
     double target_rad;      /* of the last set-point */
+    double begun_rad;       /* of the one that has begun last */
     float speed_rad_s;      /* as commanded last, of profile velocity */
     float reference_rad_s;  /* a millisecond ago */
     float jerk;             /* of what is in motion */
@@ -50,6 +51,7 @@ struct axis_motion {
     uint8_t steady_ms; /* for so long the reference's speed has been constant */
     bool waits;        /* a set-point has not begun */
     bool at_once;      /* it preempts what is in motion */
+    bool pending;      /* the one that has begun is to be gone to, when no halt is */
     bool acknowledged; /* bit 12 of profile position */
     bool reached;
     bool limited; /* a limit has cut what was asked for */

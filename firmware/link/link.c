@@ -100,7 +100,7 @@ uint8_t link_error_register(const struct application *application)
     const enum drive_fault fault = application->link->reported;
 
     return (uint8_t)((fault == DRIVE_FAULT_NONE ? 0u : 0x01u | kinds[fault_at(fault)->code >> 12]) |
-                     (application->link->unheard != 0u || application->link->bus_errors != 0u
+                     (application->link->comm_errors != 0u || application->link->bus_errors != 0u
                           ? 0x11u
                           : 0u));
 }
@@ -138,6 +138,28 @@ void link_warn(struct application *application, uint16_t code)
     send_emergency(application, code, 0);
 }
 
+void link_begin_error(struct application *application, unsigned error, uint16_t code)
+{
+    struct link *link = application->link;
+
+    if ((link->comm_errors & error) == 0u) {
+        link->comm_errors |= (uint8_t)error;
+        link_warn(application, code);
+    }
+}
+
+void link_end_error(struct application *application, unsigned error)
+{
+    struct link *link = application->link;
+
+    if ((link->comm_errors & error) != 0u) {
+        link->comm_errors &= (uint8_t)~error;
+        if (link_error_register(application) == 0u) {
+            link_warn(application, 0);
+        }
+    }
+}
+
 static void report_faults(struct application *application)
 {
     struct link *link = application->link;
@@ -153,31 +175,14 @@ static void report_faults(struct application *application)
 
 /* ---- who commands ---- */
 
-/* What may be lost, in bits, and its emergency. */
-enum lost { HEARTBEAT = 1, SYNC = 2 };
 enum { HEARTBEAT_LOST = 0x8130, COMMUNICATION_LOST = 0x8100 };
 
-static void lose(struct application *application, enum lost what)
+static void lose(struct application *application, unsigned error, uint16_t code)
 {
-    struct link *link = application->link;
-
-    link->heard = false;
-    link->synced = false;
-    link->unheard |= (uint8_t)what;
-    send_emergency(application, what == SYNC ? COMMUNICATION_LOST : HEARTBEAT_LOST, 0);
+    application->link->heard = false;
+    application->link->synced = false;
+    link_begin_error(application, error, code);
     cia402_lose(application);
-}
-
-/* What was lost has come back, or nobody waits for it any more. */
-static void find_again(struct application *application, enum lost what)
-{
-    struct link *link = application->link;
-    const uint8_t before = link->unheard;
-
-    link->unheard &= (uint8_t) ~(unsigned)what;
-    if (before == (uint8_t)what && link->reported == DRIVE_FAULT_NONE) {
-        send_emergency(application, 0, 0);
-    }
 }
 
 static void hear(struct application *application, const struct can_frame *frame)
@@ -188,7 +193,7 @@ static void hear(struct application *application, const struct can_frame *frame)
     if ((consumer & 0xffffu) != 0u && frame->id == ID_HEARTBEAT + (consumer >> 16 & 0x7fu)) {
         link->heard = true;
         link->heard_us = link->now_us;
-        find_again(application, HEARTBEAT);
+        link_end_error(application, LINK_ERROR_HEARTBEAT);
     }
 }
 
@@ -200,17 +205,17 @@ static void watch(struct application *application)
     const uint32_t period_us = link->objects.sync_period_us;
 
     if (heartbeat_ms == 0u) {
-        find_again(application, HEARTBEAT);
+        link_end_error(application, LINK_ERROR_HEARTBEAT);
     }
     if (period_us == 0u) {
-        find_again(application, SYNC);
+        link_end_error(application, LINK_ERROR_SYNC);
     }
     if (link->heard && heartbeat_ms > 0u &&
         link_since(link, link->heard_us) > 1000u * heartbeat_ms) {
-        lose(application, HEARTBEAT);
+        lose(application, LINK_ERROR_HEARTBEAT, HEARTBEAT_LOST);
     } else if (link->synced && period_us > 0u && link->nmt == LINK_OPERATIONAL &&
                link_since(link, link->synced_us) > period_us + period_us / 2u) {
-        lose(application, SYNC);
+        lose(application, LINK_ERROR_SYNC, COMMUNICATION_LOST);
     }
 }
 
@@ -229,7 +234,7 @@ void link_reset_communication(struct application *application)
     link->errors = 0;
     link->heard = false;
     link->synced = false;
-    link->unheard = 0;
+    link->comm_errors = 0;
     cia402_start(application);
     send_state(application, 0); /* boot-up */
 }
@@ -287,7 +292,7 @@ void link_receive(struct application *application, const struct can_frame *frame
         if (frame->id == (link->objects.sync_cob_id & 0x7ffu)) {
             link->synced = true;
             link->synced_us = link->now_us;
-            find_again(application, SYNC);
+            link_end_error(application, LINK_ERROR_SYNC);
             axis_stream_sync(application);
             pdo_sync(application);
             link->axis.stream.at_sync = false;

@@ -132,7 +132,7 @@ enum object_abort link_obey(struct application *application, const struct object
         cia402_control(application, (uint16_t)can_get(value, 2));
         return OBJECT_DONE;
     default:
-        return pdo_obey(&application->link->pdos, object, value);
+        return pdo_obey(application, object, value);
     }
 }
 

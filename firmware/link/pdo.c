@@ -118,11 +118,19 @@ static enum object_abort put_count(struct pdo *pdo, unsigned access, uint8_t cou
     return OBJECT_DONE;
 }
 
-/* Entries change while none is in force. */
+static bool exists(const struct pdo *pdo)
+{
+    return (pdo->cob_id & PDO_INVALID) == 0u;
+}
+
+/* Of a PDO that does not exist; entries change while none is in force. */
 static enum object_abort put_mapping(struct pdo *pdo, const struct object *object, uint32_t number)
 {
     const unsigned access = is_sent(object) ? OBJECT_SENT : OBJECT_RECEIVED;
 
+    if (exists(pdo)) {
+        return OBJECT_WRONG_STATE;
+    }
     if (object->sub == 0u) {
         return put_count(pdo, access, (uint8_t)number);
     }
@@ -143,23 +151,45 @@ bool pdo_may_have(uint32_t id)
            (id <= 0x580u || id > 0x5ffu) && (id <= 0x600u || id > 0x67fu);
 }
 
-enum object_abort pdo_obey(struct pdos *pdos, const struct object *object, const uint8_t *value)
+/* No PDO is sent when it is asked for by a remote frame. */
+static bool may_become(const struct pdo *pdo, bool sent, uint32_t cob_id)
 {
-    struct pdo *pdo = pdo_of(pdos, object);
+    if ((cob_id & EXTENDED) != 0u) {
+        return false;
+    }
+    return (cob_id & PDO_INVALID) != 0u || cob_id == pdo->cob_id ||
+           (!exists(pdo) && (!sent || (cob_id & NO_REMOTE) != 0u) &&
+            pdo_may_have(cob_id & ~NO_REMOTE));
+}
+
+/* Of one that is received: the last was shorter than what is mapped. */
+static unsigned shortness(const struct link *link, const struct pdo *pdo)
+{
+    return LINK_ERROR_OF_PDO << (pdo - link->pdos.received);
+}
+
+enum object_abort pdo_obey(struct application *application, const struct object *object,
+                           const uint8_t *value)
+{
+    struct link *link = application->link;
+    struct pdo *pdo = pdo_of(&link->pdos, object);
+    const bool sent = is_sent(object);
     const uint32_t number = can_get(value, object_bytes(object));
 
-    pdo->waits = is_sent(object);
+    pdo->waits = sent;
     pdo->syncs = 0;
     if (is_mapping(object)) {
         return put_mapping(pdo, object, number);
     }
     switch (object->sub) {
     case 1:
-        if ((number & EXTENDED) != 0u ||
-            ((number & PDO_INVALID) == 0u && !pdo_may_have(number & ~NO_REMOTE))) {
+        if (!may_become(pdo, sent, number)) {
             return OBJECT_OUT_OF_RANGE;
         }
         pdo->cob_id = number;
+        if (!sent) {
+            link_end_error(application, shortness(link, pdo));
+        }
         break;
     case 2:
         if (number > 240u && number < PDO_EVENT) {
@@ -168,6 +198,9 @@ enum object_abort pdo_obey(struct pdos *pdos, const struct object *object, const
         pdo->type = (uint8_t)number;
         break;
     case 3:
+        if (exists(pdo)) {
+            return OBJECT_OUT_OF_RANGE;
+        }
         pdo->inhibit_100us = (uint16_t)number;
         break;
     default:
@@ -217,20 +250,17 @@ static size_t mapped_bytes(const struct pdo *pdo)
 
 void pdo_receive(struct application *application, const struct can_frame *frame)
 {
-    for (struct pdo *pdo = application->link->pdos.received;
-         pdo != &application->link->pdos.received[PDOS]; pdo++) {
-        if ((pdo->cob_id & PDO_INVALID) != 0u || (pdo->cob_id & ID_BITS) != frame->id) {
-            continue;
-        }
-        const bool was_short = pdo->short_one;
+    struct link *link = application->link;
 
-        pdo->short_one = frame->length < mapped_bytes(pdo);
-        if (pdo->short_one) {
-            if (!was_short) {
-                link_warn(application, NOT_PROCESSED);
-            }
+    for (struct pdo *pdo = link->pdos.received; pdo != &link->pdos.received[PDOS]; pdo++) {
+        if (!exists(pdo) || (pdo->cob_id & ID_BITS) != frame->id) {
             continue;
         }
+        if (frame->length < mapped_bytes(pdo)) {
+            link_begin_error(application, shortness(link, pdo), NOT_PROCESSED);
+            continue;
+        }
+        link_end_error(application, shortness(link, pdo));
         pdo->frame = *frame;
         pdo->waits = pdo->type < PDO_EVENT;
         if (!pdo->waits) {
@@ -284,7 +314,7 @@ void pdo_look(struct application *application)
          pdo++) {
         struct can_frame frame;
 
-        if ((pdo->cob_id & PDO_INVALID) != 0u || pdo->type < PDO_EVENT || pdo->count == 0u) {
+        if (!exists(pdo) || pdo->type < PDO_EVENT || pdo->count == 0u) {
             continue;
         }
         gather(application, pdo, &frame);
@@ -298,7 +328,7 @@ static void sync_sent(struct application *application, struct pdo *pdo)
 {
     struct can_frame frame;
 
-    if ((pdo->cob_id & PDO_INVALID) != 0u || pdo->type >= PDO_EVENT || pdo->count == 0u) {
+    if (!exists(pdo) || pdo->type >= PDO_EVENT || pdo->count == 0u) {
         return;
     }
     pdo->syncs++;

@@ -20,11 +20,10 @@ struct pdo {
     uint32_t sent_us;
     uint16_t inhibit_100us;
     uint16_t event_ms;
-    uint8_t count;  /* objects in force */
-    uint8_t type;   /* of transmission */
-    uint8_t syncs;  /* since it was sent */
-    bool waits;     /* received: for SYNC; sent: goes whether changed or not */
-    bool short_one; /* the last that was received was, which an emergency has said */
+    uint8_t count; /* objects in force */
+    uint8_t type;  /* of transmission */
+    uint8_t syncs; /* since it was sent */
+    bool waits;    /* received: for SYNC; sent: goes whether changed or not */
     struct can_frame frame;
 };
 
@@ -38,7 +37,8 @@ void pdo_put_presets(struct pdos *pdos, uint8_t node);
 
 /* 1400h...1403h, 1600h... and 1800h..., 1a00h...: of the object's value. */
 void pdo_ask(const struct pdos *pdos, const struct object *object, uint8_t *value);
-enum object_abort pdo_obey(struct pdos *pdos, const struct object *object, const uint8_t *value);
+enum object_abort pdo_obey(struct application *application, const struct object *object,
+                           const uint8_t *value);
 
 /* Whether a client may give a COB-ID this identifier: CiA 301 keeps those of NMT, the default SDO
    and the heartbeat from it. */

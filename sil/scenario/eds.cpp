@@ -271,8 +271,9 @@ Dummy0006=0
 Dummy0007=0
 
 [Comments]
-Lines=1
+Lines=2
 Line1=firmware/link/README.md says how to connect.
+Line2=Remote frames are not answered: a valid COB-ID of a TPDO has bit 30.
 )";
 
 /* Of elements of one type: ARRAY; else RECORD. */

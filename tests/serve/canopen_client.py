@@ -85,10 +85,21 @@ def blocks_carry_what_segments_do(node):
     node.sdo["current_limit_A"].raw = 3.0
 
 
+def refused(variable, value, code):
+    try:
+        variable.raw = value
+    except canopen.SdoAbortedError as refusal:
+        return refusal.code == code
+    return False
+
+
 def pdos_are_configured(node):
     node.tpdo.read()
     node.rpdo.read()
     CHECKS.that(node.tpdo[1].cob_id == 0x181 and node.rpdo[1].cob_id == 0x201, "PDOs are read")
+    CHECKS.that(refused(node.sdo[0x1800][1], 0x40000182, 0x06090030), "a PDO that exists keeps its identifier")
+    CHECKS.that(refused(node.sdo[0x1A00][0], 0, 0x08000022), "and its mapping")
+    CHECKS.that(refused(node.sdo[0x1801][1], 0x281, 0x06090030), "remote frames are not answered")
     node.tpdo[4].clear()
     node.tpdo[4].add_variable(0x2301)
     node.tpdo[4].event_timer = 20
@@ -156,6 +167,21 @@ def it_goes_to_positions(node, knobs):
     set_point(node, 0, 0x3F)  # at once
     CHECKS.that(wait_for(lambda: node.sdo[0x6041].raw & 0x400), "it reaches the newer target")
     CHECKS.that(abs(node.sdo[0x6064].raw) < 100, f"back: {node.sdo[0x6064].raw}")
+
+
+def it_goes_on_behind_a_halt(node):
+    set_point(node, 2 * TURN)
+    node.controlword = 0x10F
+    CHECKS.that(wait_for(lambda: node.sdo[0x6041].raw & 0x400), "it halts")
+    CHECKS.that(abs(node.sdo[0x6064].raw) < 1.9 * TURN, f"on its way: {node.sdo[0x6064].raw}")
+    node.sdo[0x607A].raw = 0
+    node.controlword = 0x11F
+    node.controlword = 0x10F
+    CHECKS.that(node.sdo[0x6041].raw & 0x1000, "a target given meanwhile waits")
+    node.controlword = 0x0F
+    CHECKS.that(wait_for(lambda: node.sdo[0x6064].raw > 1.99 * TURN), "behind the interrupted one")
+    CHECKS.that(wait_for(lambda: node.sdo[0x6041].raw & 0x1400 == 0x400), "and is reached")
+    CHECKS.that(abs(node.sdo[0x6064].raw) < 100, f"then: {node.sdo[0x6064].raw}")
 
 
 def it_turns_at_a_speed(node):
@@ -229,6 +255,7 @@ with Served() as served:
         pdos_are_configured(bus.node)
         it_is_enabled_in_time(bus.node)
         it_goes_to_positions(bus.node, KNOBS)
+        it_goes_on_behind_a_halt(bus.node)
         it_turns_at_a_speed(bus.node)
         it_homes_on_a_stop(bus.node, KNOBS)
         a_fault_is_seen_and_reset(bus.node, KNOBS)

@@ -140,6 +140,8 @@ async function emergencies(device, socket) {
     device.emcy.on('emergency', ({ em }) => codes.push(em.code));
     socket.write('t201106\r');
     await until(() => codes.length === 1 && codes[0] === 0x8210, 'a PDO that is too short is an emergency');
+    socket.write('t20120600\r');
+    await until(() => codes.length === 2 && codes[1] === 0, 'which one that is right ends');
 }
 
 async function network(device) {

@@ -34,6 +34,7 @@ struct Case {
     unsigned travel = 65536;       /* object 2403h, 2 */
     double stiffness_rated = 0;    /* at least so many times the rated torque over a full step */
     double speed = 0;              /* object 6099h, 1, of V / Km; 0: its default */
+    unsigned seed = 1;             /* of the noise and of how the parts are built */
 };
 
 struct Outcome {
@@ -52,7 +53,7 @@ class Machine
                                  "\"\nduration_s = 1\nplant.model = \"as-built\"\n" + asked.more;
         const scenario::Scenario machine =
             scenario::read_scenario_text(scenario::Catalogue({}, {}), text, "homing", {});
-        plant::Config plant = scenario::plant_of(machine, 1);
+        plant::Config plant = scenario::plant_of(machine, asked.seed);
         const motor_params &motor = machine.drive.motor;
         rated_Nm_ = motor.rated_current_A * motor.torque_constant_Nm_A;
         full_step_rad_ = pi / 2 / motor.rotor_teeth;

@@ -154,6 +154,16 @@ static inline uint32_t link_bench_get(unsigned index, unsigned sub)
     return byte[0] | byte[1] << 8 | byte[2] << 16 | byte[3] << 24;
 }
 
+/* Behind the controlword in RPDO1: index << 16 | bits. */
+static inline void link_bench_map_controlword_and(uint32_t object)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1400, 1, 4, 0x80000201));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1600, 0, 1, 0));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1600, 2, 4, object));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1600, 0, 1, 2));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1400, 1, 4, 0x201));
+}
+
 /* The reference's. */
 static inline double link_bench_reference_rad(void)
 {

@@ -159,7 +159,8 @@ static inline uint32_t fuzz_number_for(const struct object *object)
         return fuzz_entry();
     }
     if ((of_pdos == 0x1400u || of_pdos == 0x1800u) && object->sub == 1u) {
-        return (fuzz_once_in(4) ? 0x80000000u : 0u) | fuzz_draw(0x800);
+        return (fuzz_once_in(2) ? 0x80000000u : 0u) | (fuzz_once_in(8) ? 0u : 0x40000000u) |
+               fuzz_draw(0x800);
     }
     if (object->index == 0x1010u && fuzz_once_in(2)) {
         return 0x65766173;

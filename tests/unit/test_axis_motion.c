@@ -555,7 +555,8 @@ static void test_a_rotor_off_its_reference_for_a_while_is_said(void)
     TEST_ASSERT_EQUAL_HEX32(0, status(OFF));
 }
 
-static void test_a_halted_move_is_reached_at_rest_and_a_new_target_waits_for_its_end(void)
+/* Under way to four turns, halted at rest; where that is. */
+static uint32_t halt_on_the_way(void)
 {
     enable(1);
     put(0x607a, 0, 4, 4 * TURN);
@@ -566,16 +567,102 @@ static void test_a_halted_move_is_reached_at_rest_and_a_new_target_waits_for_its
     bench_periods(4000);
     TEST_ASSERT_TRUE(rests());
     TEST_ASSERT_EQUAL_HEX32(REACHED, status(REACHED));
+    return get(0x6062);
+}
 
-    const uint32_t here = get(0x6062);
+/* The furthest that the reference comes from now on until it rests, in units. */
+static int32_t furthest(void)
+{
+    double most = link_bench_reference_rad();
+
+    do {
+        bench_periods(50);
+        most = fmax(most, link_bench_reference_rad());
+    } while (!rests() || bench_link.axis.motion.waits);
+    return (int32_t)lround(most / unit_rad);
+}
+
+static void test_a_target_given_in_a_halt_waits_for_its_end_behind_the_interrupted_one(void)
+{
+    const uint32_t here = halt_on_the_way();
 
     put(0x607a, 0, 4, TURN);
     control(0x11f);
     bench_periods(2000);
     TEST_ASSERT_EQUAL_UINT32(here, get(0x6062));
+    control(0x10f);
+    TEST_ASSERT_EQUAL_HEX32(REACHED | OF_MODE, status(REACHED | OF_MODE)); /* has no more room */
     control(0x0f);
-    bench_periods(12000);
+    TEST_ASSERT_EQUAL_INT32(4 * TURN, furthest());
     TEST_ASSERT_EQUAL_INT(TURN, (int)get(0x6062));
+    TEST_ASSERT_EQUAL_HEX32(0, status(OF_MODE));
+}
+
+static void test_a_target_that_waited_before_a_halt_goes_on_waiting(void)
+{
+    enable(1);
+    put(0x607a, 0, 4, 4 * TURN);
+    control(0x1f);
+    control(0x0f);
+    put(0x607a, 0, 4, TURN);
+    control(0x1f);
+    bench_periods(1000);
+    control(0x10f);
+    bench_periods(4000);
+    TEST_ASSERT_TRUE(rests());
+    control(0x0f);
+    TEST_ASSERT_EQUAL_INT32(4 * TURN, furthest());
+    TEST_ASSERT_EQUAL_INT(TURN, (int)get(0x6062));
+}
+
+static void test_a_target_at_once_given_in_a_halt_replaces_the_interrupted_one(void)
+{
+    const uint32_t here = halt_on_the_way();
+
+    put(0x607a, 0, 4, TURN);
+    control(0x13f);
+    bench_periods(2000);
+    TEST_ASSERT_EQUAL_UINT32(here, get(0x6062));
+    TEST_ASSERT_EQUAL_HEX32(OF_MODE, status(OF_MODE));
+    control(0x10f);
+    TEST_ASSERT_EQUAL_HEX32(0, status(OF_MODE)); /* has room for another */
+    control(0x0f);
+    TEST_ASSERT_TRUE(furthest() < 2 * TURN);
+    TEST_ASSERT_EQUAL_INT(TURN, (int)get(0x6062));
+}
+
+/* Where nothing is interrupted the first that is given is the one that begins, a second waits. */
+static void test_a_halt_at_rest_takes_two_targets(void)
+{
+    enable(1);
+    control(0x10f);
+    put(0x607a, 0, 4, 2 * TURN);
+    control(0x11f);
+    control(0x10f);
+    TEST_ASSERT_EQUAL_HEX32(0, status(OF_MODE));
+    put(0x607a, 0, 4, TURN);
+    control(0x11f);
+    control(0x10f);
+    bench_periods(2000);
+    TEST_ASSERT_EQUAL_HEX32(OF_MODE, status(OF_MODE));
+    TEST_ASSERT_EQUAL_INT(0, (int)get(0x6062));
+    control(0x0f);
+    TEST_ASSERT_EQUAL_INT32(2 * TURN, furthest());
+    TEST_ASSERT_EQUAL_INT(TURN, (int)get(0x6062));
+}
+
+static void test_a_halt_that_ends_before_the_rest_lets_it_go_on(void)
+{
+    enable(1);
+    put(0x607a, 0, 4, 4 * TURN);
+    control(0x1f);
+    bench_periods(2000);
+    control(0x10f);
+    bench_periods(300);
+    TEST_ASSERT_FALSE(rests());
+    control(0x0f);
+    TEST_ASSERT_EQUAL_INT32(4 * TURN, furthest());
+    TEST_ASSERT_EQUAL_INT(4 * TURN, (int)get(0x6062));
 }
 
 /* One that was reached is not gone to again. */
@@ -664,7 +751,11 @@ int main(void)
     RUN_TEST(test_a_target_that_is_asked_for_at_once_preempts_and_without_a_rise_none_does);
     RUN_TEST(test_a_target_is_reached_when_the_rotor_has_been_within_its_window_for_a_while);
     RUN_TEST(test_a_rotor_off_its_reference_for_a_while_is_said);
-    RUN_TEST(test_a_halted_move_is_reached_at_rest_and_a_new_target_waits_for_its_end);
+    RUN_TEST(test_a_target_given_in_a_halt_waits_for_its_end_behind_the_interrupted_one);
+    RUN_TEST(test_a_target_that_waited_before_a_halt_goes_on_waiting);
+    RUN_TEST(test_a_target_at_once_given_in_a_halt_replaces_the_interrupted_one);
+    RUN_TEST(test_a_halt_at_rest_takes_two_targets);
+    RUN_TEST(test_a_halt_that_ends_before_the_rest_lets_it_go_on);
     RUN_TEST(test_a_halt_behind_a_move_moves_nothing);
     RUN_TEST(test_a_mode_begins_at_rest);
     RUN_TEST(test_homing_is_reached_at_rest_once_it_was_asked_for);

@@ -292,7 +292,8 @@ static void test_a_board_without_a_bus_has_none(void)
 static void test_the_board_receives_what_is_for_this_node_and_nothing_else(void)
 {
     bench_periods(2);
-    come(0x601, "2300140180020000", 2); /* 1400h, 1: 280h */
+    come(0x601, "2300140180020080", 2); /* 1400h, 1: 280h */
+    come(0x601, "2300140180020000", 2);
     bench_periods(20);
     TEST_ASSERT_TRUE(accepts(0x280) && !accepts(0x201) && !accepts(0x602) && !accepts(0x581));
     come(0x601, "2300140101020080", 2);

@@ -159,11 +159,12 @@ static void test_a_fault_is_an_emergency_and_stays_in_the_list(void)
                      link_bench_say("t60182F00220002000000", 30)); /* disable */
 }
 
-/* The first that is sent, with what stands in `entry` as its only object. */
+/* The first that is sent, taken off, with what stands in `entry` as its only object. */
 static const char *map_one(const char *entry)
 {
     char line[32];
 
+    (void)link_bench_sdo("23001801810100C0");
     (void)link_bench_sdo("2F001A0000000000");
     snprintf(line, sizeof line, "23001A01%s", entry);
     return link_bench_sdo(line);
@@ -176,6 +177,7 @@ static void test_a_pdo_is_mapped_at_run_time_and_sent_when_it_changes(void)
     TEST_ASSERT_EQUAL_STRING("6000180500000000", link_bench_sdo("2B00180500000000"));
     TEST_ASSERT_EQUAL_STRING("60001A0100000000", map_one("08000023")); /* 2300h, state */
     TEST_ASSERT_EQUAL_STRING("60001A0000000000", link_bench_sdo("2F001A0001000000"));
+    TEST_ASSERT_EQUAL_STRING("6000180100000000", link_bench_sdo("2300180181010040"));
     link_bench_heard("t181100\r", link_bench_say("t00020101", 12));
     TEST_ASSERT_EQUAL_STRING("z\r", link_bench_say("t1230", 100));
     link_bench_heard("t181104\r", link_bench_say("t60182F00220001000000", 20)); /* enable */
@@ -199,6 +201,8 @@ static void test_a_mapping_that_cannot_be_is_refused(void)
 static void test_identifiers_that_the_bus_needs_are_not_to_be_had(void)
 {
     link_bench_open();
+    TEST_ASSERT_EQUAL_STRING("6000180100000000", link_bench_sdo("2300180100000080")); /* none */
+    TEST_ASSERT_EQUAL_STRING("6000140100000000", link_bench_sdo("2300140100000080"));
     TEST_ASSERT_EQUAL_STRING("8000180130000906", link_bench_sdo("2300180100000040"));
     TEST_ASSERT_EQUAL_STRING("8000180130000906", link_bench_sdo("2300180101070040"));
     TEST_ASSERT_EQUAL_STRING("8000140130000906", link_bench_sdo("2300140102060000"));
@@ -207,21 +211,38 @@ static void test_identifiers_that_the_bus_needs_are_not_to_be_had(void)
     TEST_ASSERT_EQUAL_STRING("8016100130000906", link_bench_sdo("2316100114008000")); /* node 128 */
     TEST_ASSERT_EQUAL_STRING("8016100130000906", link_bench_sdo("2316100114000501"));
     TEST_ASSERT_EQUAL_STRING("6016100100000000", link_bench_sdo("2316100114007F00"));
-    TEST_ASSERT_EQUAL_STRING("6000180100000000", link_bench_sdo("2300180100000080")); /* none */
     TEST_ASSERT_EQUAL_STRING("6000180100000000", link_bench_sdo("2300180190010040"));
 }
 
-static void test_a_pdo_that_is_too_short_is_an_emergency_once(void)
+static void test_a_pdo_that_is_too_short_is_an_emergency_until_one_is_right(void)
 {
     link_bench_open();
     (void)link_bench_say("t00020101", 2);
-    link_bench_heard("t08181082000000000000\r", link_bench_say("t201106", 3));
+    link_bench_heard("t08181082110000000000\r", link_bench_say("t201106", 3));
+    TEST_ASSERT_EQUAL_HEX32(0x11, link_bench_get(0x1001, 0));
     TEST_ASSERT_NULL(strstr(link_bench_say("t201106", 3), "t081"));
-    (void)link_bench_say("t20120600", 3);
-    link_bench_heard("t08181082000000000000\r", link_bench_say("t2010", 3));
+    link_bench_heard("t08180000000000000000\r", link_bench_say("t20120600", 3));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(0x1001, 0));
+    TEST_ASSERT_NULL(strstr(link_bench_say("t20120600", 3), "t081"));
+    link_bench_heard("t08181082110000000000\r", link_bench_say("t2010", 3));
     TEST_ASSERT_EQUAL_STRING("4F03100002000000", link_bench_sdo("4003100000000000"));
     TEST_ASSERT_EQUAL_STRING("6003100000000000", link_bench_sdo("2F03100000000000"));
     TEST_ASSERT_EQUAL_STRING("8003100124000008", link_bench_sdo("4003100100000000")); /* none */
+}
+
+/* Each PDO has an error of its own, which ends with the PDO, too. */
+static void test_errors_of_pdos_end_with_the_last_of_them(void)
+{
+    link_bench_open();
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1403, 1, 4, 0x501));
+    (void)link_bench_say("t00020101", 2);
+    link_bench_heard("t08181082110000000000\r", link_bench_say("t5010", 3));
+    link_bench_heard("t08181082110000000000\r", link_bench_say("t2010", 3));
+    TEST_ASSERT_NULL(strstr(link_bench_say("t20120600", 3), "t081"));
+    TEST_ASSERT_EQUAL_HEX32(0x11, link_bench_get(0x1001, 0));
+    link_bench_heard("t08180000000000000000\r",
+                     link_bench_say("t60182303140101050080", 3)); /* invalid */
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(0x1001, 0));
 }
 
 static void test_a_number_of_the_node_acts_when_communication_is_reset(void)
@@ -386,7 +407,8 @@ int main(int count, char **arguments)
     RUN_TEST(test_a_pdo_is_mapped_at_run_time_and_sent_when_it_changes);
     RUN_TEST(test_a_mapping_that_cannot_be_is_refused);
     RUN_TEST(test_identifiers_that_the_bus_needs_are_not_to_be_had);
-    RUN_TEST(test_a_pdo_that_is_too_short_is_an_emergency_once);
+    RUN_TEST(test_a_pdo_that_is_too_short_is_an_emergency_until_one_is_right);
+    RUN_TEST(test_errors_of_pdos_end_with_the_last_of_them);
     RUN_TEST(test_a_number_of_the_node_acts_when_communication_is_reset);
     RUN_TEST(test_communication_that_begins_anew_leaves_the_profile);
     RUN_TEST(test_a_node_that_is_reset_is_as_from_power_up);

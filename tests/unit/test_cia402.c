@@ -251,9 +251,7 @@ static void cycle(int n)
 
 static void enable_cyclic(void)
 {
-    put(0x1600, 0, 1, 0);
-    put(0x1600, 2, 4, 0x607a0020);
-    put(0x1600, 0, 1, 2);
+    link_bench_map_controlword_and(0x607a0020);
     enable(8);
 }
 

@@ -33,9 +33,7 @@ static void put(unsigned index, unsigned sub, unsigned bytes, uint32_t value)
 /* RPDO1 has the controlword and an object. */
 static void map(uint32_t object, unsigned type)
 {
-    put(0x1600, 0, 1, 0);
-    put(0x1600, 2, 4, object);
-    put(0x1600, 0, 1, 2);
+    link_bench_map_controlword_and(object);
     put(0x1400, 2, 1, type);
 }
 

@@ -204,13 +204,13 @@ static void test_a_heartbeat_that_was_heard_must_come_again_in_time(void)
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1016, 1, 4, 0x00050014));
     enable(); /* none has come: none is missed */
     beat(6, 400);
-    TEST_ASSERT_FALSE(bench_link.unheard);
+    TEST_ASSERT_FALSE(bench_link.comm_errors);
     beat(5, 195);
-    TEST_ASSERT_FALSE(bench_link.unheard);
+    TEST_ASSERT_FALSE(bench_link.comm_errors);
     beat(5, 195);
-    TEST_ASSERT_FALSE(bench_link.unheard);
+    TEST_ASSERT_FALSE(bench_link.comm_errors);
     link_bench_heard("t08183081110000000000\r", link_bench_say("", 20));
-    TEST_ASSERT_TRUE(bench_link.unheard);
+    TEST_ASSERT_TRUE(bench_link.comm_errors);
     TEST_ASSERT_EQUAL_HEX32(0x11, link_bench_get(0x1001, 0));
     TEST_ASSERT_EQUAL_HEX32(0x8130, link_bench_get(0x1003, 1));
     bench_periods(4000);
@@ -242,8 +242,8 @@ static void test_a_heartbeat_has_all_of_its_time(void)
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1016, 1, 4, 0x00050014));
     for (int phase = 0; phase < 10; phase++) {
         beat(5, 1);
-        TEST_ASSERT_FALSE(bench_link.unheard);
-        while (!bench_link.unheard) {
+        TEST_ASSERT_FALSE(bench_link.comm_errors);
+        while (!bench_link.comm_errors) {
             bench_period();
         }
         const uint32_t since_us = bench_link.now_us - bench_link.heard_us;
@@ -263,7 +263,7 @@ static void test_heartbeats_are_watched_only_with_a_time(void)
     beat(5, 10);
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1016, 1, 4, 0));
     bench_periods(1000);
-    TEST_ASSERT_FALSE(bench_link.unheard);
+    TEST_ASSERT_FALSE(bench_link.comm_errors);
 }
 
 static void test_sync_may_be_late_by_half_of_its_period(void)
@@ -271,12 +271,12 @@ static void test_sync_may_be_late_by_half_of_its_period(void)
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1006, 0, 4, 4000));
     enable();
     (void)link_bench_say("t0800", 200); /* not operational */
-    TEST_ASSERT_FALSE(bench_link.unheard);
+    TEST_ASSERT_FALSE(bench_link.comm_errors);
     (void)link_bench_nmt(START, 2);
     for (int i = 0; i < 20; i++) {
         (void)link_bench_say("t0800", 58);
     }
-    TEST_ASSERT_FALSE(bench_link.unheard);
+    TEST_ASSERT_FALSE(bench_link.comm_errors);
     link_bench_heard("t08180081110000000000\r", link_bench_say("t0800", 75));
     bench_periods(4000);
     TEST_ASSERT_TRUE(is_off());
@@ -287,7 +287,7 @@ static void test_a_sync_that_is_not_watched_may_stay_away(void)
     enable();
     (void)link_bench_nmt(START, 2);
     (void)link_bench_say("t0800", 2000);
-    TEST_ASSERT_FALSE(bench_link.unheard);
+    TEST_ASSERT_FALSE(bench_link.comm_errors);
     (void)link_bench_say("C", 2);
     bench_periods(8000);
     TEST_ASSERT_FALSE(is_off()); /* nobody was to be heard */

@@ -23,8 +23,8 @@ void tearDown(void)
 {
 }
 
-/* Maps these objects, each index << 16 | sub << 8 | bits, up to a 0; the abort code. */
-static uint32_t map(unsigned index, const uint32_t entries[])
+/* Entries of a PDO that does not exist. */
+static uint32_t put_entries(unsigned index, const uint32_t entries[])
 {
     unsigned count = 0;
 
@@ -38,6 +38,32 @@ static uint32_t map(unsigned index, const uint32_t entries[])
         count++;
     }
     return link_bench_put(index, 0, 1, count);
+}
+
+static void put_cob_id(unsigned index, uint32_t cob_id)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(index, 1, 4, cob_id));
+}
+
+/* Maps these objects, each index << 16 | sub << 8 | bits, up to a 0; the abort code. The PDO does
+   not exist meanwhile. */
+static uint32_t map(unsigned index, const uint32_t entries[])
+{
+    const unsigned parameters = index - 0x200u;
+    const uint32_t cob_id = link_bench_get(parameters, 1);
+
+    put_cob_id(parameters, cob_id | off);
+    const uint32_t abort = put_entries(index, entries);
+
+    put_cob_id(parameters, cob_id);
+    return abort;
+}
+
+static void put_inhibit(uint32_t inhibit_100us)
+{
+    put_cob_id(TPDO, 0x181u | no_remote | off);
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO, 3, 2, inhibit_100us));
+    put_cob_id(TPDO, 0x181u | no_remote);
 }
 
 static void test_presets_are_those_of_the_profile_for_drives(void)
@@ -70,17 +96,19 @@ static void test_presets_are_those_of_the_profile_for_drives(void)
 static void test_what_is_put_is_what_is_read_of_each_for_itself(void)
 {
     for (unsigned i = 0; i < 4u; i++) {
-        TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(RPDO + i, 1, 4, 0x301u + i));
+        put_cob_id(RPDO + i, off);
+        put_cob_id(RPDO + i, 0x301u + i);
         TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(RPDO + i, 2, 1, 1u + i));
-        TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO + i, 1, 4, 0x401u + i));
-        TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO + i, 2, 1, 11u + i));
+        put_cob_id(TPDO + i, off);
         TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO + i, 3, 2, 0x1001u + i));
+        put_cob_id(TPDO + i, (0x401u + i) | no_remote);
+        TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO + i, 2, 1, 11u + i));
         TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO + i, 5, 2, 0x2001u + i));
     }
     for (unsigned i = 0; i < 4u; i++) {
         TEST_ASSERT_EQUAL_HEX32(0x301u + i, link_bench_get(RPDO + i, 1));
         TEST_ASSERT_EQUAL_HEX32(1u + i, link_bench_get(RPDO + i, 2));
-        TEST_ASSERT_EQUAL_HEX32(0x401u + i, link_bench_get(TPDO + i, 1));
+        TEST_ASSERT_EQUAL_HEX32((0x401u + i) | no_remote, link_bench_get(TPDO + i, 1));
         TEST_ASSERT_EQUAL_HEX32(11u + i, link_bench_get(TPDO + i, 2));
         TEST_ASSERT_EQUAL_HEX32(0x1001u + i, link_bench_get(TPDO + i, 3));
         TEST_ASSERT_EQUAL_HEX32(0x2001u + i, link_bench_get(TPDO + i, 5));
@@ -104,12 +132,43 @@ static void test_there_are_four_each_way_of_eight_objects(void)
 
 static void test_identifiers_have_eleven_bits(void)
 {
-    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(RPDO, 1, 4, 0x57f));
-    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(RPDO, 1, 4, 0x57fu | off));
-    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO, 1, 4, 0x57fu | off | no_remote));
+    put_cob_id(RPDO, off);
+    put_cob_id(RPDO, 0x57f);
+    put_cob_id(RPDO, 0x57fu | off);
+    put_cob_id(TPDO, 0x57fu | off | no_remote);
     TEST_ASSERT_EQUAL_HEX32(OBJECT_OUT_OF_RANGE, link_bench_put(RPDO, 1, 4, 0x800));
     TEST_ASSERT_EQUAL_HEX32(OBJECT_OUT_OF_RANGE, link_bench_put(RPDO, 1, 4, 0x20000201));
     TEST_ASSERT_EQUAL_HEX32(0x57fu | off, link_bench_get(RPDO, 1));
+}
+
+/* Whoever changes a PDO takes it off first, as CiA 301 has it. */
+static void test_while_a_pdo_exists_its_identifier_inhibit_time_and_mapping_stay(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(OBJECT_OUT_OF_RANGE, link_bench_put(RPDO, 1, 4, 0x202));
+    TEST_ASSERT_EQUAL_HEX32(OBJECT_OUT_OF_RANGE, link_bench_put(TPDO, 1, 4, 0x182u | no_remote));
+    TEST_ASSERT_EQUAL_HEX32(OBJECT_OUT_OF_RANGE, link_bench_put(TPDO, 3, 2, 50));
+    TEST_ASSERT_EQUAL_HEX32(OBJECT_WRONG_STATE, link_bench_put(RPDO_MAP, 0, 1, 0));
+    TEST_ASSERT_EQUAL_HEX32(OBJECT_WRONG_STATE, link_bench_put(TPDO_MAP, 2, 4, 0x60610008));
+    put_cob_id(RPDO, 0x201); /* as it is */
+    put_cob_id(TPDO, 0x181u | no_remote);
+    TEST_ASSERT_EQUAL_HEX32(1, link_bench_get(RPDO_MAP, 0));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(TPDO_MAP, 2));
+    put_cob_id(RPDO, 0x202u | off);
+    put_cob_id(RPDO, 0x203);
+    (void)link_bench_nmt(START, 1);
+    (void)link_bench_say("t20120600", 2);
+    TEST_ASSERT_EQUAL_HEX32(0x0240, link_bench_get(0x6041, 0));
+    (void)link_bench_say("t20320600", 2);
+    TEST_ASSERT_EQUAL_HEX32(0x0221, link_bench_get(0x6041, 0));
+}
+
+/* A remote frame is not answered: what would be asked for by one is refused. */
+static void test_what_is_sent_is_not_asked_for_by_a_remote_frame(void)
+{
+    put_cob_id(TPDO, 0x181u | off);
+    TEST_ASSERT_EQUAL_HEX32(OBJECT_OUT_OF_RANGE, link_bench_put(TPDO, 1, 4, 0x181));
+    put_cob_id(TPDO, 0x181u | no_remote);
+    put_cob_id(RPDO + 1, 0x301);
 }
 
 static void test_transmission_types_between_240_and_254_mean_nothing(void)
@@ -127,6 +186,7 @@ static void test_eight_bytes_are_mapped_and_not_a_bit_more(void)
                                      0x23000008, 0x23000008, 0x23000008, 0};
     static const uint32_t longer[] = {0x60640020, 0x60410010, 0x60610008, 0x60410010, 0};
 
+    put_cob_id(TPDO, off);
     TEST_ASSERT_EQUAL_HEX32(0, map(TPDO_MAP, eight));
     TEST_ASSERT_EQUAL_HEX32(8, link_bench_get(TPDO_MAP, 0));
     TEST_ASSERT_EQUAL_HEX32(OBJECT_PDO_TOO_LONG, link_bench_put(TPDO_MAP, 0, 1, 9));
@@ -188,7 +248,7 @@ static void test_a_received_frame_is_taken_apart_as_it_is_mapped(void)
 
 static void test_a_sent_frame_is_put_together_as_it_is_mapped(void)
 {
-    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO + 1, 1, 4, 0x281));
+    put_cob_id(TPDO + 1, 0x281u | no_remote);
     const char *heard = link_bench_nmt(START, 12);
 
     link_bench_heard("t18124002\r", heard);
@@ -199,7 +259,7 @@ static void test_a_sent_frame_is_put_together_as_it_is_mapped(void)
 
 static void test_the_status_comes_every_100_ms_and_the_rest_on_change(void)
 {
-    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO + 1, 1, 4, 0x281));
+    put_cob_id(TPDO + 1, 0x281u | no_remote);
     (void)link_bench_nmt(START, 50);
     const char *heard = link_bench_say("", SECOND);
 
@@ -223,10 +283,10 @@ static void test_an_inhibit_time_keeps_what_changes_all_the_time_from_the_bus(vo
 
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO, 5, 2, 0));
     TEST_ASSERT_EQUAL_HEX32(0, map(TPDO_MAP, period));
-    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO, 3, 2, 50)); /* 5 ms */
+    put_inhibit(50); /* 5 ms */
     (void)link_bench_nmt(START, 50);
     TEST_ASSERT_EQUAL_INT(10, link_bench_count("t181", link_bench_say("", 500)));
-    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(TPDO, 3, 2, 0));
+    put_inhibit(0);
     (void)link_bench_say("", 20);
     TEST_ASSERT_EQUAL_INT(50, link_bench_count("t181", link_bench_say("", 500)));
 }
@@ -333,6 +393,8 @@ int main(void)
     RUN_TEST(test_what_is_put_is_what_is_read_of_each_for_itself);
     RUN_TEST(test_there_are_four_each_way_of_eight_objects);
     RUN_TEST(test_identifiers_have_eleven_bits);
+    RUN_TEST(test_while_a_pdo_exists_its_identifier_inhibit_time_and_mapping_stay);
+    RUN_TEST(test_what_is_sent_is_not_asked_for_by_a_remote_frame);
     RUN_TEST(test_transmission_types_between_240_and_254_mean_nothing);
     RUN_TEST(test_eight_bytes_are_mapped_and_not_a_bit_more);
     RUN_TEST(test_what_is_received_may_be_written_and_what_is_sent_be_read);

@@ -14,7 +14,7 @@ from .objects import Objects
 from .settings import Progress, unseen
 
 PERIOD_INDEX, STATUS_INDEX = 0x2301, 0x6041
-PDOS, PDO_BYTES, INVALID = 4, 8, 0x80000000
+PDOS, PDO_BYTES, INVALID, NO_REMOTE = 4, 8, 0x80000000, 0x40000000
 
 
 @dataclasses.dataclass
@@ -84,7 +84,7 @@ class ProcessData:
             self._kept.append(self._parameters(n))
             if indexes:
                 entries = [index << 16 | 8 * _bytes_of(self._objects, index) for index in indexes]
-                self._put(n, self._id(n), 1, 0, entries)
+                self._put(n, self._id(n) | NO_REMOTE, 1, 0, entries)
                 self._objects.network.subscribe(self._id(n), self._take)
             else:
                 self._objects.write(0x1800 + n, self._id(n) | INVALID, 1)
