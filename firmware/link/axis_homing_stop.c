@@ -113,26 +113,26 @@ static bool is_counted(const struct application *application)
     return application->drive.settings.feedback == DRIVE_FEEDBACK_ENCODER;
 }
 
-static void catch_rotor(struct application *application, enum homing_phase phase)
+static void catch_rotor(struct application *application)
 {
-    axis_homing_enter(application, phase);
+    axis_homing_enter(application, HOMING_CATCHES);
     if (!is_counted(application)) {
         state_machine_ask_to_realign(&application->drive);
     }
 }
 
-/* This approach has. */
+/* This approach has. What one before has found still holds, if another finds it again. */
 static void fail(struct application *application)
 {
     struct axis_homing *homing = homing_of(application);
 
-    homing->touches = 0;
+    homing->touches = homing->touches > 0u ? 1 : 0;
     if (is_counted(application)) {
         homing->failures = FAILURES;
         creep_to(application, homing->furthest - leave_steps);
     } else {
         homing->failures++;
-        catch_rotor(application, HOMING_CATCHES);
+        catch_rotor(application);
     }
 }
 
@@ -155,7 +155,7 @@ static void touch(struct application *application)
     }
     homing->place = homing->touches > 0u ? homing->furthest - 0.5f * moved : homing->furthest;
     homing->touches++;
-    catch_rotor(application, HOMING_CATCHES);
+    catch_rotor(application);
 }
 
 /* The rotor as it is, and where it has come furthest, before the stop bears it. */
@@ -189,12 +189,15 @@ static void seek(struct application *application)
 
     const float on = rotor - homing->free;
     const float led = reference - homing->led_from;
+    const bool came = is_counted(application) ||
+                      homing->furthest - homing->from > follows_share * under_way_steps;
     const bool stands = homing->ms == GROWS_ms && torque_Nm > stop_Nm && led > led_steps &&
                         on < follows_share * led;
 
     if (reference * axis_homing_full_step_rad(application) > travel_rad) {
         axis_homing_give_up(application);
-    } else if (on > yield_steps || is_lost(application) || (stands && homing->doubtful)) {
+    } else if (on > yield_steps || is_lost(application) ||
+               (stands && (homing->doubtful || !came))) {
         fail(application);
     } else if (stands) {
         touch(application);
@@ -217,6 +220,16 @@ static void approach(struct application *application)
                    objects->homing_acceleration);
 }
 
+/* Between here and where the axis began the nearest place of a full step of the motor, at which the
+   detent torque is nil: a light rotor that starts beside it is not where the hold takes it to be,
+   and the next detent stops it. */
+static float at_full_step(struct application *application, float steps)
+{
+    const float zero = steps_to(application, cia402_signals(application)->motor_zero_rad);
+
+    return zero + (float)(int32_t)(steps - zero);
+}
+
 /* The rotor rests at the stop. Each approach begins elsewhere: what it finds is not of where it
    began. */
 static void back_off(struct application *application)
@@ -225,9 +238,10 @@ static void back_off(struct application *application)
     const float here = steps_to(application, cia402_signals(application)->theta_ref_rad);
     const bool further = ((homing->failures + homing->touches) & 1u) != 0u;
 
-    creep_to(application, homing->touches == TOUCHES ? homing->place - leave_steps
-                          : further                  ? here - further_back_steps
-                                                     : here - back_steps);
+    creep_to(application,
+             homing->touches == TOUCHES
+                 ? homing->place - leave_steps
+                 : at_full_step(application, here - (further ? further_back_steps : back_steps)));
 }
 
 /* The rotor rests where the next approach begins, or where it has left the stop. */
@@ -253,12 +267,16 @@ void axis_homing_stop_look(struct application *application)
     } else if (!axis_homing_has_rested(application, RESTS_ms)) {
         return;
     } else if (phase == HOMING_CATCHES) {
-        back_off(application);
+        if (homing_of(application)->failures > FAILURES) { /* nor can it be led back */
+            axis_homing_give_up(application);
+        } else {
+            back_off(application);
+        }
     } else if (phase == HOMING_SETTLES) {
         settle(application);
     } else if (is_lost(application)) {
         fail(application);
     } else {
-        catch_rotor(application, HOMING_SETTLES);
+        axis_homing_enter(application, HOMING_SETTLES);
     }
 }

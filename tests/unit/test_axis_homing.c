@@ -311,8 +311,12 @@ static void test_a_stop_within_an_electrical_turn_is_none(void)
     bear(1.0, 1.2);
     look(1900);
     TEST_ASSERT_EQUAL(HOMING_SEEKS_STOP, homing()->phase);
-    look(400);
-    TEST_ASSERT_EQUAL(1, homing()->touches);
+    for (int i = 0; i < 400 && homing()->phase == HOMING_SEEKS_STOP; i++) {
+        look(1);
+    }
+    TEST_ASSERT_EQUAL(HOMING_CATCHES, homing()->phase); /* it has not come from anywhere */
+    TEST_ASSERT_EQUAL(0, homing()->touches);
+    TEST_ASSERT_EQUAL(1, homing()->failures);
 }
 
 /* Under three quarters of the torque and more. */
@@ -430,7 +434,7 @@ static void test_a_stop_that_is_elsewhere_the_second_time_is_sought_again(void)
     const float last = homing()->place;
 
     strike_until(1.0, stop_rad, HOMING_SEEKS_STOP);
-    strike_until(1.0, stop_rad - 0.2 * full_step_rad(), HOMING_CATCHES);
+    strike_until(1.0, stop_rad - 0.25 * full_step_rad(), HOMING_CATCHES);
     TEST_ASSERT_EQUAL(2, homing()->touches);
     TEST_ASSERT_TRUE(homing()->furthest > last + 0.02f);
     TEST_ASSERT_FLOAT_WITHIN(1e-3f, 0.5f * (last + homing()->furthest), homing()->place);
@@ -512,13 +516,58 @@ static void test_a_rotor_that_is_lost_as_it_leaves_the_stop_comes_again(void)
     strike_until(1.0, stop_rad, HOMING_BACKS_OFF);
     lose(DRIVE_SYNCHRONISM_LOST);
     strike_until(1.0, stop_rad, HOMING_CATCHES);
-    TEST_ASSERT_EQUAL(0, homing()->touches);
+    TEST_ASSERT_EQUAL(1, homing()->touches);
     strike_until(1.0, stop_rad, HOMING_SEEKS_STOP);
     strike_until(1.0, stop_rad, HOMING_CATCHES);
-    strike_until(1.0, stop_rad, HOMING_SEEKS_STOP);
     strike_until(1.0, stop_rad, HOMING_ENDED);
     look(2);
     TEST_ASSERT_EQUAL_HEX32(REACHED | ATTAINED, status());
+}
+
+static void test_what_one_approach_has_found_outlasts_one_that_fails(void)
+{
+    const double stop_rad = 10.0 * full_step_rad();
+
+    begin(-2);
+    strike_until(1.0, stop_rad, HOMING_CATCHES);
+    strike_until(1.0, stop_rad, HOMING_SEEKS_STOP);
+    lose(DRIVE_SYNCHRONISM_LOST);
+    strike_until(1.0, stop_rad, HOMING_CATCHES);
+    TEST_ASSERT_EQUAL(1, homing()->failures);
+    strike_until(1.0, stop_rad, HOMING_SEEKS_STOP);
+    strike_until(1.0, stop_rad, HOMING_BACKS_OFF);
+    TEST_ASSERT_EQUAL(2, homing()->touches);
+    TEST_ASSERT_EQUAL(1, homing()->failures);
+}
+
+/* Where the detent torque is nil, of the motor and not of the axis. */
+static void test_it_comes_again_from_a_full_step(void)
+{
+    const double stop_rad = 10.4 * full_step_rad();
+
+    begin(-2);
+    strike_until(1.0, stop_rad, HOMING_CATCHES);
+    strike_until(1.0, stop_rad, HOMING_SEEKS_STOP);
+
+    const double begins_rad = homing()->began_rad + (double)homing()->from * full_step_rad();
+    const double away = (begins_rad - zero_rad()) / full_step_rad();
+
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, round(away), away);
+    TEST_ASSERT_TRUE(away < 4.0);
+}
+
+/* Nor is it to be led back: it does not go on for ever. */
+static void test_a_rotor_that_is_lost_all_the_time_ends_it(void)
+{
+    begin(-2);
+    follow(50);
+    for (int i = 0; i < 20000 && homing()->phase != HOMING_ENDED; i++) {
+        lose(DRIVE_SYNCHRONISM_LOST);
+        follow(1);
+    }
+    TEST_ASSERT_EQUAL(9, homing()->failures);
+    look(10);
+    TEST_ASSERT_EQUAL_HEX32(REACHED | FAILED, status());
 }
 
 static void test_what_cannot_be_is_refused(void)
@@ -766,6 +815,9 @@ int main(void)
     RUN_TEST(test_a_law_that_follows_nothing_refuses_it);
     RUN_TEST(test_an_observer_of_counts_alone_refuses_it);
     RUN_TEST(test_a_rotor_that_is_lost_as_it_leaves_the_stop_comes_again);
+    RUN_TEST(test_what_one_approach_has_found_outlasts_one_that_fails);
+    RUN_TEST(test_it_comes_again_from_a_full_step);
+    RUN_TEST(test_a_rotor_that_is_lost_all_the_time_ends_it);
     RUN_TEST(test_what_cannot_be_is_refused);
     RUN_TEST(test_the_index_is_where_the_offset_says_from_below_and_above);
     RUN_TEST(test_the_index_of_an_axis_that_is_turned_round);
