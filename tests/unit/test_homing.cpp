@@ -14,14 +14,14 @@ const char *const encoder = "drive.feedback = \"encoder\"\nplant.encoder_counts_
 
 void test_without_a_load_without_an_encoder()
 {
-    expect_homed({"", "float", "", -1, 0.0, 100.0, 65536}, {53, 14});
-    expect_homed({"", "fixed", "", -2, 0.0, 100.0, 65536}, {53, 14});
+    expect_homed({"", "float", "", -1, 0.0, 100.0, 65536}, {53, 11});
+    expect_homed({"", "fixed", "", -2, 0.0, 100.0, 65536}, {53, 11});
 }
 
 void test_against_a_quarter_of_the_rated_load_without_an_encoder()
 {
-    expect_homed({"", "fixed", "", -1, 0.25, 100.0, 65536}, {55, 14});
-    expect_homed({"", "float", "", -2, 0.25, 100.0, 65536}, {54, 14});
+    expect_homed({"", "fixed", "", -1, 0.25, 100.0, 65536}, {55, 13});
+    expect_homed({"", "float", "", -2, 0.25, 100.0, 65536}, {54, 13});
 }
 
 void test_with_an_encoder()

@@ -11,14 +11,14 @@ using namespace homing;
 
 void test_without_a_load()
 {
-    expect_homed({"", "float", "", -1, 0.0, 100.0, 65536, 20.0, 0.02}, {56, 14});
-    expect_homed({"", "fixed", "", -2, 0.0, 100.0, 65536, 20.0, 0.08}, {56, 14});
+    expect_homed({"", "float", "", -1, 0.0, 100.0, 65536, 20.0, 0.02}, {56, 13});
+    expect_homed({"", "fixed", "", -2, 0.0, 100.0, 65536, 20.0, 0.08}, {56, 13});
 }
 
 void test_against_a_quarter_of_the_rated_load()
 {
-    expect_homed({"", "fixed", "", -1, 0.25, 100.0, 65536, 20.0, 0.02}, {56, 14});
-    expect_homed({"", "float", "", -2, 0.25, 100.0, 65536, 20.0, 0.08}, {56, 14});
+    expect_homed({"", "fixed", "", -1, 0.25, 100.0, 65536, 20.0, 0.02}, {56, 13});
+    expect_homed({"", "float", "", -2, 0.25, 100.0, 65536, 20.0, 0.08}, {56, 13});
 }
 
 } // namespace
