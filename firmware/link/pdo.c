@@ -151,15 +151,16 @@ bool pdo_may_have(uint32_t id)
            (id <= 0x580u || id > 0x5ffu) && (id <= 0x600u || id > 0x67fu);
 }
 
-/* No PDO is sent when it is asked for by a remote frame. */
-static bool may_become(const struct pdo *pdo, bool sent, uint32_t cob_id)
+/* Masters that know of no remote frames leave their bit at 0: it means nothing here. */
+static bool may_become(const struct pdo *pdo, uint32_t cob_id)
 {
+    const uint32_t id = cob_id & ~NO_REMOTE;
+
     if ((cob_id & EXTENDED) != 0u) {
         return false;
     }
-    return (cob_id & PDO_INVALID) != 0u || cob_id == pdo->cob_id ||
-           (!exists(pdo) && (!sent || (cob_id & NO_REMOTE) != 0u) &&
-            pdo_may_have(cob_id & ~NO_REMOTE));
+    return (cob_id & PDO_INVALID) != 0u || id == (pdo->cob_id & ~NO_REMOTE) ||
+           (!exists(pdo) && pdo_may_have(id));
 }
 
 /* Of one that is received: the last was shorter than what is mapped. */
@@ -183,7 +184,7 @@ enum object_abort pdo_obey(struct application *application, const struct object 
     }
     switch (object->sub) {
     case 1:
-        if (!may_become(pdo, sent, number)) {
+        if (!may_become(pdo, number)) {
             return OBJECT_OUT_OF_RANGE;
         }
         pdo->cob_id = number;

@@ -273,7 +273,7 @@ Dummy0007=0
 [Comments]
 Lines=2
 Line1=firmware/link/README.md says how to connect.
-Line2=Remote frames are not answered: a valid COB-ID of a TPDO has bit 30.
+Line2=Remote frames are not answered, whatever bit 30 of a COB-ID says.
 )";
 
 /* Of elements of one type: ARRAY; else RECORD. */

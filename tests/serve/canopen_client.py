@@ -99,7 +99,6 @@ def pdos_are_configured(node):
     CHECKS.that(node.tpdo[1].cob_id == 0x181 and node.rpdo[1].cob_id == 0x201, "PDOs are read")
     CHECKS.that(refused(node.sdo[0x1800][1], 0x40000182, 0x06090030), "a PDO that exists keeps its identifier")
     CHECKS.that(refused(node.sdo[0x1A00][0], 0, 0x08000022), "and its mapping")
-    CHECKS.that(refused(node.sdo[0x1801][1], 0x281, 0x06090030), "remote frames are not answered")
     node.tpdo[4].clear()
     node.tpdo[4].add_variable(0x2301)
     node.tpdo[4].event_timer = 20

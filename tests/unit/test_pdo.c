@@ -162,13 +162,14 @@ static void test_while_a_pdo_exists_its_identifier_inhibit_time_and_mapping_stay
     TEST_ASSERT_EQUAL_HEX32(0x0221, link_bench_get(0x6041, 0));
 }
 
-/* A remote frame is not answered: what would be asked for by one is refused. */
-static void test_what_is_sent_is_not_asked_for_by_a_remote_frame(void)
+/* Many a master writes the identifier alone. */
+static void test_the_bit_of_remote_frames_may_be_left_out(void)
 {
+    put_cob_id(TPDO, 0x181u); /* as it is, but for that */
+    TEST_ASSERT_EQUAL_HEX32(OBJECT_OUT_OF_RANGE, link_bench_put(TPDO, 1, 4, 0x182));
     put_cob_id(TPDO, 0x181u | off);
-    TEST_ASSERT_EQUAL_HEX32(OBJECT_OUT_OF_RANGE, link_bench_put(TPDO, 1, 4, 0x181));
-    put_cob_id(TPDO, 0x181u | no_remote);
-    put_cob_id(RPDO + 1, 0x301);
+    put_cob_id(TPDO, 0x182u);
+    TEST_ASSERT_EQUAL_HEX32(0x182u, link_bench_get(TPDO, 1));
 }
 
 static void test_transmission_types_between_240_and_254_mean_nothing(void)
@@ -394,7 +395,7 @@ int main(void)
     RUN_TEST(test_there_are_four_each_way_of_eight_objects);
     RUN_TEST(test_identifiers_have_eleven_bits);
     RUN_TEST(test_while_a_pdo_exists_its_identifier_inhibit_time_and_mapping_stay);
-    RUN_TEST(test_what_is_sent_is_not_asked_for_by_a_remote_frame);
+    RUN_TEST(test_the_bit_of_remote_frames_may_be_left_out);
     RUN_TEST(test_transmission_types_between_240_and_254_mean_nothing);
     RUN_TEST(test_eight_bytes_are_mapped_and_not_a_bit_more);
     RUN_TEST(test_what_is_received_may_be_written_and_what_is_sent_be_read);
