@@ -166,7 +166,7 @@ static bool may_become(const struct pdo *pdo, uint32_t cob_id)
 /* Of one that is received: the last was shorter than what is mapped. */
 static unsigned shortness(const struct link *link, const struct pdo *pdo)
 {
-    return LINK_ERROR_OF_PDO << (pdo - link->pdos.received);
+    return (unsigned)LINK_ERROR_OF_PDO << (unsigned)(pdo - link->pdos.received);
 }
 
 enum object_abort pdo_obey(struct application *application, const struct object *object,

@@ -1328,7 +1328,7 @@ MUTANTS = [
     Mutant(LINK + "pdo.c", "canopen", "pdos_wait_for_sync",
            "pdo->waits = pdo->type < PDO_EVENT;", "pdo->waits = false;"),
     Mutant(LINK + "link.c", "cia402", "a_lost_heartbeat_stops_and_switches_off",
-           "HEARTBEAT_LOST, 0);\n    cia402_lose(application);", "HEARTBEAT_LOST, 0);"),
+           "error, code);\n    cia402_lose(application);", "error, code);"),
     Mutant(LINK + "cia402.c", "cia402", "a_fault_stays_until_it_is_reset",
            "(risen & RESET_FAULT) != 0u && ", ""),
     Mutant(LINK + "axis_motion.c", "cia402", "a_set_point_is_acknowledged_and_reached",
