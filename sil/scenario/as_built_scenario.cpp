@@ -1,5 +1,6 @@
 #include "sil/scenario/as_built_scenario.h"
 
+#include "sil/scenario/displaced_rotor.h"
 #include "sil/scenario/random_scenario.h"
 #include "sil/scenario/text.h"
 
@@ -259,7 +260,6 @@ Drawn written(std::uint64_t seed, const Tolerances &tolerances, const CampaignMo
     return {text.finish(), "", ""};
 }
 
-constexpr double rated_torque_Nm = 0.471; /* of the reference motor */
 const double flux_per_K = plant::ImperfectionConfig().magnet_flux_per_K;
 constexpr double borne = 0.9; /* of the plant's Km x the rated current */
 constexpr double settled_s = 0.2, stays_s = 0.3;
@@ -300,7 +300,7 @@ Drawn draw_as_built_load(std::uint64_t seed, double, const CampaignMotor &motor)
     const double rise_K = rounded(tolerances.warmth * motor.spread * most_rise_K, 10);
     const double share = as_built_load_is_borne(seed) ? borne : loads.between(1.05, 2, 100);
     const double torque_Nm =
-        rounded(loads.either_sign(share) * (1 + flux_per_K * rise_K) * rated_torque_Nm, 1e5);
+        rounded(loads.either_sign(share) * (1 + flux_per_K * rise_K) * reference_torque_Nm, 1e5);
     const double rate_Nm_s = loads.over_octaves(slowest_Nm_s, fastest_Nm_s);
     const double ramp_s =
         rounded((torque_Nm < 0 ? -torque_Nm : torque_Nm) / rate_Nm_s, period_parts);

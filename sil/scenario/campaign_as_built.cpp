@@ -7,10 +7,10 @@
  */
 #include "sil/scenario/campaign.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "sil/scenario/as_built_scenario.h"
+#include "sil/scenario/displaced_rotor.h"
 
 namespace scenario
 {
@@ -66,49 +66,44 @@ std::vector<CampaignFigure> figures()
             {"start_under_load_deg", false}};
 }
 
-/* Up to the fault, if one comes. */
 class AsBuiltLoad : public CampaignWatch
 {
   public:
-    explicit AsBuiltLoad(const Scenario &scenario)
-        : degrees_(scenario.motor.params.rotor_teeth * 180 / pi)
+    explicit AsBuiltLoad(const Scenario &scenario) : rotor_(scenario)
     {
     }
 
     void read(const Record &record, const Row &row) override
     {
-        if (record.rows() < record.time_zero_row() || fault_.came()) {
-            return;
-        }
-        const double off_deg = std::fabs(row[THETA] - row[THETA_REF]) * degrees_;
-        fault_.note(record, row[DRIVE_STATE] == double(DRIVE_FAULT));
-        passed_.note(record, !fault_.came() && off_deg > 180);
-        largest_deg_ = std::max(largest_deg_, off_deg);
-        last_s_ = record.time_s(record.rows());
+        (void)rotor_.read(record, row);
     }
 
     CampaignOutcome judge(const Result &result) const override
     {
         const bool borne = as_built_load_is_borne(result.seed);
-        const double delay_s = (fault_.came() ? fault_.time_s : last_s_) - passed_.time_s;
         CampaignOutcome outcome;
-        outcome.verdict = borne && fault_.came()               ? "fault " + result.all.metrics.fault
-                          : passed_.came() && borne            ? "slipped"
-                          : passed_.came() && delay_s > most_s ? "late"
-                                                               : "held";
         outcome.figures.assign(3, Metrics::none);
-        outcome.figures[0] = !borne && passed_.came() ? 1 : 0;
-        outcome.figures[1] =
-            !borne && passed_.came() && fault_.came() ? 1e3 * delay_s : Metrics::none;
-        outcome.figures[2] = borne ? largest_deg_ : Metrics::none;
+        if (rotor_.shows_nothing(result)) {
+            outcome.verdict = "failed";
+            return outcome;
+        }
+        if (borne) {
+            outcome.verdict = rotor_.faulted()  ? "fault " + result.all.metrics.fault
+                              : rotor_.passed() ? "slipped"
+                                                : "held";
+            outcome.figures[2] = rotor_.largest_deg();
+        } else {
+            outcome.verdict = rotor_.delay_s() > most_s ? "late" : "held";
+            outcome.figures[0] = rotor_.passed() ? 1 : 0;
+            outcome.figures[1] = rotor_.reported_ms();
+        }
         return outcome;
     }
 
   private:
     static constexpr double most_s = 0.1;
 
-    double degrees_, largest_deg_ = 0, last_s_ = 0;
-    First fault_, passed_; /* half an electrical turn */
+    DisplacedRotor rotor_;
 };
 
 std::unique_ptr<CampaignWatch> watch_as_built_load(const Scenario &scenario)

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sil/scenario/displaced_rotor.h"
 #include "sil/scenario/random_scenario.h"
 #include "sil/scenario/text.h"
 
@@ -19,9 +20,7 @@ namespace scenario
 namespace
 {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double period_parts = 1e4;           /* times in whole control periods */
-constexpr double rated_torque_Nm = 0.471;      /* of the reference motor */
 constexpr double borne = 0.8, vibration = 0.1; /* of the rated torque */
 /* Of the run: when the load begins, the longest it takes to grow, how long it then stays. */
 constexpr double begin = 0.04, longest_ramp = 0.5, stay = 0.1;
@@ -58,7 +57,7 @@ double write_plant(ScenarioText &text, Draw &draw, const RatingScales &ratings)
 std::string torque_of(const char *key, double share, double km, const RatingScales &ratings)
 {
     return std::string(key) + " = " +
-           shortest(times(rounded(share * km * rated_torque_Nm, 1e5), ratings.torque));
+           shortest(times(rounded(share * km * reference_torque_Nm, 1e5), ratings.torque));
 }
 
 void write_ramp(ScenarioText &text, double time_s, const std::string &torque, double ramp_s)
@@ -145,69 +144,59 @@ Drawn draw_load(std::uint64_t seed, double duration_s, const CampaignMotor &moto
     return {text.finish(), "", ""};
 }
 
-/* Up to the fault, if one comes. */
 class LoadWatch : public CampaignWatch
 {
   public:
-    explicit LoadWatch(const Scenario &scenario)
-        : degrees_(scenario.motor.params.rotor_teeth * 180 / pi)
+    explicit LoadWatch(const Scenario &scenario) : rotor_(scenario)
     {
     }
 
     void read(const Record &record, const Row &row) override
     {
-        if (record.rows() < record.time_zero_row() || fault_.came()) {
+        if (!rotor_.read(record, row)) {
             return;
         }
-        last_s_ = record.time_s(record.rows());
-        const double off_deg = std::fabs(row[THETA] - row[THETA_REF]) * degrees_;
         const double load_Nm = std::fabs(row[LOAD_TORQUE]);
         falls_ = load_Nm < largest_Nm_;
         largest_Nm_ = std::max(largest_Nm_, load_Nm);
-        largest_deg_ = std::max(largest_deg_, off_deg);
-        const bool fault = row[DRIVE_STATE] == double(DRIVE_FAULT);
-        fault_.note(record, fault);
-        passed_.note(record, !fault && off_deg > 180);
         lost_ = static_cast<drive_synchronism>(row[SYNCHRONISM]) == DRIVE_SYNCHRONISM_LOST;
     }
 
     CampaignOutcome judge(const Result &result) const override
     {
         const Kind kind = kind_of(result.seed);
-        const bool faulted = fault_.came(), passed = passed_.came();
-        const double delay_s = passed ? (faulted ? fault_.time_s : last_s_) - passed_.time_s : 0;
         CampaignOutcome outcome;
         outcome.figures.assign(figures + kinds, Metrics::none);
-        if (!result.not_as_described().empty() && !faulted) {
+        if (rotor_.shows_nothing(result)) {
             outcome.verdict = "failed";
             return outcome;
         }
         if (kind == Kind::overload) {
-            outcome.verdict = delay_s > latest_s           ? "late"
-                              : lost_ && largest_deg_ < 45 ? "false alarm"
-                                                           : "held";
-            outcome.figures[0] = passed ? 1 : 0;
-            outcome.figures[1] = passed && faulted ? delay_s * 1e3 : Metrics::none;
+            outcome.verdict = rotor_.delay_s() > latest_s          ? "late"
+                              : lost_ && rotor_.largest_deg() < 45 ? "false alarm"
+                                                                   : "held";
+            outcome.figures[0] = rotor_.passed() ? 1 : 0;
+            outcome.figures[1] = rotor_.reported_ms();
         } else {
             static const char *const names[kinds] = {"growing load", "", "vibration at rest",
                                                      "vibration in motion"};
             const std::string name =
                 kind == Kind::growing && falls_ ? "release" : names[static_cast<std::size_t>(kind)];
-            outcome.verdict = faulted ? name + ": fault" : passed ? name + ": slipped" : "held";
+            outcome.verdict = rotor_.faulted()  ? name + ": fault"
+                              : rotor_.passed() ? name + ": slipped"
+                                                : "held";
         }
-        outcome.figures[figures + static_cast<std::size_t>(kind)] = largest_deg_;
+        outcome.figures[figures + static_cast<std::size_t>(kind)] = rotor_.largest_deg();
         return outcome;
     }
 
   private:
     static constexpr std::size_t figures = 2; /* before those of each kind */
 
-    double degrees_, largest_deg_ = 0;
+    DisplacedRotor rotor_;
     double largest_Nm_ = 0;
-    bool falls_ = false;   /* the load, by the fault */
-    bool lost_ = false;    /* the fault says so of the estimate */
-    First fault_, passed_; /* half an electrical turn */
-    double last_s_ = 0;
+    bool falls_ = false; /* the load, by the fault */
+    bool lost_ = false;  /* the fault says so of the estimate */
 };
 
 std::unique_ptr<CampaignWatch> watch_load(const Scenario &scenario)
