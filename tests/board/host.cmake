@@ -10,6 +10,6 @@ endfunction()
 
 add_image_run(stm32g474_disturbances
   stm32g474_disturbances.cpp stm32g474_starts.cpp stm32g474_lines.cpp stm32g474_storage.cpp
-  stm32g474_settings.cpp stm32g474_can.cpp)
+  stm32g474_settings.cpp stm32g474_can.cpp stm32g474_floods.cpp)
 add_image_run(stm32g071_run stm32g071_run.cpp)
 add_image_run(stm32g071_disturbances stm32g071_disturbances.cpp)

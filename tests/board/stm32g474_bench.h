@@ -209,11 +209,15 @@ void position_outlives_disable(Expectations &expectations, const std::string &im
 
 /* stm32g474_can.cpp */
 void can_registers(Expectations &expectations, const std::string &image);
-void can_flood(Expectations &expectations, const std::string &image);
-void can_flood_of_a_million(Expectations &expectations, const std::string &image);
 void can_bus_off(Expectations &expectations, const std::string &image);
 void can_without_another_node(Expectations &expectations, const std::string &image);
 void can_overrun(Expectations &expectations, const std::string &image);
+
+/* stm32g474_floods.cpp */
+void can_flood(Expectations &expectations, const std::string &image);
+void can_flood_of_a_million(Expectations &expectations, const std::string &image);
+void line_flood(Expectations &expectations, const std::string &image);
+void line_flood_of_a_million(Expectations &expectations, const std::string &image);
 
 } // namespace stm32g474_bench
 

@@ -1,8 +1,6 @@
-/* The CAN bus of the STM32G474 image: what it writes to FDCAN3, a flood, errors up to bus-off. */
+/* The CAN bus of the STM32G474 image: what it writes to FDCAN3, errors up to bus-off. */
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <random>
 
 #include "tests/board/stm32g474_bench.h"
 
@@ -15,8 +13,6 @@ namespace
 constexpr std::uint32_t FDCAN_NBTP = 0x1c, FDCAN_RXGFC = 0x80;
 constexpr std::uint16_t boot_up = 0x701, emergency = 0x081, request = 0x601, response = 0x581;
 constexpr double kernel_Hz = 170e6;
-constexpr std::size_t most_at_once = 50'000; /* of a run: its translated code takes 9 KB a frame */
-constexpr std::size_t in_reserve = 200; /* frames that wait for the bus, so that it is never idle */
 
 std::string text(const can_frame &frame)
 {
@@ -72,113 +68,6 @@ double speed(Powered &run)
     return run.device.power_stage().plant().state().omega_rad_s;
 }
 
-/* Of no use to the node, or a question: nothing that would change what the drive does. */
-can_frame rubbish(std::mt19937 &draw)
-{
-    const auto any = [&draw](unsigned count) { return draw() % count; };
-    can_frame frame = {
-        static_cast<std::uint16_t>(any(0x800)), static_cast<std::uint8_t>(any(9)), {}};
-    for (std::uint8_t &byte : frame.data) {
-        byte = static_cast<std::uint8_t>(any(256));
-    }
-    switch (any(6)) {
-    case 0:
-        frame.id = request;
-        frame.length = 8;
-        frame.data[0] = 0x40; /* reads some object */
-        break;
-    case 1:
-        frame.id = request;
-        frame.length = static_cast<std::uint8_t>(any(8));
-        break;
-    case 2:
-        frame.id = 0; /* network management, of any length but its own */
-        break;
-    case 3:
-        frame.id = 0x080;
-        break;
-    default:
-        break;
-    }
-    if (frame.id == 0 && frame.length == 2) {
-        frame.length = 0;
-    }
-    if (frame.id == request && frame.length == 8) {
-        frame.data[0] = 0x40;
-    }
-    return frame;
-}
-
-struct Latencies {
-    std::uint64_t latency, cycles;
-};
-
-/* Of the control interrupts of so many frames' time: without frames, if `flooded` is false. */
-Latencies flood(Expectations &expectations, const std::string &image, std::size_t frames,
-                unsigned seed, Ticks &time, bool flooded)
-{
-    std::mt19937 draw(seed);
-    Powered run(image);
-    (void)run.start();
-    expectations.expect(run.enable(), "the drive holds the motor");
-    (void)heard(run);
-    const Ticks begin = run.machine.now();
-    std::size_t sent = 0;
-    while (flooded ? sent < frames : run.machine.now() < begin + time) {
-        for (; flooded && sent < frames && run.device.can().waiting() < in_reserve; sent++) {
-            (void)run.device.can().send(rubbish(draw));
-        }
-        run.run_for(5 * ms);
-        (void)run.device.can().take_output();
-        (void)run.output();
-    }
-    time = run.machine.now() - begin;
-    if (flooded) {
-        const Fdcan::Counters &counters = run.device.can().counters;
-        const double busy_s = static_cast<double>(time) / static_cast<double>(ticks_per_s);
-        std::printf("  %zu frames in %.1f s: %llu received, %llu filtered, %llu answers\n", frames,
-                    busy_s, static_cast<unsigned long long>(counters.received),
-                    static_cast<unsigned long long>(counters.filtered),
-                    static_cast<unsigned long long>(counters.sent));
-        expectations.expect(counters.filtered > frames / 5 && counters.received > frames / 5,
-                            "the chip drops what is not for the node, and receives what is");
-        expectations.expect(counters.sent > frames / 10 && counters.lost == 0,
-                            "the node answers, and the chip loses none");
-        (void)run.type("\n", 30 * ms);
-    }
-    expectations.expect(run.type("state\n", 60 * ms).find("ok operation-enabled") !=
-                            std::string::npos,
-                        "the drive is in operation");
-    expectations.expect(run.machine.resets().empty(), "no reset");
-    const InterruptAccount::Summary summary = run.machine.account().summary();
-    return {summary.latency.worst, summary.total.worst.worst};
-}
-
-void compare_floods(Expectations &expectations, const std::string &image, std::size_t frames)
-{
-    Ticks time = 0;
-    Latencies with = {0, 0};
-    for (unsigned piece = 0; piece * most_at_once < frames; piece++) {
-        const Latencies more =
-            flood(expectations, image, std::min(frames, most_at_once), piece + 1, time, true);
-        with = {std::max(with.latency, more.latency), std::max(with.cycles, more.cycles)};
-    }
-    time = std::min(time, 2000 * ms); /* a longer one would not be worse */
-    const Latencies without = flood(expectations, image, frames, 0, time, false);
-    std::printf(
-        "  first instruction %llu cycles behind S(k) at most, %llu without; end %llu, %llu\n",
-        static_cast<unsigned long long>(with.latency),
-        static_cast<unsigned long long>(without.latency),
-        static_cast<unsigned long long>(with.cycles),
-        static_cast<unsigned long long>(without.cycles));
-    /* An exception that is entered as the peak comes, which the virtual board nests and the chip
-       spares (sil/virtual_board/README.md, late arrival), and an instruction of the background. */
-    constexpr std::uint64_t entry_cycles = 29, instruction_cycles = 12;
-    expectations.expect(with.latency <= without.latency + entry_cycles + instruction_cycles,
-                        "the control interrupt begins as soon as without a flood");
-    expectations.expect(with.cycles <= without.cycles, "and takes as many cycles as without");
-}
-
 } // namespace
 
 void can_registers(Expectations &expectations, const std::string &image)
@@ -204,16 +93,6 @@ void can_registers(Expectations &expectations, const std::string &image)
                         "what no filter names, remote and extended frames are rejected");
     run.run_for(10 * ms);
     expectations.expect(heard(run) == text({boot_up, 1, {0}}) + '\n', "boot-up, and nothing else");
-}
-
-void can_flood(Expectations &expectations, const std::string &image)
-{
-    compare_floods(expectations, image, 5000);
-}
-
-void can_flood_of_a_million(Expectations &expectations, const std::string &image)
-{
-    compare_floods(expectations, image, 1'000'000);
 }
 
 /* A master commands the drive; then what the node sends is destroyed. */

@@ -188,6 +188,8 @@ const Case cases[] = {
     {"can-registers", can_registers},
     {"can-flood", can_flood},
     {"can-flood-of-a-million", can_flood_of_a_million, true},
+    {"line-flood", line_flood},
+    {"line-flood-of-a-million", line_flood_of_a_million, true},
     {"can-bus-off", can_bus_off},
     {"can-without-another-node", can_without_another_node},
     {"can-overrun", can_overrun},
