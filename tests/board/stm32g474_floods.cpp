@@ -116,7 +116,7 @@ class CanBus final : public Bus
     }
 };
 
-/* Frames as text, on the serial line. */
+/* Frames as text, on the serial line. Some end in LF, which interrupts. */
 class SerialLine final : public Bus
 {
   public:
@@ -127,7 +127,7 @@ class SerialLine final : public Bus
     }
     void send(Powered &run, Draw &draw) override
     {
-        const std::string line = rubbish(draw) + '\r';
+        const std::string line = rubbish(draw) + (draw.below(8) > 0 ? '\r' : '\n');
         sent_ += line.size();
         run.device.serial_line().send(run.machine.now(), line);
     }
