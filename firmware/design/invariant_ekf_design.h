@@ -58,6 +58,7 @@ struct invariant_ekf_hold_gains {
     uint32_t following_periods;           /* how long a load step is followed */
     uint32_t rest_periods;                /* behind that, in which none is */
     uint32_t swing_periods;               /* in which a rotor swings into place */
+    double feigned_share;                 /* of a change of the load: what that may feign more */
     double load_step_Nm;                  /* change that ends the settled hold */
 };
 

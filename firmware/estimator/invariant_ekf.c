@@ -65,6 +65,7 @@ struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params 
         .rest_periods = hold->rest_periods,
         .swing_periods = hold->swing_periods,
         .load_step = num_from_double(hold->load_step_Nm / base->torque_Nm),
+        .feigned_share = coef_from_double(hold->feigned_share),
         .bias_settle = coef_small_from_double(SHARE_PER_BLOCK(BIAS_SETTLE_TIME_S)),
         .usual_memory = coef_from_double(SHARE_PER_BLOCK(USUAL_CHANGE_TIME_S)),
     };
@@ -88,6 +89,8 @@ void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_p
     ekf->swing_end =
         unloaded_periods > params->swing_periods ? unloaded_periods - params->swing_periods : 0u;
     ekf->settled_load = NUM(0.0);
+    ekf->offset_load = NUM(0.0);
+    ekf->feigned = NUM(0.0);
     ekf->settled_bias = ekf->bias;
     ekf->following_periods = 0u;
 }
@@ -96,6 +99,8 @@ void invariant_ekf_settle(struct invariant_ekf *ekf, const struct invariant_ekf_
 {
     invariant_ekf_carry_sum(ekf); /* that of motion */
     ekf->settled_load = ekf->estimate.rotor.load_torque;
+    ekf->offset_load = ekf->settled_load;
+    ekf->feigned = NUM(0.0);
     ekf->settled_bias = ekf->bias;
     ekf->following_periods = 0u;
     ekf->usual_change = params->load_step;
@@ -136,6 +141,8 @@ static void settle_bias(struct invariant_ekf *ekf, const struct invariant_ekf_pa
 
         settled->a += num_mul_small_nearest(ekf->bias.a - settled->a, params->bias_settle);
         settled->b += num_mul_small_nearest(ekf->bias.b - settled->b, params->bias_settle);
+        ekf->offset_load +=
+            num_mul_small_nearest(ekf->settled_load - ekf->offset_load, params->bias_settle);
     }
 }
 
@@ -146,6 +153,7 @@ void invariant_ekf_watch_hold(struct invariant_ekf *ekf, const struct invariant_
     const num_t change = num_abs(away);
 
     settle_bias(ekf, params);
+    ekf->feigned = num_mul_coef(ekf->settled_load - ekf->offset_load, params->feigned_share);
     if (ekf->following_periods <= params->rest_periods) {
         ekf->usual_change +=
             num_mul_coef(change + change + change - ekf->usual_change, params->usual_memory);

@@ -27,8 +27,9 @@
  * settled at, and takes what lasts for an offset; unless the difference shows a load step: then
  * what is estimated is the load from there on, and of the offset stays what has lasted: the rest
  * was the motion of a rotor that crept under a slow load. Of small steps one in 10 ms is believed,
- * so that the estimate cannot run away with the current that compensates it. A rotor that is led
- * along a creeping reference passes its detent torque, and a machine may vibrate, which several
+ * and further on to the same side none that an error of the resistance can make of the q current
+ * which compensates the steps so far: so the estimate cannot run away with that. A rotor that is
+ * led along a creeping reference passes its detent torque, and a machine may vibrate, which several
  * steps on end show: there what exceeds three times the mean difference of late is a step.
  *
  * A rotor that a slow load has displaced is not where the estimate has it, and shows that when it
@@ -94,6 +95,7 @@ struct invariant_ekf_params {
     num_t load_step;                         /* what a settled hold takes for a step of the load */
     coef_t bias_settle;                      /* share per block of settled_bias' way to the bias */
     coef_t usual_memory;                     /* share per block of usual_change's way */
+    coef_t feigned_share;                    /* of a change of the load, by what it makes of i_q */
 };
 
 struct invariant_ekf {
@@ -104,6 +106,8 @@ struct invariant_ekf {
     num_t adapted_sum;   /* of those that the resistance has taken, for the synchronism monitor */
     num_t adapted_at;    /* i_d when it last did */
     num_t settled_load;  /* torque that a hold returns to */
+    num_t offset_load;   /* torque at whose q current settled_bias was found */
+    num_t feigned;       /* change of the load that the q current since then may feign */
     num_t step_limit;    /* beyond which a change of the load is a step */
     num_t usual_change;  /* three times the mean of the load's change of late */
     uint8_t swings;      /* of the load on end, a reversal twice; up to what vibrates */
@@ -220,6 +224,7 @@ static inline void invariant_ekf_preset_rotor(struct invariant_ekf *ekf, const s
 {
     ekf->estimate.rotor = *rotor;
     ekf->settled_load = rotor->load_torque;
+    ekf->offset_load = ekf->settled_load;
 }
 
 /*

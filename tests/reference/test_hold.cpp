@@ -40,6 +40,7 @@ struct Hold {
     double damping_As_rad;
     double current_bandwidth_rad_s;
     invariant_ekf_gains gains;
+    double feigned_share;
 };
 
 /* i_q, w, theta under voltage, load and offset, over one period: [transition | input]. */
@@ -178,6 +179,7 @@ bool default_hold(const motor_params &motor, double current_A, Hold &hold, Kind 
         return false;
     }
     hold.gains = gains.*kind;
+    hold.feigned_share = gains.feigned_share;
     return true;
 }
 
@@ -303,6 +305,33 @@ static void what_a_settled_hold_shows_of_a_load_step_is_what_the_whole_loop_does
     TEST_ASSERT_TRUE(least > 0.3 && most < 1);
 }
 
+/* The hold's resistance is 2 % off as a load comes, and its q current. */
+static void what_an_error_of_the_resistance_feigns_is_within_the_share_stated(void)
+{
+    double least = 1;
+    double most = 0;
+    for (std::uint64_t number = 0; number < 100; number++) {
+        Hold hold{};
+        if (!default_hold(drawn_motor(number), NAN, hold, settled_hold)) {
+            continue;
+        }
+        const double load_Nm = 0.1 * hold.motor.torque_constant_Nm_A * hold.current_A;
+        VectorXd x = VectorXd::Zero(STATES + 1);
+        x(OFFSET_EST) =
+            0.02 * hold.motor.resistance_ohm * load_Nm / hold.motor.torque_constant_Nm_A;
+        double feigned_Nm = 0;
+        for (int k = 0; k < 30 / (hold_frequency(&hold.motor, hold.current_A) * period_s); k++) {
+            x = period(hold, x);
+            feigned_Nm = std::max(feigned_Nm, std::fabs(x(LOAD_EST)));
+        }
+        const double share = feigned_Nm / load_Nm / hold.feigned_share;
+        least = std::min(least, share);
+        most = std::max(most, share);
+    }
+    TEST_MESSAGE((std::to_string(least) + " to " + std::to_string(most)).c_str());
+    TEST_ASSERT_TRUE(least > 0.5 && most < 1);
+}
+
 /* Undamped, as it is at first: what damps is slower than the swing. */
 static void a_load_step_of_the_share_stated_is_borne_and_one_beyond_is_not(void)
 {
@@ -372,6 +401,7 @@ int main()
     RUN_TEST(a_load_too_heavy_for_what_the_drop_leaves_of_the_back_emf_is_refused);
     RUN_TEST(a_hold_is_stable_with_a_tenth_less_inductance_and_with_a_tenth_more);
     RUN_TEST(what_a_settled_hold_shows_of_a_load_step_is_what_the_whole_loop_does);
+    RUN_TEST(what_an_error_of_the_resistance_feigns_is_within_the_share_stated);
     RUN_TEST(a_load_step_of_the_share_stated_is_borne_and_one_beyond_is_not);
     return UNITY_END();
 }

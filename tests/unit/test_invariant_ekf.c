@@ -697,6 +697,34 @@ static void test_steps_of_the_load_to_and_fro_are_a_vibration_sooner_than_those_
     TEST_ASSERT_TRUE(ekf.swung_up);
 }
 
+/* The q current that compensates a load, through a resistance that is off. */
+static void
+test_of_a_load_that_has_grown_more_is_a_step_only_beyond_what_its_current_may_feign(void)
+{
+    const double share = coef_to_double(params.feigned_share);
+
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, holding.feigned_share, share);
+    for (int side = -1; side <= 1; side += 2) {
+        start_at(0.0, 0.0);
+        ekf.settled_load = num_from_double(side * 0.25);
+        invariant_ekf_watch_hold(&ekf, &params, false);
+        const double limit = num_to_double(ekf.step_limit);
+        const double more = limit + share * 0.25 * (1.0 - coef_to_double(params.bias_settle));
+
+        TEST_ASSERT_FALSE(invariant_ekf_shows_step(&ekf, num_from_double(side * 0.98 * more)));
+        TEST_ASSERT_TRUE(invariant_ekf_shows_step(&ekf, num_from_double(side * 1.02 * more)));
+        TEST_ASSERT_TRUE(invariant_ekf_shows_step(&ekf, num_from_double(side * -1.02 * limit)));
+        for (int block = 0; block < 1000; block++) {
+            invariant_ekf_watch_hold(&ekf, &params, false);
+        }
+        TEST_ASSERT_TRUE(invariant_ekf_shows_step(&ekf, num_from_double(side * 1.02 * limit)));
+        ekf.estimate.rotor.load_torque = ekf.settled_load;
+        ekf.offset_load = NUM(0.0);
+        invariant_ekf_settle(&ekf, &params);
+        TEST_ASSERT_TRUE(ekf.offset_load == ekf.settled_load && ekf.feigned == NUM(0.0));
+    }
+}
+
 static void test_a_step_of_the_load_brings_the_lasting_offset_back(void)
 {
     ekf.settled_bias = (struct phases){NUM(0.25), NUM(-0.125)};
@@ -788,6 +816,7 @@ int main(void)
     RUN_TEST(test_a_hold_begins_with_the_load_of_the_motion);
     RUN_TEST(test_until_a_hold_has_been_calm_more_is_a_step);
     RUN_TEST(test_steps_of_the_load_to_and_fro_are_a_vibration_sooner_than_those_to_one_side);
+    RUN_TEST(test_of_a_load_that_has_grown_more_is_a_step_only_beyond_what_its_current_may_feign);
     RUN_TEST(test_a_step_of_the_load_brings_the_lasting_offset_back);
     RUN_TEST(test_the_lasting_offset_goes_to_the_offset_by_its_time_constant);
     RUN_TEST(test_a_hold_returns_to_no_more_load_than_its_current_bears);
