@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Holds the runs of the image to the budget of the control interrupt, and to the static bound.
 
-usage: budget.py ROOT IMAGE FOLDER [OPTION]...
+usage: budget.py ROOT BOUND FOLDER [OPTION]...
 
-FOLDER: summaries of same_as_simulator.py. OPTION: of tools/interrupt_budget, to which the runs and
-what tools/longest_path finds in IMAGE are handed; --update-baseline writes baseline.json. Neither
+BOUND: what tools/longest_path --json has written of the image. FOLDER: summaries of
+same_as_simulator.py. OPTION: of tools/interrupt_budget, to which both are handed;
+--update-baseline writes baseline.json. Neither
 the serial line, nor DMA, nor the flash may shift the start of the interrupt by more than 1 us.
 The sensorless default, with the bridge on, is held to what the board, and all of it, may take in the
 mean.
@@ -59,19 +60,10 @@ def exceeded(summary):
 def main():
     if len(sys.argv) < 4:
         sys.exit(__doc__)
-    tools, image, folder = Path(sys.argv[1]) / "tools", sys.argv[2], Path(sys.argv[3])
+    tools, bound, folder = Path(sys.argv[1]) / "tools", sys.argv[2], Path(sys.argv[3])
     runs = [file for file in sorted(folder.glob("*.json")) if file.stem not in HELD_UP]
     if not runs:
         sys.exit(f"{folder}: no summaries; run the tests board.run.* first")
-    bound = folder / "bound" / "longest-path.json"
-    bound.parent.mkdir(exist_ok=True)
-    found = subprocess.run(
-        [tools / "longest_path", "--json", image], capture_output=True, text=True, check=False
-    )
-    if found.returncode:
-        sys.exit(f"longest_path: {found.stdout}{found.stderr}")
-    json.loads(found.stdout)
-    bound.write_text(found.stdout, encoding="utf-8")
     judged = [tools / "interrupt_budget", *runs, "--longest-path", bound, *sys.argv[4:]]
     wrong = [f"{text}, must be at most {JITTER_CYCLES}" for text in shifted(runs)]
     default = next((file for file in runs if file.stem == SENSORLESS), None)

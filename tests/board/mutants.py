@@ -319,6 +319,22 @@ MUTANTS = [
         "homing-on-index",
         "homing is attained",
     ),
+    Mutant(
+        "the end of a line is as urgent as the control interrupt",
+        "device.h",
+        "PRIORITY_LINE = 8,",
+        "PRIORITY_LINE = 1,",
+        "line-flood",
+        "the control interrupt begins as soon as without a flood",
+    ),
+    Mutant(
+        "a frame of the CAN bus is as urgent as the control interrupt",
+        "device.h",
+        "PRIORITY_CAN = 9,",
+        "PRIORITY_CAN = 1,",
+        "can-flood",
+        "the control interrupt begins as soon as without a flood",
+    ),
 ]
 
 

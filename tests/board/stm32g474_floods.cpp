@@ -11,7 +11,7 @@ namespace stm32g474_bench
 namespace
 {
 
-constexpr std::uint16_t request = 0x601;
+constexpr std::uint16_t sdo_request = 0x601;
 constexpr std::uint8_t read_of_an_object = 0x40;
 constexpr std::size_t most_at_once = 50'000; /* of a run: its translated code takes 9 KB a frame */
 constexpr std::size_t in_reserve = 200; /* frames that wait for the bus, so that it is never idle */
@@ -40,7 +40,7 @@ class Bus
     {
         (void)run;
     }
-    /* Hands over one frame, to be sent behind those before it. */
+    /* Queues one frame behind those before it. */
     virtual void send(Powered &run, Draw &draw) = 0;
     virtual std::size_t waiting(Powered &run) const = 0;
     /* Takes what has been answered. */
@@ -90,11 +90,11 @@ class CanBus final : public Bus
         }
         switch (draw.below(6)) {
         case 0:
-            frame.id = request;
+            frame.id = sdo_request;
             frame.length = 8;
             break;
         case 1:
-            frame.id = request;
+            frame.id = sdo_request;
             frame.length = static_cast<std::uint8_t>(draw.below(8));
             break;
         case 2:
@@ -109,7 +109,7 @@ class CanBus final : public Bus
         if (frame.id == 0 && frame.length == 2) {
             frame.length = 0;
         }
-        if (frame.id == request && frame.length == 8) {
+        if (frame.id == sdo_request && frame.length == 8) {
             frame.data[0] = read_of_an_object;
         }
         return frame;

@@ -16,9 +16,10 @@ set(recorders ${STEADYSTEP_NUMERICS})
 list(TRANSFORM recorders PREPEND tests/target/record_input_)
 host_build(host_recorder host_build PROGRAMS record_input BYPRODUCTS ${recorders})
 
-# Whole in the format that the core's board is flashed with. Of the others, which are the same source,
-# tools/test builds the arithmetic that knows the core; all else of them is left to --full. Their replays
-# are there to be asked for by name (tools/cycles, tools/determinism).
+# Of the format that the core's board is flashed with the replays, which run the code of all laws; of
+# the others, which are the same source, they are there to be asked for by name (tools/cycles,
+# tools/determinism). Of the unit tests tools/test runs those of the arithmetic, which knows the core;
+# all else is left to --full.
 if(STEADYSTEP_CORE STREQUAL m4f)
   set(flashed float)
 else()
@@ -95,10 +96,7 @@ foreach(numeric IN LISTS STEADYSTEP_NUMERICS)
     add_test(NAME target.unit.${name}.${numeric} COMMAND ${target})
     set(labels target)
     set(timeout_s 120)
-    # Closed loops, ten seconds to minutes under QEMU: the replays run the code of most.
-    if(name MATCHES "^(axis|axis_homing|axis_motion|axis_stream|drive|encoder_alignment|initial_position|invariant_ekf|motion|offset_calibration|sliding_mode|thermal_watch|torque_constant|torque_mode)$"
-       OR (STEADYSTEP_CORE STREQUAL m4f AND numeric STREQUAL fixed AND name MATCHES "^(${long_tests})$")
-       OR (NOT numeric STREQUAL flashed AND NOT name IN_LIST arithmetic))
+    if(NOT name IN_LIST arithmetic) # some are closed loops, ten seconds to minutes under QEMU
       list(APPEND labels full)
       set(timeout_s 600)
       if(NOT STEADYSTEP_FULL_TESTS)

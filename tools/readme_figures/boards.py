@@ -36,7 +36,7 @@ def run_on_board(sources, scenario):
 
 def longest_paths(sources):
     elf = image(sources, G474)
-    file = sources.built(f"{G474}/tests/board/runs/bound/longest-path.json", G474)
+    file = sources.built(f"{G474}/tests/board/longest-path.json", G474)
     if file.stat().st_mtime < elf.stat().st_mtime:
         raise Missing(f"{file}: older than the image; run the tests of the preset {G474}")
     return next(row for row in json.loads(file.read_text(encoding="utf-8")) if row["case"] == "any")
@@ -135,7 +135,7 @@ def interrupt_picture(sources):
     runs = sources.built(f"{G474}/tests/board/runs", G474)
     drawn = sources.build / "interrupt.png"
     sources.tool("interrupt_budget", *(runs / f"{name}.json" for _, name in BOARD_RUNS),
-                 "--longest-path", runs / "bound/longest-path.json", "--plot", drawn)
+                 "--longest-path", runs.parent / "longest-path.json", "--plot", drawn)
     sources.keep_picture(drawn, "interrupt.png")
     return {}
 
