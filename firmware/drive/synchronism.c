@@ -36,7 +36,8 @@ void synchronism_design(struct drive *drive, const struct drive_settings *settin
 /* The steps of a block. */
 enum step {
     TAKE,
-    WATCH_HOLD, /* of a hold alone */
+    WATCH_HOLD,  /* of a hold alone */
+    SETTLE_BIAS, /* likewise */
     JUDGE_VOLTAGE,
     JUDGE_LASTING,
     JUDGE_TORQUE,
@@ -159,14 +160,21 @@ static void take(struct drive *drive)
     synchronism_monitor_take(&drive->synchronism.monitor, &drive->synchronism.params, sum, held);
 }
 
-/* What a hold takes for a step of the load. Apart, as it calls others: no step's registers are
-   saved for that. */
-__attribute__((noinline)) static void watch_hold(struct drive *drive)
+/* What a hold takes for a step of the load, or what of its offset lasts. Apart, as it calls others:
+   no step's registers are saved for that. */
+__attribute__((noinline)) static void watch_hold(struct drive *drive, bool settles)
 {
-    if (drive->hold.active) {
-        invariant_ekf_bear(&drive->estimator.invariant_ekf, drive->params.hold.current_limit);
-        invariant_ekf_watch_hold(&drive->estimator.invariant_ekf,
-                                 &drive->params.estimator.invariant_ekf, drive->hold.leads);
+    struct invariant_ekf *ekf = &drive->estimator.invariant_ekf;
+    const struct invariant_ekf_params *params = &drive->params.estimator.invariant_ekf;
+
+    if (!drive->hold.active) {
+        return;
+    }
+    if (settles) {
+        invariant_ekf_settle_bias(ekf, params);
+    } else {
+        invariant_ekf_bear(ekf, drive->params.hold.current_limit);
+        invariant_ekf_watch_hold(ekf, params, drive->hold.leads);
     }
 }
 
@@ -224,7 +232,8 @@ enum synchronism synchronism_step(struct drive *drive)
         take(drive);
         return SYNCHRONISM_SURE;
     case WATCH_HOLD:
-        watch_hold(drive);
+    case SETTLE_BIAS:
+        watch_hold(drive, drive->synchronism.step > SETTLE_BIAS);
         return SYNCHRONISM_SURE;
     case JUDGE_VOLTAGE:
         return synchronism_monitor_judge_voltage(monitor, params, rotor->speed,

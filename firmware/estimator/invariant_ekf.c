@@ -62,8 +62,8 @@ struct invariant_ekf_params invariant_ekf_scale(const struct motor_model_params 
         .following = scale(base, &hold->following),
         .odd_gain_speed = num_from_double(moving->angle_d_full_speed_rad_s / base->speed_rad_s),
         .following_periods = hold->following_periods,
-        .rest_periods = hold->rest_periods,
-        .swing_periods = hold->swing_periods,
+        .rest_periods = (uint16_t)hold->rest_periods,
+        .swing_periods = (uint16_t)hold->swing_periods,
         .load_step = num_from_double(hold->load_step_Nm / base->torque_Nm),
         .feigned_share = coef_from_double(hold->feigned_share),
         .bias_settle = coef_small_from_double(SHARE_PER_BLOCK(BIAS_SETTLE_TIME_S)),
@@ -90,7 +90,6 @@ void invariant_ekf_reset(struct invariant_ekf *ekf, const struct invariant_ekf_p
         unloaded_periods > params->swing_periods ? unloaded_periods - params->swing_periods : 0u;
     ekf->settled_load = NUM(0.0);
     ekf->offset_load = NUM(0.0);
-    ekf->feigned = NUM(0.0);
     ekf->settled_bias = ekf->bias;
     ekf->following_periods = 0u;
 }
@@ -100,7 +99,6 @@ void invariant_ekf_settle(struct invariant_ekf *ekf, const struct invariant_ekf_
     invariant_ekf_carry_sum(ekf); /* that of motion */
     ekf->settled_load = ekf->estimate.rotor.load_torque;
     ekf->offset_load = ekf->settled_load;
-    ekf->feigned = NUM(0.0);
     ekf->settled_bias = ekf->bias;
     ekf->following_periods = 0u;
     ekf->usual_change = params->load_step;
@@ -109,32 +107,28 @@ void invariant_ekf_settle(struct invariant_ekf *ekf, const struct invariant_ekf_
     ekf->calm_blocks = CALM_BLOCKS;
 }
 
-static void count_swing(struct invariant_ekf *ekf)
+/* `counts`: for so many swings, and two more if the load has swung to the other side. */
+__attribute__((noinline)) static void note_swing(struct invariant_ekf *ekf, num_t away,
+                                                 unsigned counts)
 {
-    if (ekf->swings < VIBRATION_SWINGS) {
-        ekf->swings++;
-    }
-}
+    unsigned swings = ekf->swings + counts;
 
-__attribute__((noinline)) static void note_swing(struct invariant_ekf *ekf, num_t away)
-{
     if ((away > NUM(0.0)) != ekf->swung_up) {
         ekf->swung_up = !ekf->swung_up;
-        count_swing(ekf);
-        count_swing(ekf);
+        swings += 2u;
     }
+    ekf->swings = (uint8_t)(swings < VIBRATION_SWINGS ? swings : VIBRATION_SWINGS);
     ekf->calm_blocks = CALM_BLOCKS;
 }
 
 void invariant_ekf_follow_step(struct invariant_ekf *ekf, const struct invariant_ekf_params *params)
 {
-    note_swing(ekf, invariant_ekf_away_from_settled_load(ekf));
-    count_swing(ekf);
+    note_swing(ekf, invariant_ekf_away_from_settled_load(ekf), 1u);
     ekf->following_periods = params->following_periods + params->rest_periods;
     ekf->bias = ekf->settled_bias;
 }
 
-static void settle_bias(struct invariant_ekf *ekf, const struct invariant_ekf_params *params)
+void invariant_ekf_settle_bias(struct invariant_ekf *ekf, const struct invariant_ekf_params *params)
 {
     if (ekf->following_periods == 0u) {
         struct phases *settled = &ekf->settled_bias;
@@ -146,24 +140,32 @@ static void settle_bias(struct invariant_ekf *ekf, const struct invariant_ekf_pa
     }
 }
 
+/* What an error of the resistance may make, on this side, of the q current that has come since the
+   offset was found. */
+static num_t feigned(const struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
+                     num_t away)
+{
+    const num_t more = num_mul_coef(ekf->settled_load - ekf->offset_load, params->feigned_share);
+
+    return (away > NUM(0.0)) == (more > NUM(0.0)) ? num_abs(more) : NUM(0.0);
+}
+
 void invariant_ekf_watch_hold(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
                               bool leads)
 {
     const num_t away = invariant_ekf_away_from_settled_load(ekf);
     const num_t change = num_abs(away);
 
-    settle_bias(ekf, params);
-    ekf->feigned = num_mul_coef(ekf->settled_load - ekf->offset_load, params->feigned_share);
     if (ekf->following_periods <= params->rest_periods) {
         ekf->usual_change +=
             num_mul_coef(change + change + change - ekf->usual_change, params->usual_memory);
     }
     if (change > num_half(params->load_step)) {
-        note_swing(ekf, away);
+        note_swing(ekf, away, 0u);
     } else if (ekf->calm_blocks > 0u && --ekf->calm_blocks == 0u) {
         ekf->swings = 0u;
     }
-    ekf->step_limit = params->load_step +
+    ekf->step_limit = params->load_step + feigned(ekf, params, away) +
                       (leads || ekf->swings >= VIBRATION_SWINGS ? ekf->usual_change : NUM(0.0));
 }
 

@@ -90,8 +90,8 @@ struct invariant_ekf_params {
     struct invariant_ekf_gain_set following; /* holding, after a load step */
     num_t odd_gain_speed;                    /* w_s */
     uint32_t following_periods;              /* how long a load step is followed */
-    uint32_t rest_periods;                   /* behind that, in which none is */
-    uint32_t swing_periods;                  /* in which a rotor swings into place */
+    uint16_t rest_periods;                   /* behind that, in which none is */
+    uint16_t swing_periods;                  /* in which a rotor swings into place */
     num_t load_step;                         /* what a settled hold takes for a step of the load */
     coef_t bias_settle;                      /* share per block of settled_bias' way to the bias */
     coef_t usual_memory;                     /* share per block of usual_change's way */
@@ -106,8 +106,6 @@ struct invariant_ekf {
     num_t adapted_sum;   /* of those that the resistance has taken, for the synchronism monitor */
     num_t adapted_at;    /* i_d when it last did */
     num_t settled_load;  /* torque that a hold returns to */
-    num_t offset_load;   /* torque at whose q current settled_bias was found */
-    num_t feigned;       /* change of the load that the q current since then may feign */
     num_t step_limit;    /* beyond which a change of the load is a step */
     num_t usual_change;  /* three times the mean of the load's change of late */
     uint8_t swings;      /* of the load on end, a reversal twice; up to what vibrates */
@@ -116,6 +114,7 @@ struct invariant_ekf {
     uint32_t following_periods; /* left of the gains that follow a load step, and of their rest */
     uint32_t swing_end;         /* of unloaded_periods, when the rotor has swung into place */
     uint32_t unloaded_periods;  /* left of the hold in which no load step is expected */
+    num_t offset_load;          /* torque at whose q current settled_bias was found */
 };
 
 /* Per-unit parameters. */
@@ -165,11 +164,15 @@ void invariant_ekf_work_on_hold(struct invariant_ekf *ekf,
 __attribute__((noinline)) void invariant_ekf_follow_step(struct invariant_ekf *ekf,
                                                          const struct invariant_ekf_params *params);
 
+/* In a settled hold, once a block of the synchronism monitor: the lasting offset goes some of its
+   way to the offset. Without a monitor it stays as the hold began with it. */
+void invariant_ekf_settle_bias(struct invariant_ekf *ekf,
+                               const struct invariant_ekf_params *params);
+
 /*
- * In a settled hold, once a block of the synchronism monitor: the lasting offset goes some of its
- * way to the offset; and what counts as a step of the load, which is more where it swings, as that
- * of a rotor which is led and passes its detent torque, or one that has made several steps on end.
- * Without a monitor both stay as the hold began with them.
+ * As often: what counts as a step of the load, which is more where it swings, as that of a rotor
+ * which is led and passes its detent torque, or one that has made several steps on end, and to the
+ * side to which a load has come to the one settled at.
  */
 void invariant_ekf_watch_hold(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
                               bool leads);

@@ -95,14 +95,6 @@ invariant_ekf_correct(struct invariant_ekf *ekf, const struct invariant_ekf_gain
     ekf->bias.b += num_mul_unit_nearest(by.bias_q, bias_frame.cos);
 }
 
-/* Whether so much is more than what the steps so far may have made of the resistance's error. */
-static inline bool invariant_ekf_shows_step(const struct invariant_ekf *ekf, num_t away)
-{
-    const num_t more = num_abs(away) - ekf->step_limit;
-
-    return away > NUM(0.0) ? more > ekf->feigned : more > -ekf->feigned;
-}
-
 /* Which of the sets of gains serves this period of the hold. */
 static inline const struct invariant_ekf_gain_set *
 invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_params *params)
@@ -120,8 +112,7 @@ invariant_ekf_hold_gains(struct invariant_ekf *ekf, const struct invariant_ekf_p
     const num_t change = num_abs(away);
 
     if (RARE(change > ekf->step_limit) &&
-        (ekf->following_periods == 0u || num_half(change) > ekf->step_limit) &&
-        invariant_ekf_shows_step(ekf, away)) {
+        (ekf->following_periods == 0u || num_half(change) > ekf->step_limit)) {
         invariant_ekf_follow_step(ekf, params);
     }
     if (ekf->following_periods == 0u) {

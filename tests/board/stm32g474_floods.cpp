@@ -251,10 +251,11 @@ void compare_floods(Expectations &expectations, const std::string &image, std::s
         static_cast<unsigned long long>(without.latency),
         static_cast<unsigned long long>(with.cycles),
         static_cast<unsigned long long>(without.cycles));
-    /* An exception that is entered as the peak comes, which the virtual board nests and the chip
-       spares (sil/virtual_board/README.md, late arrival), and an instruction of the background. */
-    constexpr std::uint64_t entry_cycles = 29, instruction_cycles = 12;
-    expectations.expect(with.latency <= without.latency + entry_cycles + instruction_cycles,
+    /* As in any run (budget.py): an exception that is entered as the peak comes, which the virtual
+       board nests and the chip spares (sil/virtual_board/README.md, late arrival), and what the
+       drive's watches do as a whole, flood or not; which peaks they meet is chance. */
+    constexpr std::uint64_t jitter_cycles = 170;
+    expectations.expect(with.latency <= without.latency + jitter_cycles,
                         "the control interrupt begins as soon as without a flood");
     expectations.expect(with.cycles <= without.cycles, "and takes as many cycles as without");
 }

@@ -18,7 +18,7 @@ namespace
 {
 
 /* How many are drawn until a period is explained. */
-constexpr std::size_t draws[] = {2, 8, 64, 1024};
+constexpr std::size_t draws[] = {2, 8, 64, 1024, 16384};
 /* A value may lie beside those that are drawn by so many of the distances between them. */
 constexpr double beside = 1.0;
 /* Last places for a sum or a constant, whose rounding is not drawn. */
