@@ -171,8 +171,8 @@ void invariant_ekf_settle_bias(struct invariant_ekf *ekf,
 
 /*
  * As often: what counts as a step of the load, which is more where it swings, as that of a rotor
- * which is led and passes its detent torque, or one that has made several steps on end, and to the
- * side to which a load has come to the one settled at.
+ * which is led and passes its detent torque, or one that has made several steps on end; and to the
+ * side to which the load has gone since the offset was found. Without a monitor it stays, too.
  */
 void invariant_ekf_watch_hold(struct invariant_ekf *ekf, const struct invariant_ekf_params *params,
                               bool leads);

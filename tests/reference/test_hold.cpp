@@ -10,6 +10,7 @@
 #include <cstring>
 #include <string>
 #include <unity.h>
+#include <utility>
 
 #include <Eigen/Dense>
 
@@ -191,6 +192,35 @@ double damping_of_the_check(const Hold &hold)
                     hold_estimator_damping(&task, &hold.gains));
 }
 
+/* Least and most of a share over a hundred drawn motors, in their default hold, settled. */
+template <typename Share> std::pair<double, double> range_over_motors(const Share &share)
+{
+    double least = 1;
+    double most = 0;
+    for (std::uint64_t number = 0; number < 100; number++) {
+        Hold hold{};
+        if (!default_hold(drawn_motor(number), NAN, hold, settled_hold)) {
+            continue;
+        }
+        const double one = share(hold, "motor " + std::to_string(number));
+        least = std::min(least, one);
+        most = std::max(most, one);
+    }
+    TEST_MESSAGE((std::to_string(least) + " to " + std::to_string(most)).c_str());
+    return {least, most};
+}
+
+double tenth_of_its_torque_Nm(const Hold &hold)
+{
+    return 0.1 * hold.motor.torque_constant_Nm_A * hold.current_A;
+}
+
+int periods_of(const Hold &hold, double swings)
+{
+    return static_cast<int>(
+        std::ceil(swings / (hold_frequency(&hold.motor, hold.current_A) * period_s)));
+}
+
 } // namespace
 
 extern "C" {
@@ -279,56 +309,38 @@ static void a_hold_is_stable_with_a_tenth_less_inductance_and_with_a_tenth_more(
  */
 static void what_a_settled_hold_shows_of_a_load_step_is_what_the_whole_loop_does(void)
 {
-    double least = 1;
-    double most = 0;
-    for (std::uint64_t number = 0; number < 100; number++) {
-        Hold hold{};
-        if (!default_hold(drawn_motor(number), NAN, hold, settled_hold)) {
-            continue;
-        }
-        const double load_Nm = 0.1 * hold.motor.torque_constant_Nm_A * hold.current_A;
+    const auto [least, most] = range_over_motors([](const Hold &hold, const std::string &motor) {
+        const double load_Nm = tenth_of_its_torque_Nm(hold);
         VectorXd x = VectorXd::Zero(STATES + 1);
         double shown = 0;
-        for (int k = 0; k < 8 / (hold_frequency(&hold.motor, hold.current_A) * period_s); k++) {
+        for (int k = 0; k < periods_of(hold, 8); k++) {
             x = period(hold, x, load_Nm);
             shown = std::max(shown, x(LOAD_EST) / load_Nm);
         }
         const hold_task task = {&hold.motor, period_s, hold.current_A, NAN,
                                 hold.current_bandwidth_rad_s};
         const double computed = hold_step_shown(&task, &hold.gains);
-        TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(0.01, shown, computed,
-                                          ("motor " + std::to_string(number)).c_str());
-        least = std::min(least, computed);
-        most = std::max(most, computed);
-    }
-    TEST_MESSAGE((std::to_string(least) + " to " + std::to_string(most)).c_str());
+        TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(0.01, shown, computed, motor.c_str());
+        return computed;
+    });
     TEST_ASSERT_TRUE(least > 0.3 && most < 1);
 }
 
 /* The hold's resistance is 2 % off as a load comes, and its q current. */
 static void what_an_error_of_the_resistance_feigns_is_within_the_share_stated(void)
 {
-    double least = 1;
-    double most = 0;
-    for (std::uint64_t number = 0; number < 100; number++) {
-        Hold hold{};
-        if (!default_hold(drawn_motor(number), NAN, hold, settled_hold)) {
-            continue;
-        }
-        const double load_Nm = 0.1 * hold.motor.torque_constant_Nm_A * hold.current_A;
+    const auto [least, most] = range_over_motors([](const Hold &hold, const std::string &) {
+        const double load_Nm = tenth_of_its_torque_Nm(hold);
         VectorXd x = VectorXd::Zero(STATES + 1);
         x(OFFSET_EST) =
             0.02 * hold.motor.resistance_ohm * load_Nm / hold.motor.torque_constant_Nm_A;
         double feigned_Nm = 0;
-        for (int k = 0; k < 30 / (hold_frequency(&hold.motor, hold.current_A) * period_s); k++) {
+        for (int k = 0; k < periods_of(hold, 30); k++) {
             x = period(hold, x);
             feigned_Nm = std::max(feigned_Nm, std::fabs(x(LOAD_EST)));
         }
-        const double share = feigned_Nm / load_Nm / hold.feigned_share;
-        least = std::min(least, share);
-        most = std::max(most, share);
-    }
-    TEST_MESSAGE((std::to_string(least) + " to " + std::to_string(most)).c_str());
+        return feigned_Nm / load_Nm / hold.feigned_share;
+    });
     TEST_ASSERT_TRUE(least > 0.5 && most < 1);
 }
 
