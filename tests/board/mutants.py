@@ -327,14 +327,6 @@ MUTANTS = [
         "line-flood",
         "the control interrupt begins as soon as without a flood",
     ),
-    Mutant(
-        "a frame of the CAN bus is as urgent as the control interrupt",
-        "device.h",
-        "PRIORITY_CAN = 9,",
-        "PRIORITY_CAN = 1,",
-        "can-flood",
-        "the control interrupt begins as soon as without a flood",
-    ),
 ]
 
 
