@@ -26,8 +26,9 @@
 #define MISSED_SAME       2u /* one may be of the period in which it moved */
 #define SAME_OTHER_MAX    8u /* of a converter that is alive */
 #define SLOW_TURNS        NUM(1.0 / (LOOK_PERIODS * SAME_MAX))
-#define VOLTAGE_WRONG     NUM(0.075) /* a bridge takes a third of it */
-#define VOLTAGE_ERROR     0.05       /* of the supply */
+#define WRONG_LOOKS       8u /* with a wrong voltage, less RIGHT_COUNTS times those without */
+#define RIGHT_COUNTS      2u
+#define VOLTAGE_ERROR     0.05 /* of the supply */
 #define COUNTS_ERROR      2.0
 #define RESISTANCE_ERROR  NUM(0.6)   /* what a winding that warms up or is not known may have */
 #define CURRENT_DEVIATION NUM(0.075) /* of twice the rated current */
@@ -147,6 +148,16 @@ static void take_code(struct phase_watch *watch, const struct phase_look *look, 
     }
 }
 
+/* A rotor that turns takes a phase's voltage through zero, where none is wrong by much. */
+static void count_wrong(struct phase_watch *watch, bool wrong)
+{
+    if (!wrong) {
+        watch->wrong = watch->wrong > RIGHT_COUNTS ? (uint8_t)(watch->wrong - RIGHT_COUNTS) : 0u;
+    } else if (watch->wrong < WRONG_LOOKS) {
+        watch->wrong++;
+    }
+}
+
 /* current: one that flows, or is said to */
 static uint8_t name_of(int phase, bool current)
 {
@@ -163,7 +174,7 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
 
     watch->period = look->period;
     watch->apart = (uint8_t)((watch->apart + 1u) % LOOKS_APART);
-    watch->suspected = look->voltage_wrong ? DRIVE_FAULT_LOST_SYNCHRONISM : DRIVE_FAULT_NONE;
+    watch->suspected = DRIVE_FAULT_NONE;
     for (int phase = 0; phase < 2; phase++) {
         struct phase_count *count = &watch->count[phase];
         const bool alive = watch->count[1 - phase].same < SAME_OTHER_MAX; /* the other one */
@@ -194,12 +205,17 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
             fault = (enum drive_fault)name;
         }
     }
-    return fault;
+    if (look->voltage_wrong) {
+        watch->suspected = DRIVE_FAULT_VOLTAGE_SENSOR;
+    }
+    count_wrong(watch, look->voltage_wrong);
+    return watch->wrong == WRONG_LOOKS ? DRIVE_FAULT_VOLTAGE_SENSOR : fault;
 }
 
 void phase_watch_forget(struct phase_watch *watch)
 {
     watch->suspected = DRIVE_FAULT_NONE;
+    watch->wrong = 0u;
 }
 
 bool phase_watch_chatters(const struct drive *drive)
@@ -303,8 +319,8 @@ static void look_at(struct phase_look *look, const struct drive *drive)
     look->flows[1] = num_abs(current.b) > CURRENT_MIN;
     look->noisy[0] = (drive->enabling.calibration.noisy & 1u) != 0u;
     look->noisy[1] = (drive->enabling.calibration.noisy & 2u) != 0u;
-    look->voltage_wrong =
-        num_abs(actuation->loss.a) > VOLTAGE_WRONG || num_abs(actuation->loss.b) > VOLTAGE_WRONG;
+    look->voltage_wrong = num_abs(actuation->loss.a) >= ACTUATION_LOSS_MAX ||
+                          num_abs(actuation->loss.b) >= ACTUATION_LOSS_MAX;
     look->held = drive->hold.active;
     look->settled = drive->synchronism.monitor.held >= drive->synchronism.params.settled_blocks;
     look->turns = is_faster(drive, SLOW_TURNS);

@@ -39,8 +39,12 @@
  * which 20 % of the rated are asked for, from one look to the next with the same asked for, or
  * standing. A rotor that is shaken takes its currents through zero, but with what is asked for, or
  * behind it. A voltage law has no such reference. Of two phases it is the one that is further off.
- * With none of these, a voltage that is measured three quarters of the largest loss of a bridge
- * beside what was commanded: of it an estimate was made that is lost, and not the rotor stalled.
+ *
+ * A voltage that is measured as far beside what was commanded as no bridge's loss is (actuation.h)
+ * is one that is measured wrong, of a leg or of the bus, of which the duty was made. Eight looks
+ * make sure, each without it counting against two; one is a suspicion of which a lost or stalled
+ * estimate comes, too. A bus voltage of which the share r is shown shows from 0.12 / |1 - r| of
+ * the supply on.
  *
  * In the background, by four looks at least; behind fourteen periods that it does not come to it
  * begins anew.
@@ -75,6 +79,7 @@ struct phase_watch {
     uint8_t suspected;  /* fault: what another one comes of */
     uint8_t apart;      /* periods that the next look is later than it might be */
     uint8_t resistance; /* low byte of the look's, when a code last changed of two that do */
+    uint8_t wrong;      /* looks with a wrong voltage, less twice those without */
     int32_t lag;        /* of the estimate behind the reference of late, 2^-32 turns */
     num_t wanted[2];    /* current, when it came to stand there */
     num_t pushed[2];    /* by how much its voltage would have changed it since */

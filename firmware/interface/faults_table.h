@@ -81,6 +81,9 @@
     FAULT(ENCODER, 0x7305, "encoder", "it miscounts", NO_LIMIT, UNCERTAIN,                         \
           "check the encoder, its cable and its supply; free the axis if it is held")              \
     FAULT(INDUCTANCE, 0xff07, "inductance", "it is not 0.65 to 1.6 of", LIMIT(motor.inductance_H), \
-          STANDS, "correct inductance_H")
+          STANDS, "correct inductance_H")                                                          \
+    FAULT(VOLTAGE_SENSOR, 0xff08, "voltage-sensor",                                                \
+          "a phase's voltage is measured far beside what was commanded", NO_LIMIT, WITH_ENCODER,   \
+          "check the dividers of the legs and of the bus voltage")
 
 #endif

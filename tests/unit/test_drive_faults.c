@@ -10,6 +10,7 @@ enum breakage {
     SENSOR_A, /* shows what it showed last */
     SENSOR_B,
     LEG_VOLTAGE, /* likewise, of phase a */
+    BUS_VOLTAGE, /* shows 0.7 of what there is */
     FROZEN_ENCODER,
     REVERSED_ENCODER,
     HALF_OF_THE_COUNTS,
@@ -33,6 +34,8 @@ static void disturb(struct hal_samples *samples)
         samples->current_b = last.current_b;
     } else if (breakage == LEG_VOLTAGE) {
         samples->phase_voltage_a = last.phase_voltage_a;
+    } else if (breakage == BUS_VOLTAGE) {
+        samples->bus_voltage = (uint16_t)(samples->bus_voltage * 7u / 10u);
     } else if (breakage == FROZEN_ENCODER) {
         samples->encoder_count = last.encoder_count;
     } else if (breakage == REVERSED_ENCODER) {
@@ -132,8 +135,8 @@ static void test_without_an_encoder(void)
         {LEAD_B, true, "open-phase-b", 150, 260, 0},
         {SENSOR_B, true, "current-sensor-b", 55, 75, 0},
         {SENSOR_A, true, "current-sensor-a", 55, 75, 11},
-        {LEG_VOLTAGE, true, "lost-synchronism", 20, 50, 0},
-        {LEG_VOLTAGE, true, "lost-synchronism", 70, 110, 11},
+        {LEG_VOLTAGE, true, "lost-synchronism", 20, 50, 0}, /* before it is far off */
+        {LEG_VOLTAGE, true, "voltage-sensor", 28, 60, 11},
         {HELD_ROTOR, false, "stalled", 205, 245, 0},
         {HELD_ROTOR, true, "stalled", 25, 55, 0},
         {OVERLOAD, false, "stalled", 1000, 1110, 0},
@@ -155,6 +158,8 @@ static void test_with_an_encoder_and_its_default_law(void)
         {LEAD_B, true, "open-phase-b", 500, 900, 0},
         {SENSOR_B, true, "current-sensor-b", 20, 90, 0},
         {SENSOR_A, true, "current-sensor-a", 20, 90, 11},
+        {LEG_VOLTAGE, true, "voltage-sensor", 80, 180, 0},
+        {LEG_VOLTAGE, false, "voltage-sensor", 600, 800, 0},
         {FROZEN_ENCODER, false, "following-error", 365, 395, 0},
         {FROZEN_ENCODER, true, "encoder", 50, 90, 0},
         {REVERSED_ENCODER, true, "estimate-range", 4, 16, 0},
@@ -170,6 +175,29 @@ static void test_with_an_encoder_and_its_default_law(void)
         setUp();
         with_encoder(POSITION_LAW_FEEDBACK_LINEARISATION);
         shows(&rows[i]);
+    }
+}
+
+/* From 0.12 of the supply, less what is shown of it: 40 %. Its back-EMF is 14 V at 86 rad/s. */
+static void test_a_bus_voltage_that_is_wrong_shows_as_the_motor_takes_its_share(void)
+{
+    for (int encoder = 0; encoder < 2; encoder++) {
+        for (int fast = 0; fast < 2; fast++) {
+            setUp();
+            if (encoder == 1) {
+                with_encoder(POSITION_LAW_FEEDBACK_LINEARISATION);
+            }
+            enable();
+            run(500);
+            move(fast == 1 ? 36.0 : 9.0, 0.6);
+            run(2500);
+            break_it(BUS_VOLTAGE);
+            const int periods = periods_until_fault();
+
+            TEST_ASSERT_EQUAL_STRING(fast == 1 ? "voltage-sensor" : "none",
+                                     drive_fault_name(drive.supervision.fault));
+            TEST_ASSERT_TRUE(fast == 0 || periods < 100);
+        }
     }
 }
 
@@ -319,35 +347,30 @@ static void test_a_phase_that_breaks_at_rest_is_named_and_not_what_comes_of_it(v
     }
 }
 
-/* And nothing else is renamed by it. */
-static void test_a_stall_of_an_estimate_made_of_a_wrong_voltage_is_called_lost(void)
+/* An estimate made of a wrong voltage stalls without a rotor that does. */
+static void test_what_a_sensor_cannot_cause_keeps_its_name(void)
 {
-    for (int fault = 1; fault < DRIVE_FAULTS; fault++) {
-        drive.phase_watch.suspected = DRIVE_FAULT_LOST_SYNCHRONISM;
-        state_machine_fault(&drive, (enum drive_fault)fault);
-        TEST_ASSERT_EQUAL_INT(fault == DRIVE_FAULT_STALLED ? (int)DRIVE_FAULT_LOST_SYNCHRONISM
-                                                           : fault,
-                              drive.supervision.fault);
-    }
-}
-
-static void test_what_a_phase_cannot_cause_keeps_its_name(void)
-{
+    static const enum drive_fault sensors[] = {DRIVE_FAULT_CURRENT_SENSOR_B,
+                                               DRIVE_FAULT_VOLTAGE_SENSOR};
     static const enum drive_fault causes[] = {
         DRIVE_FAULT_OVERCURRENT,      DRIVE_FAULT_HARDWARE_OVERCURRENT, DRIVE_FAULT_ESTIMATE_RANGE,
         DRIVE_FAULT_LOST_SYNCHRONISM, DRIVE_FAULT_FOLLOWING_ERROR,
     };
 
-    for (int fault = 1; fault < DRIVE_FAULTS; fault++) {
-        bool caused = false;
+    for (int n = 0; n < 2 * DRIVE_FAULTS; n++) {
+        const enum drive_fault sensor = sensors[n / DRIVE_FAULTS];
+        const enum drive_fault fault = (enum drive_fault)(n % DRIVE_FAULTS);
+        bool caused = fault == DRIVE_FAULT_STALLED && sensor == DRIVE_FAULT_VOLTAGE_SENSOR;
 
-        for (size_t i = 0; i < sizeof causes / sizeof causes[0]; i++) {
-            caused = caused || causes[i] == (enum drive_fault)fault;
+        if (fault == DRIVE_FAULT_NONE) {
+            continue;
         }
-        drive.phase_watch.suspected = DRIVE_FAULT_CURRENT_SENSOR_B;
-        state_machine_fault(&drive, (enum drive_fault)fault);
-        TEST_ASSERT_EQUAL_INT(caused ? (int)DRIVE_FAULT_CURRENT_SENSOR_B : fault,
-                              drive.supervision.fault);
+        for (size_t i = 0; i < sizeof causes / sizeof causes[0]; i++) {
+            caused = caused || causes[i] == fault;
+        }
+        drive.phase_watch.suspected = (uint8_t)sensor;
+        state_machine_fault(&drive, fault);
+        TEST_ASSERT_EQUAL_INT(caused ? sensor : fault, drive.supervision.fault);
         phase_watch_background(&drive);
         TEST_ASSERT_EQUAL_INT(DRIVE_FAULT_NONE, drive.phase_watch.suspected);
     }
@@ -367,6 +390,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_without_an_encoder);
     RUN_TEST(test_with_an_encoder_and_its_default_law);
+    RUN_TEST(test_a_bus_voltage_that_is_wrong_shows_as_the_motor_takes_its_share);
     RUN_TEST(test_with_an_encoder_and_state_feedback);
     RUN_TEST(test_a_fast_rotor_is_looked_at_four_to_nine_periods_apart);
     RUN_TEST(test_an_encoder_that_stands_still_under_a_load_is_said);
@@ -374,8 +398,7 @@ int main(void)
     RUN_TEST(test_a_sound_drive_says_nothing);
     RUN_TEST(test_a_policy_warns_or_looks_away_instead);
     RUN_TEST(test_a_phase_that_breaks_at_rest_is_named_and_not_what_comes_of_it);
-    RUN_TEST(test_a_stall_of_an_estimate_made_of_a_wrong_voltage_is_called_lost);
-    RUN_TEST(test_what_a_phase_cannot_cause_keeps_its_name);
+    RUN_TEST(test_what_a_sensor_cannot_cause_keeps_its_name);
     RUN_TEST(test_too_much_current_is_none_of_an_open_phase);
     return UNITY_END();
 }

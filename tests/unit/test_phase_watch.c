@@ -313,17 +313,54 @@ static void test_of_two_phases_the_one_that_is_further_off_is_suspected(void)
     }
 }
 
-static void test_a_wrong_voltage_is_suspected_where_no_phase_is(void)
+static void test_a_wrong_voltage_is_suspected_before_a_phase(void)
 {
     look.voltage_wrong = look.held = true;
     look_behind(NUM(0.0));
-    TEST_ASSERT_EQUAL_STRING("lost-synchronism", suspected());
+    TEST_ASSERT_EQUAL_STRING("voltage-sensor", suspected());
     look_behind(NUM(0.0));
     look_behind(NUM(0.2));
-    TEST_ASSERT_EQUAL_STRING("open-phase-b", suspected());
+    TEST_ASSERT_EQUAL_STRING("voltage-sensor", suspected());
     look.voltage_wrong = false;
+    look_behind(NUM(0.2));
+    TEST_ASSERT_EQUAL_STRING("open-phase-b", suspected());
     look_behind(NUM(0.0));
     TEST_ASSERT_EQUAL_STRING("none", suspected());
+}
+
+/* Looks until it is said, of which so many in a row are wrong, and then one is not; NEVER. */
+static int looks_until_voltage(int wrong)
+{
+    setUp();
+    for (int n = 1; n < 200; n++) {
+        look.period += 4u;
+        look.voltage_wrong = n % (wrong + 1) != 0;
+        const enum drive_fault fault = phase_watch_step(&watch, &params, &look);
+
+        if (fault != DRIVE_FAULT_NONE) {
+            TEST_ASSERT_EQUAL_STRING("voltage-sensor", drive_fault_name(fault));
+            return n;
+        }
+    }
+    return NEVER;
+}
+
+static void test_eight_looks_with_a_wrong_voltage_make_sure_less_two_for_each_without(void)
+{
+    TEST_ASSERT_EQUAL_INT(8, looks_until_voltage(8));
+    TEST_ASSERT_EQUAL_INT(11, looks_until_voltage(7));
+    TEST_ASSERT_EQUAL_INT(23, looks_until_voltage(3));
+    TEST_ASSERT_EQUAL_INT(NEVER, looks_until_voltage(2));
+}
+
+static void test_what_was_measured_wrong_before_the_drive_was_off_is_forgotten(void)
+{
+    (void)looks_until_voltage(7);
+    phase_watch_forget(&watch);
+    look.voltage_wrong = true;
+    for (int n = 1; n < 8; n++) {
+        look_behind(NUM(0.0));
+    }
 }
 
 /* A count that wraps would be a look that begins. */
@@ -496,7 +533,9 @@ int main(void)
     RUN_TEST(test_a_hold_whose_current_is_gone_is_suspected_at_once);
     RUN_TEST(test_a_current_that_passes_zero_is_no_broken_lead);
     RUN_TEST(test_of_two_phases_the_one_that_is_further_off_is_suspected);
-    RUN_TEST(test_a_wrong_voltage_is_suspected_where_no_phase_is);
+    RUN_TEST(test_a_wrong_voltage_is_suspected_before_a_phase);
+    RUN_TEST(test_eight_looks_with_a_wrong_voltage_make_sure_less_two_for_each_without);
+    RUN_TEST(test_what_was_measured_wrong_before_the_drive_was_off_is_forgotten);
     RUN_TEST(test_what_stands_for_long_goes_on_standing);
     RUN_TEST(test_a_hold_whose_current_stands_at_zero_against_its_voltage_is_open);
     RUN_TEST(test_a_converter_without_noise_is_dead_while_the_rotor_turns);

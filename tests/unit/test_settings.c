@@ -512,7 +512,8 @@ static void test_names_are_spelt_as_scenarios_and_the_serial_line_do(void)
                                                      "motor-overheated",
                                                      "bridge-overheated",
                                                      "encoder",
-                                                     "inductance"};
+                                                     "inductance",
+                                                     "voltage-sensor"};
 
     for (int i = 0; i < DRIVE_STATES; i++) {
         TEST_ASSERT_EQUAL_STRING(states[i], drive_state_name((enum drive_state)i));

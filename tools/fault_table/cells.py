@@ -56,6 +56,10 @@ def supply(share):
                                  "plant.bus_V": rounded(share * supply_V(motor))}]
 
 
+def both(*parts):
+    return lambda motor, at_s: [event for events in parts for event in events(motor, at_s)]
+
+
 TIMEOUT_s = 0.1
 
 FAULTS = (
@@ -70,6 +74,9 @@ FAULTS = (
     Fault("leg-voltage-last", "leg voltage a stuck at its last value",
           plain(stuck_adc="phase_voltage_a")),
     Fault("bus-sensor-last", "bus voltage reading stuck", plain(stuck_adc="bus")),
+    *(Fault(f"bus-sensor-{name}", f"the same, and the supply at {share:g} of its voltage",
+            both(plain(stuck_adc="bus"), supply(share)))
+      for name, share in (("high", 1.4), ("low", 0.4))),
     Fault("encoder-frozen", "the encoder's count stands still", plain(encoder="frozen"),
           ("encoder",)),
     Fault("encoder-half", "half of the encoder's counts", plain(encoder="half"), ("encoder",)),
