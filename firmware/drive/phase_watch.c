@@ -148,14 +148,17 @@ static void take_code(struct phase_watch *watch, const struct phase_look *look, 
     }
 }
 
-/* A rotor that turns takes a phase's voltage through zero, where none is wrong by much. */
-static void count_wrong(struct phase_watch *watch, bool wrong)
+/* A rotor that turns takes a phase's voltage through zero, where none is wrong by much. Returns
+   whether it is sure. */
+static bool count_wrong(struct phase_watch *watch, bool wrong)
 {
-    if (!wrong) {
+    if (wrong) {
+        watch->suspected = DRIVE_FAULT_VOLTAGE_SENSOR;
+        watch->wrong = (uint8_t)(watch->wrong + (watch->wrong < WRONG_LOOKS));
+    } else {
         watch->wrong = watch->wrong > RIGHT_COUNTS ? (uint8_t)(watch->wrong - RIGHT_COUNTS) : 0u;
-    } else if (watch->wrong < WRONG_LOOKS) {
-        watch->wrong++;
     }
+    return watch->wrong == WRONG_LOOKS;
 }
 
 /* current: one that flows, or is said to */
@@ -205,11 +208,7 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
             fault = (enum drive_fault)name;
         }
     }
-    if (look->voltage_wrong) {
-        watch->suspected = DRIVE_FAULT_VOLTAGE_SENSOR;
-    }
-    count_wrong(watch, look->voltage_wrong);
-    return watch->wrong == WRONG_LOOKS ? DRIVE_FAULT_VOLTAGE_SENSOR : fault;
+    return count_wrong(watch, look->voltage_wrong) ? DRIVE_FAULT_VOLTAGE_SENSOR : fault;
 }
 
 void phase_watch_forget(struct phase_watch *watch)

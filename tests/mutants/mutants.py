@@ -797,7 +797,7 @@ MUTANTS = [
            "swing->side != 0 && period", "period"),
     Mutant(DRIVE + "phase_watch.c", "phase_watch",
            "a_wrong_voltage_is_suspected_before_a_phase",
-           "    if (look->voltage_wrong) {", "    if (false) {"),
+           "        watch->suspected = DRIVE_FAULT_VOLTAGE_SENSOR;\n", ""),
     Mutant(DRIVE + "phase_watch.c", "phase_watch",
            "eight_looks_with_a_wrong_voltage_make_sure_less_two_for_each_without",
            "(watch->wrong - RIGHT_COUNTS)", "(watch->wrong - 1u)"),

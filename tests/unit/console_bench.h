@@ -59,6 +59,7 @@ static inline const struct hal_outputs *bench_interrupt(void)
     struct hal_samples samples = bench.samples;
 
     bench.period++;
+    bench.application.drive.phase_watch.wrong = 0u; /* nor is a voltage there to be measured */
     samples.current_a = (uint16_t)(samples.current_a + noise);
     samples.current_b = (uint16_t)(samples.current_b + noise);
 
