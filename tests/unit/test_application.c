@@ -130,6 +130,27 @@ static void test_the_outputs_are_those_of_the_drive(void)
     TEST_ASSERT_TRUE(bench.application.outputs.bridge_on);
 }
 
+/* New settings are designed first: behind them only an enable whose period has come is put off. */
+static void test_an_enable_with_new_settings_acts_in_its_period_if_that_is_still_to_come(void)
+{
+    for (uint32_t ahead = 0; ahead < 2; ahead++) {
+        const struct drive_settings settings = bench_quick_settings();
+        struct drive_command enable = {.kind = DRIVE_COMMAND_ENABLE};
+
+        bench_power_up();
+        TEST_ASSERT_TRUE(bench_start(&settings));
+        bench_periods(3);
+        bench.application.awaits_enable = true;
+        enable.at_period = bench.period + ahead;
+        TEST_ASSERT_TRUE_MESSAGE(
+            application_command(&bench.application, &enable, bench.period, error), error);
+        TEST_ASSERT_EQUAL_UINT32(ahead == 0u
+                                     ? bench.period + application_typed_delay(&bench.application)
+                                     : bench.period + 1u,
+                                 enable.at_period);
+    }
+}
+
 static void test_cycles_of_the_interrupt_are_counted(void)
 {
     struct application *application = &bench.application;
@@ -168,6 +189,7 @@ int main(void)
     RUN_TEST(test_a_motor_that_is_refused_stops_the_start);
     RUN_TEST(test_the_watchdog_is_fed_only_while_control_interrupts_come);
     RUN_TEST(test_the_outputs_are_those_of_the_drive);
+    RUN_TEST(test_an_enable_with_new_settings_acts_in_its_period_if_that_is_still_to_come);
     RUN_TEST(test_cycles_of_the_interrupt_are_counted);
     RUN_TEST(test_cycles_are_gathered_before_their_sum_wraps);
     return UNITY_END();

@@ -556,6 +556,39 @@ static void test_it_comes_again_from_a_full_step(void)
     TEST_ASSERT_TRUE(away < 4.0);
 }
 
+/* Greatest speed of the reference on the way back from a stop, and the periods up to it. */
+static double back_off(int *periods)
+{
+    const double stop_rad = 10.0 * full_step_rad();
+    double most = 0.0;
+
+    begin(-2);
+    strike_until(1.0, stop_rad, HOMING_BACKS_OFF);
+    for (int n = 1; homing()->phase == HOMING_BACKS_OFF; n++) {
+        strike(1.0, stop_rad);
+        if (-link_bench_speed_rad_s() > most) {
+            most = -link_bench_speed_rad_s();
+            *periods = n;
+        }
+    }
+    return most;
+}
+
+/* A tenth of a second, a quarter more with its jerk phases. */
+static void test_it_comes_back_from_the_stop_as_slowly_as_a_hold_leads_a_rotor(void)
+{
+    const struct drive *drive = &bench.application.drive;
+    const double creep_rad_s =
+        num_to_double(drive->params.reference.creep_speed) * drive->base.speed_rad_s;
+    int periods = 0;
+
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * creep_rad_s, 0.5 * creep_rad_s, back_off(&periods));
+    TEST_ASSERT_INT_WITHIN(30, 1250, periods);
+    setUp();
+    put(0x6099, 2, 4, (uint32_t)(0.25 * creep_rad_s / unit_rad));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * creep_rad_s, 0.25 * creep_rad_s, back_off(&periods));
+}
+
 /* Nor is it to be led back: it does not go on for ever. */
 static void test_a_rotor_that_is_lost_all_the_time_ends_it(void)
 {
@@ -817,6 +850,7 @@ int main(void)
     RUN_TEST(test_a_rotor_that_is_lost_as_it_leaves_the_stop_comes_again);
     RUN_TEST(test_what_one_approach_has_found_outlasts_one_that_fails);
     RUN_TEST(test_it_comes_again_from_a_full_step);
+    RUN_TEST(test_it_comes_back_from_the_stop_as_slowly_as_a_hold_leads_a_rotor);
     RUN_TEST(test_a_rotor_that_is_lost_all_the_time_ends_it);
     RUN_TEST(test_what_cannot_be_is_refused);
     RUN_TEST(test_the_index_is_where_the_offset_says_from_below_and_above);

@@ -339,6 +339,23 @@ static void test_a_limit_that_moves_is_gone_to_and_one_that_is_passed_stops(void
     TEST_ASSERT_EQUAL_HEX32(LIMITED, status(LIMITED));
 }
 
+/* The motion to the limit is commanded behind it. */
+static void test_a_limit_that_comes_near_while_a_command_waits_is_kept(void)
+{
+    enable(3);
+    put(0x6084, 0, 4, 20 * TURN);
+    begin_speed(TURN, 8000);
+    put(0x60ff, 0, 4, 2 * TURN);
+    TEST_ASSERT_TRUE(command_queue_holds_any(&bench.application.drive.commands));
+    const int32_t limit = (int32_t)lround(link_bench_reference_rad() / unit_rad) + TURN / 8;
+
+    put(0x607d, 2, 4, (uint32_t)limit);
+    TEST_ASSERT_TRUE(command_queue_holds_any(&bench.application.drive.commands));
+    bench_periods(8000);
+    TEST_ASSERT_TRUE(rests());
+    TEST_ASSERT_EQUAL_INT(limit, (int32_t)get(0x6062));
+}
+
 static void test_a_halt_before_a_limit_goes_on_to_it(void)
 {
     enable(3);
@@ -741,6 +758,7 @@ int main(void)
     RUN_TEST(test_a_speed_ends_at_either_software_limit_and_goes_back_from_it);
     RUN_TEST(test_no_speed_passes_a_software_limit);
     RUN_TEST(test_a_limit_that_moves_is_gone_to_and_one_that_is_passed_stops);
+    RUN_TEST(test_a_limit_that_comes_near_while_a_command_waits_is_kept);
     RUN_TEST(test_a_halt_before_a_limit_goes_on_to_it);
     RUN_TEST(test_polarity_turns_positions_and_speeds_each_for_itself);
     RUN_TEST(test_homing_has_the_polarity_too);

@@ -468,6 +468,20 @@ static void test_lost_syncs_are_made_up_for_slowly(void)
     TEST_ASSERT_EQUAL_UINT32(0, underruns());
 }
 
+/* What was overdue of a SYNC is nothing that a later target would have to make up for. */
+static void test_targets_without_sync_are_followed_behind_syncs_that_are_lost(void)
+{
+    by_sync();
+    sync_stream(50, 400, CYCLE);
+    pass(3 * CYCLE - 1);
+    shows(0, OF_MODE);
+    put(0x1401, 2, 1, 255);
+    target += 1200;
+    stream(20, 400);
+    TEST_ASSERT_EQUAL_HEX32(OF_MODE, status(OF_MODE | LIMITED));
+    TEST_ASSERT_EQUAL_UINT32(0, underruns());
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -493,5 +507,6 @@ int main(void)
     RUN_TEST(test_syncs_that_come_late_and_in_a_heap_are_counted);
     RUN_TEST(test_the_fourth_sync_in_a_row_that_is_missing_ends_the_motion);
     RUN_TEST(test_lost_syncs_are_made_up_for_slowly);
+    RUN_TEST(test_targets_without_sync_are_followed_behind_syncs_that_are_lost);
     return UNITY_END();
 }

@@ -470,6 +470,18 @@ static void test_a_lost_heartbeat_stops_and_switches_off(void)
     assert_state(0x40, get(0x6041));
 }
 
+/* No controlword is in force any more: the drive goes on with the first that comes. */
+static void test_a_heartbeat_lost_before_operation_switches_off_and_drops_the_controlword(void)
+{
+    put(0x1016, 1, 4, 0x00050014); /* node 5, 20 ms */
+    assert_state(0x21, control(0x06));
+    assert_state(0x23, control(0x07));
+    (void)link_bench_say("t705105", 300);
+    assert_state(0x40, get(0x6041));
+    TEST_ASSERT_EQUAL_HEX16(0, get(0x6040) & 0xffffu);
+    assert_state(0x21, control(0x06));
+}
+
 /* What it had lost comes back: its emergency is over, which another one says. */
 static void test_a_heartbeat_that_comes_back_ends_its_emergency(void)
 {
@@ -539,6 +551,25 @@ static void test_communication_that_is_reset_leaves_nothing_moving(void)
     assert_state(0x23, get(0x6041));
 }
 
+/* A question that comes right behind the line that opens it: before the next period. */
+static void test_a_channel_that_opens_answers_at_once_with_the_drive_as_it_is(void)
+{
+    char answer[32];
+
+    enable(1);
+    put(0x607a, 0, 4, TURN / 8);
+    (void)control(0x1f);
+    bench_periods(8000);
+    (void)link_bench_say("C", 1);
+    (void)bench_heard();
+    bench_type("O\rt60184062600000000000\r");
+    for (int i = 0; i < 10; i++) {
+        application_background(&bench.application);
+    }
+    snprintf(answer, sizeof answer, "t581843626000%02X%02X0000", TURN / 8 & 0xff, TURN / 8 >> 8);
+    link_bench_heard(answer, bench_heard());
+}
+
 static void test_a_client_that_only_listens_stops_nothing(void)
 {
     turn();
@@ -604,11 +635,13 @@ int main(void)
     RUN_TEST(test_torque_is_limited_in_thousandths_of_the_rated_one);
     RUN_TEST(test_homing_makes_here_the_offset);
     RUN_TEST(test_a_lost_heartbeat_stops_and_switches_off);
+    RUN_TEST(test_a_heartbeat_lost_before_operation_switches_off_and_drops_the_controlword);
     RUN_TEST(test_a_heartbeat_that_comes_back_ends_its_emergency);
     RUN_TEST(test_what_is_not_supervised_any_more_is_no_error);
     RUN_TEST(test_a_quick_stop_that_stays_ends_when_the_heartbeat_is_lost);
     RUN_TEST(test_a_node_that_is_stopped_stops_and_switches_off);
     RUN_TEST(test_communication_that_is_reset_leaves_nothing_moving);
+    RUN_TEST(test_a_channel_that_opens_answers_at_once_with_the_drive_as_it_is);
     RUN_TEST(test_a_client_that_only_listens_stops_nothing);
     RUN_TEST(test_homing_that_the_drive_refuses_is_an_error);
     RUN_TEST(test_a_channel_that_closes_is_a_heartbeat_lost);

@@ -83,11 +83,26 @@ static void test_turns_that_are_not_one_behind_the_other_leave_none(void)
     }
 }
 
+static void test_a_turn_begins_where_the_direction_changes(void)
+{
+    const struct seen stands = {.share = 0.0};
+
+    for (int n = 0; n < 2; n++) {
+        const double direction = n == 0 ? 1.0 : -1.0;
+
+        lead_watch_reset(&watch);
+        TEST_ASSERT_FALSE(is_left(stands, direction, BLOCKS_OF_TURN - 3));
+        TEST_ASSERT_FALSE(is_left(stands, -direction, 2 * BLOCKS_OF_TURN - 3));
+        TEST_ASSERT_TRUE(is_left(stands, -direction, 6));
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_rotor_that_does_not_come_along_is_left_behind_two_turns);
     RUN_TEST(test_an_offset_is_taken_neither_for_a_rotor_that_comes_along_nor_for_one_that_stands);
     RUN_TEST(test_turns_that_are_not_one_behind_the_other_leave_none);
+    RUN_TEST(test_a_turn_begins_where_the_direction_changes);
     return UNITY_END();
 }

@@ -117,6 +117,8 @@ static void test_registers_are_written_one_or_several(void)
     asked("01 03 60c2 0002", "0103040002fffd");
     asked("01 10 607a 0002 04 fffe 7960", "0110607a0002");
     TEST_ASSERT_EQUAL(-100000, bench_link.objects.target_position);
+    asked("01 10 6060 0001 02 0001", "011060600001");
+    asked("01 03 6060 0001", "0103020001");
     asked("01 10 2120 0004 08 3ff8 0000 0000 0000", "011021200004");
     TEST_ASSERT_TRUE(bench.application.chosen.current_limit_A == 1.5);
 }
@@ -134,6 +136,7 @@ static void test_what_cannot_be_is_an_exception(void)
     asked("01 06 6060 0103", "018603"); /* more than a byte */
     asked("01 06 6060 ff03", "018603");
     asked("01 10 607a 0002 02 0000", "019003");
+    asked("01 10 6060 0000 00", "019003");
     asked("01 10 1010 0002 04 0000 0001", "019003"); /* not "save" */
     asked("01 06 2200 0003", "018604");              /* a command that the drive refuses */
     asked("01 08 0001 0000", "018801");

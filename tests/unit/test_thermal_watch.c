@@ -280,6 +280,21 @@ static void test_a_hot_bridge_takes_the_limit_evenly_and_opens_at_its_end(void)
     TEST_ASSERT_EQUAL_UINT8(0, drive.thermal.shown);
 }
 
+static void test_a_limit_set_in_motion_is_derated_by_a_hot_bridge_alone(void)
+{
+    struct drive_settings wanted = settings;
+    char error[DRIVE_ERROR_TEXT];
+
+    heat_bridge((num_real)90.0);
+    TEST_ASSERT_EQUAL_UINT8(0, drive.thermal.motor_derated);
+    const double left_A = law_limit_A();
+
+    wanted.current_limit_A = 1.2 * RATED_A;
+    TEST_ASSERT_TRUE(settings_in_motion_change(&drive, &wanted, error));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * RATED_A, 0.8 * left_A, law_limit_A());
+    TEST_ASSERT_TRUE(limit_A(drive.params.hold.current_limit) < 1.0 * RATED_A);
+}
+
 /* That begins where the bridge is open: there is no derating. */
 static void test_a_derating_that_begins_too_late_leaves_the_fault_where_it_is(void)
 {
@@ -356,6 +371,7 @@ int main(void)
     RUN_TEST(test_a_time_constant_of_zero_watches_no_motor);
     RUN_TEST(test_every_law_is_derated);
     RUN_TEST(test_a_hot_bridge_takes_the_limit_evenly_and_opens_at_its_end);
+    RUN_TEST(test_a_limit_set_in_motion_is_derated_by_a_hot_bridge_alone);
     RUN_TEST(test_a_derating_that_begins_too_late_leaves_the_fault_where_it_is);
     RUN_TEST(test_a_sensor_that_is_broken_is_said_and_takes_nothing);
     RUN_TEST(test_a_board_without_sensor_is_not_asked_and_watches_the_motor_all_the_same);
