@@ -21,7 +21,7 @@
 #define PUSHED_GONE       NUM(0.25)
 #define LOOKS_MAX         7u
 #define MISSED_MAX        15u
-#define SAME_MAX          128u
+#define SAME_MAX          112u
 #define SAME_MISSED       16u
 #define MISSED_SAME       2u /* one may be of the period in which it moved */
 #define SAME_OTHER_MAX    8u /* of a converter that is alive */
@@ -346,9 +346,12 @@ static enum drive_fault judge_resistance(const struct drive *drive, const struct
    at two ninths of it what is seen four and five periods apart stands for ever. */
 static uint32_t interval(const struct drive *drive)
 {
-    return phase_watch_chatters(drive) || is_faster(drive, FAST_TURNS)
-               ? LOOK_PERIODS + drive->phase_watch.apart
-               : LOOK_PERIODS;
+    const uint32_t more = drive->phase_watch.apart;
+
+    if (is_faster(drive, FAST_TURNS)) {
+        return LOOK_PERIODS + more;
+    }
+    return phase_watch_chatters(drive) ? LOOK_PERIODS + more % 2u : LOOK_PERIODS;
 }
 
 void phase_watch_background(struct drive *drive)

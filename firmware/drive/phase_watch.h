@@ -10,14 +10,13 @@
  * its observer see; over the periods in which a current law misses its reference by 15 % of the
  * rated current, or a voltage law acts. But for feedback linearisation voltage laws may change
  * their voltage's sign from period to period: of these the sum is of |...| with the sign of
- * u - R i - e. They are looked at four to nine periods apart in turn, as are all from a sixteenth
- * of an electrical turn a period on: whatever the speed, in seven looks each current differs by six
- * tenths of its amplitude. One that is small may not, within noise; then no more does the other
- * phase's, and nothing is sure.
- * A rotor that has pulled out shows a back-EMF that is not its estimate's, too, but with currents
- * that follow. Without an encoder e is that of the reference, turned by what the estimate has been
- * beside it over the last 13 ms: with the reference's alone a rotor that lags, on a belt that
- * swings, was a broken lead.
+ * u - R i - e. They are looked at four and five periods apart in turn, and all currents four to
+ * nine from a sixteenth of an electrical turn a period on: whatever the speed, in seven looks each
+ * current differs by six tenths of its amplitude. One that is small may not, within noise; then no
+ * more does the other phase's, and nothing is sure. A rotor that has pulled out shows a back-EMF
+ * that is not its estimate's, too, but with currents that follow. Without an encoder e is that of
+ * the reference, turned by what the estimate has been beside it over the last 13 ms: with the
+ * reference's alone a rotor that lags, on a belt that swings, was a broken lead.
  *
  * In a hold a stuck sensor lets the true current drift away, and the resistance that is found with
  * it: at the end of its range it is the sensor of the larger current.
@@ -27,7 +26,7 @@
  * bridge's dead time keeps the current of a rotor that is shaken at zero for as long.
  *
  * A converter that is alive is so by its noise, if by nothing else. It is dead that gives the very
- * same code of a current in 16 looks with a reference that has left it; or any code in 128, if its
+ * same code of a current in 16 looks with a reference that has left it; or any code in 112, if its
  * codes were seen to scatter as it was calibrated (offset_calibration.h). If they were not, while
  * the other phase's change, and the rotor turns by an electrical turn, in which no current stays
  * within a code, or a settled hold's resistance moves by an eighth, as no winding's does so soon.

@@ -154,8 +154,8 @@ static void test_with_an_encoder_and_its_default_law(void)
     static const struct row rows[] = {
         {LEAD_A, false, "open-phase-a", 90, 150, 0},
         {LEAD_B, false, "open-phase-b", 10, 50, 0},
-        {LEAD_A, true, "open-phase-a", 500, 900, 0},
-        {LEAD_B, true, "open-phase-b", 500, 900, 0},
+        {LEAD_A, true, "open-phase-a", 440, 840, 0},
+        {LEAD_B, true, "open-phase-b", 440, 840, 0},
         {SENSOR_B, true, "current-sensor-b", 20, 90, 0},
         {SENSOR_A, true, "current-sensor-a", 20, 90, 11},
         {LEG_VOLTAGE, true, "voltage-sensor", 80, 180, 0},

@@ -435,9 +435,9 @@ static int looks_until_dead_in_motion(int changes_a, int changes_b)
 /* The first shows the code. */
 static void test_a_converter_without_noise_is_dead_while_the_rotor_turns(void)
 {
-    TEST_ASSERT_EQUAL_INT(129, looks_until_dead_in_motion(1, 0));
-    TEST_ASSERT_EQUAL_INT(129, looks_until_dead_in_motion(8, 0));
-    TEST_ASSERT_EQUAL_INT(NEVER, looks_until_dead_in_motion(1, 128)); /* it is alive */
+    TEST_ASSERT_EQUAL_INT(113, looks_until_dead_in_motion(1, 0));
+    TEST_ASSERT_EQUAL_INT(113, looks_until_dead_in_motion(8, 0));
+    TEST_ASSERT_EQUAL_INT(NEVER, looks_until_dead_in_motion(1, 112)); /* it is alive */
     TEST_ASSERT_EQUAL_INT(NEVER, looks_until_dead_in_motion(0, 0));   /* no noise at all */
     setUp();
     TEST_ASSERT_EQUAL_INT(NEVER, looks_until_dead(1, 0, 0, DRIVE_FAULT_NONE)); /* it rests */
@@ -451,25 +451,25 @@ static void test_a_sensor_that_scattered_is_dead_as_soon_as_it_does_not(void)
     for (int n = 0; n < 3; n++) {
         setUp();
         look.noisy[1] = true;
-        TEST_ASSERT_EQUAL_INT(129, looks_until_dead(others[n], 0, 0, DRIVE_FAULT_CURRENT_SENSOR_B));
+        TEST_ASSERT_EQUAL_INT(113, looks_until_dead(others[n], 0, 0, DRIVE_FAULT_CURRENT_SENSOR_B));
     }
     setUp();
     look.noisy[1] = true;
-    TEST_ASSERT_EQUAL_INT(NEVER, looks_until_dead(0, 128, 0, DRIVE_FAULT_NONE));
+    TEST_ASSERT_EQUAL_INT(NEVER, looks_until_dead(0, 112, 0, DRIVE_FAULT_NONE));
     setUp();
     look.noisy[0] = true; /* the other's noise is none of this one's */
     TEST_ASSERT_EQUAL_INT(NEVER, looks_until_dead(1, 0, 0, DRIVE_FAULT_NONE));
 }
 
-/* 64 in 128 looks are more than 40 and 32 are less; a low byte wraps. */
+/* 56 in 112 looks are more than 40 and 28 are less; a low byte wraps. */
 static void test_in_a_hold_it_is_dead_as_the_resistance_moves_by_an_eighth(void)
 {
     setUp();
     look.held = look.settled = look.flows[1] = true;
-    TEST_ASSERT_EQUAL_INT(129, looks_until_dead(1, 0, 2, DRIVE_FAULT_CURRENT_SENSOR_B));
+    TEST_ASSERT_EQUAL_INT(113, looks_until_dead(1, 0, 2, DRIVE_FAULT_CURRENT_SENSOR_B));
     setUp();
     look.held = look.settled = look.flows[1] = true;
-    TEST_ASSERT_EQUAL_INT(129, looks_until_dead(1, 0, -2, DRIVE_FAULT_CURRENT_SENSOR_B));
+    TEST_ASSERT_EQUAL_INT(113, looks_until_dead(1, 0, -2, DRIVE_FAULT_CURRENT_SENSOR_B));
     setUp();
     look.held = look.settled = look.flows[1] = true;
     TEST_ASSERT_EQUAL_INT(NEVER, looks_until_dead(1, 0, 4, DRIVE_FAULT_NONE));
