@@ -109,8 +109,10 @@ static bool judge(struct offset_channel *channel, const struct offset_calibratio
 static bool is_noisy(const struct offset_channel *channel)
 {
     const int32_t samples = OFFSET_SAMPLES - OFFSET_REFERENCE_SAMPLES;
+    const int32_t beside = magnitude(channel->sum - OFFSET_SAMPLES * channel->reference);
+    const int32_t explained = beside * samples / (2 * OFFSET_SAMPLES);
 
-    return 4 * channel->deviation >= OFFSET_NOISE_QUARTERS * samples;
+    return 100 * (channel->deviation - explained) >= OFFSET_NOISE_PERCENT * samples;
 }
 
 /* The last sample of a stage has been added. */

@@ -43,9 +43,10 @@
 #define OFFSET_SHIFT_CODES_MAX     12
 #define OFFSET_DEVIATION_CODES_MAX 1
 
-/* Quarters of a code: mean deviation from the nearest code to their mean, from which on samples are
-   noisy, of 0.8 codes rms and more. */
-#define OFFSET_NOISE_QUARTERS 3
+/* Percent of a code: mean deviation from the nearest code to their mean, less half of the mean's
+   own, from which on samples are noisy. A mean between two codes makes 25 of it without noise; 0.8
+   codes rms make 47 and more wherever it lies, 0.5 codes 32 at most. */
+#define OFFSET_NOISE_PERCENT 40
 
 enum {
     OFFSET_CHANNELS = 4,

@@ -384,11 +384,12 @@ static int called_noisy(double noise_codes)
     return times;
 }
 
-/* Of one within which a code may well stand for 128 looks none, wherever it lies. */
+/* Of one within which a code may well stand for 112 looks none, wherever it lies. */
 static void test_a_current_whose_codes_scatter_is_noisy(void)
 {
     TEST_ASSERT_EQUAL_INT(80, called_noisy(1.1));
-    TEST_ASSERT_EQUAL_INT(0, called_noisy(0.6));
+    TEST_ASSERT_EQUAL_INT(80, called_noisy(0.8));
+    TEST_ASSERT_EQUAL_INT(0, called_noisy(0.45));
     TEST_ASSERT_EQUAL_INT(0, called_noisy(0.3));
     TEST_ASSERT_EQUAL_INT(0, called_noisy(0.0));
     world.noise_codes = 0.1;
