@@ -230,28 +230,49 @@ double axis_motion_target(struct application *application)
     const bool relative =
         link->axis.mode == CIA402_PROFILE_POSITION && (link->axis.controlword & RELATIVE) != 0u;
     const double unit_rad = cia402_turned_unit_rad(&link->objects, CIA402_POSITION_TURNED);
-    const double from = relative ? motion->target_rad / unit_rad : 0.0;
-    double target = from + (double)link->objects.target_position;
+    const double asked = (double)link->objects.target_position;
+    const double reference = cia402_signals(application)->theta_ref_rad / unit_rad;
+    const int32_t least = link->objects.position_least, most = link->objects.position_most;
+    double target = asked;
 
-    if (target < (double)link->objects.position_least) {
+    if (relative) {
+        target += motion->target_rad / unit_rad;
+    } else if (link->axis.mode == CIA402_PROFILE_POSITION) {
+        target += cia402_wraps(reference);
+    } else { /* the nearest one */
+        target += cia402_wraps(reference - asked);
+    }
+    if (target < (double)least && least != INT32_MIN) {
         motion->limited = true;
-        target = (double)link->objects.position_least;
-    } else if (target > (double)link->objects.position_most) {
+        target = (double)least;
+    } else if (target > (double)most && most != INT32_MAX) {
         motion->limited = true;
-        target = (double)link->objects.position_most;
+        target = (double)most;
     }
     return unit_rad * target;
+}
+
+static struct axis_profile profile_now(const struct application *application)
+{
+    const struct link_objects *objects = &application->link->objects;
+
+    return (struct axis_profile){.speed = objects->profile_velocity,
+                                 .acceleration =
+                                     objects->profile_deceleration < objects->profile_acceleration
+                                         ? objects->profile_deceleration
+                                         : objects->profile_acceleration};
 }
 
 static void take_set_point(struct application *application)
 {
     struct axis_motion *motion = motion_of(application);
 
-    if (motion->waits) {
+    if (motion->waits && (application->link->axis.controlword & AT_ONCE) == 0u) {
         return; /* one is acknowledged already */
     }
     motion->limited = false;
     motion->target_rad = axis_motion_target(application);
+    motion->waiting = profile_now(application);
     motion->waits = true;
     motion->at_once = (application->link->axis.controlword & AT_ONCE) != 0u;
     motion->acknowledged = true;
@@ -259,20 +280,19 @@ static void take_set_point(struct application *application)
     motion->in_window_ms = 0;
 }
 
+static void go(struct application *application, double position_rad, struct axis_profile profile)
+{
+    struct axis_motion *motion = motion_of(application);
+    const float speed = axis_motion_speed(application, profile.speed);
+
+    motion->limited = !axis_motion_post(application, DRIVE_COMMAND_RETARGET, position_rad, speed,
+                                        profile.acceleration) ||
+                      motion->limited;
+}
+
 void axis_motion_go(struct application *application, double position_rad)
 {
-    const struct link_objects *objects = &application->link->objects;
-    struct axis_motion *motion = motion_of(application);
-    const float speed = axis_motion_speed(application, objects->profile_velocity);
-
-    /* a new target has one for both ends */
-    const uint32_t lesser = objects->profile_deceleration < objects->profile_acceleration
-                                ? objects->profile_deceleration
-                                : objects->profile_acceleration;
-
-    motion->limited =
-        !axis_motion_post(application, DRIVE_COMMAND_RETARGET, position_rad, speed, lesser) ||
-        motion->limited;
+    go(application, position_rad, profile_now(application));
 }
 
 /* A set-point begins when the one before has ended, or at once. A halt ends none. */
@@ -284,11 +304,12 @@ static void go_to_target(struct application *application)
     if (motion->waits && (motion->at_once || ended)) {
         motion->waits = false;
         motion->begun_rad = motion->target_rad;
+        motion->begun = motion->waiting;
         motion->pending = true;
     }
     if (motion->pending && !motion->halted) {
         motion->pending = false;
-        axis_motion_go(application, motion->begun_rad);
+        go(application, motion->begun_rad, motion->begun);
     }
 }
 
@@ -428,7 +449,7 @@ void axis_motion_control(struct application *application, uint16_t risen)
     motion->halted = halted;
     if ((risen & NEW_SET_POINT) != 0u && axis->mode == CIA402_PROFILE_POSITION) {
         take_set_point(application);
-    } else if ((risen & START_HOMING) != 0u && axis->mode == CIA402_HOMING) {
+    } else if ((risen & START_HOMING) != 0u && axis->mode == CIA402_HOMING && !halted) {
         axis_homing_start(application);
     }
 }
@@ -438,7 +459,8 @@ static bool changes_mode(struct application *application)
 {
     struct link *link = application->link;
 
-    if (link->objects.mode == link->axis.mode) {
+    if (link->objects.mode == link->axis.mode) { /* begun, or asked for again */
+        motion_of(application)->halted = (link->axis.controlword & HALT) != 0u;
         return false;
     }
     if (axis_motion_rests(application)) {

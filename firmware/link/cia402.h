@@ -37,16 +37,22 @@ enum cia402_mode {
 struct application;
 
 /* What the motion of a mode goes by: axis_motion.c. */
+/* Of a set-point as it came, in units: 6081h, and for both ends the lesser of 6083h and 6084h. */
+struct axis_profile {
+    uint32_t speed, acceleration;
+};
+
 struct axis_motion {
     struct axis_homing homing;
-    double target_rad;      /* of the last set-point */
-    double begun_rad;       /* of the one that has begun last */
-    float speed_rad_s;      /* as commanded last, of profile velocity */
-    float reference_rad_s;  /* a millisecond ago */
-    float jerk;             /* of what is in motion */
-    float way;              /* by its sign to the limit at which a torque has ended */
-    uint32_t max_speed_rpm; /* of the torque commanded last */
-    int16_t target;         /* that, in thousandths */
+    double target_rad;                  /* of the last set-point */
+    double begun_rad;                   /* of the one that has begun last */
+    struct axis_profile waiting, begun; /* theirs */
+    float speed_rad_s;                  /* as commanded last, of profile velocity */
+    float reference_rad_s;              /* a millisecond ago */
+    float jerk;                         /* of what is in motion */
+    float way;                          /* by its sign to the limit at which a torque has ended */
+    uint32_t max_speed_rpm;             /* of the torque commanded last */
+    int16_t target;                     /* that, in thousandths */
     uint16_t in_window_ms, off_ms;
     uint8_t steady_ms; /* for so long the reference's speed has been constant */
     bool waits;        /* a set-point has not begun */
@@ -103,6 +109,9 @@ int32_t cia402_thousandths(struct application *application, uint16_t index);
 
 /* Bits of 607eh: what is counted against the motor's own direction. */
 enum { CIA402_POSITION_TURNED = 0x80, CIA402_VELOCITY_TURNED = 0x40 };
+
+/* Positions of 32 bits wrap: what of so many units is a multiple of 2^32, the nearest one. */
+double cia402_wraps(double units);
 
 /* A unit of either in rad of the motor, negative where it is turned. */
 double cia402_turned_unit_rad(const struct link_objects *objects, uint8_t turned);

@@ -57,6 +57,14 @@ static int32_t rounded(double value)
     return (int32_t)(value < 0.0 ? value - 0.5 : value + 0.5);
 }
 
+double cia402_wraps(double units)
+{
+    const double range = 4294967296.0;
+    const double ranges = units / range;
+
+    return range * (double)(int32_t)(ranges < 0.0 ? ranges - 0.5 : ranges + 0.5);
+}
+
 /* Of the motor: mA, mN m; what it makes of them, in thousandths; mV. */
 static double rated_share(struct application *application, uint16_t index)
 {
@@ -114,7 +122,8 @@ static double quantity(struct application *application, uint16_t index)
     default:
         return rated_share(application, index);
     }
-    return value / cia402_turned_unit_rad(&application->link->objects, turned);
+    value /= cia402_turned_unit_rad(&application->link->objects, turned);
+    return turned == CIA402_POSITION_TURNED ? value - cia402_wraps(value) : value;
 }
 
 /* Bits of 60fdh: the inputs, quick stop as the first of our own; of 60feh: "set brake", alarm, in

@@ -190,7 +190,8 @@ static void hear(struct application *application, const struct can_frame *frame)
     struct link *link = application->link;
     const uint32_t consumer = link->objects.consumer_heartbeat;
 
-    if ((consumer & 0xffffu) != 0u && frame->id == ID_HEARTBEAT + (consumer >> 16 & 0x7fu)) {
+    if ((consumer & 0xffffu) != 0u && frame->length == 1u &&
+        frame->id == ID_HEARTBEAT + (consumer >> 16 & 0x7fu)) {
         link->heard = true;
         link->heard_us = link->now_us;
         link_end_error(application, LINK_ERROR_HEARTBEAT);
@@ -247,6 +248,7 @@ static void obey_nmt(struct application *application, enum nmt_command command)
     case NMT_START:
         if (link->nmt != LINK_OPERATIONAL) {
             pdo_start(&link->pdos);
+            link->synced = false; /* none was heard meanwhile */
         }
         link->nmt = LINK_OPERATIONAL;
         break;

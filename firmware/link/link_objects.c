@@ -64,25 +64,19 @@ enum object_abort link_ask(struct application *application, const struct object 
     return OBJECT_DONE;
 }
 
-static enum object_abort store(struct application *application, uint32_t signature)
+/* What is restored is what the next reset finds, too. */
+static enum object_abort store(struct application *application, bool restores, uint32_t signature)
 {
     char refusal[DRIVE_ERROR_TEXT];
 
-    if (signature != SAVE) {
+    if (signature != (restores ? LOAD : SAVE)) {
         return OBJECT_NOT_TRANSFERRED;
+    }
+    if (restores && !settings_restore(application, refusal)) {
+        return OBJECT_WRONG_STATE;
     }
     return settings_store(application, refusal) == RECORD_REFUSED ? OBJECT_STORE_FAILED
                                                                   : OBJECT_DONE;
-}
-
-static enum object_abort restore(struct application *application, uint32_t signature)
-{
-    char refusal[DRIVE_ERROR_TEXT];
-
-    if (signature != LOAD) {
-        return OBJECT_NOT_TRANSFERRED;
-    }
-    return settings_restore(application, refusal) ? OBJECT_DONE : OBJECT_WRONG_STATE;
 }
 
 /* The current limit, in thousandths of the rated current: torque goes with it. */
@@ -121,9 +115,8 @@ enum object_abort link_obey(struct application *application, const struct object
         application->link->errors = 0;
         return OBJECT_DONE;
     case 0x1010:
-        return store(application, can_get(value, 4));
     case 0x1011:
-        return restore(application, can_get(value, 4));
+        return store(application, object->index == 0x1011u, can_get(value, 4));
     case 0x6072:
         return limit_torque(application, can_get(value, 2));
     case 0x2400:

@@ -220,14 +220,14 @@ bool sdo_serve(struct application *application, const struct can_frame *request,
     if (request->length != 8u) {
         return false;
     }
-    if (sdo->state == SDO_BLOCK_RECEIVES ? request->data[0] == ABORTS
-                                         : request->data[0] >> 5 == CLIENT_ABORTS) {
+    const bool segment = sdo->state == SDO_BLOCK_RECEIVES && sdo_block_is_segment(request);
+
+    if (segment ? request->data[0] == ABORTS : request->data[0] >> 5 == CLIENT_ABORTS) {
         sdo->state = SDO_IDLE;
         return false;
     }
-    const uint32_t abort = sdo->state == SDO_BLOCK_RECEIVES
-                               ? sdo_block_take(application, request, response, &answers)
-                               : obey(application, request, response, &answers);
+    const uint32_t abort = segment ? sdo_block_take(application, request, response, &answers)
+                                   : obey(application, request, response, &answers);
 
     if (abort != OBJECT_DONE) {
         refuse(sdo, response, abort);

@@ -194,6 +194,11 @@ uint32_t sdo_block_download(struct application *application, const struct can_fr
                                                : end_download(application, request, response);
 }
 
+bool sdo_block_is_segment(const struct can_frame *request)
+{
+    return (request->data[0] & SEQUENCE_MAX) <= BLOCK_DOWN;
+}
+
 uint32_t sdo_block_take(struct application *application, const struct can_frame *request,
                         struct can_frame *response, bool *answers)
 {

@@ -20,6 +20,10 @@ uint32_t sdo_block_upload(struct application *application, const struct can_fram
 uint32_t sdo_block_download(struct application *application, const struct can_frame *request,
                             struct can_frame *response);
 
+/* Whether a frame may be one while segments are awaited: no other request's first byte is as low.
+ */
+bool sdo_block_is_segment(const struct can_frame *request);
+
 /* A segment of a block download. */
 uint32_t sdo_block_take(struct application *application, const struct can_frame *request,
                         struct can_frame *response, bool *answers);

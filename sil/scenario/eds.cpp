@@ -116,7 +116,7 @@ struct Access {
 };
 constexpr Access RO = {"ro", false, false}, RO_T = {"ro", true, false},
                  RO_NODE = {"ro", false, true}, RW = {"rw", false, false},
-                 RW_R = {"rw", true, false};
+                 RW_R = {"rww", true, false};
 
 struct Row {
     unsigned index, sub;

@@ -698,7 +698,131 @@ static void test_a_halt_behind_a_move_moves_nothing(void)
     TEST_ASSERT_TRUE(rests());
 }
 
+/* Enabled, in another mode, or with the start of a homing: a halt that stands is one. */
+static void test_nothing_begins_in_a_halt_that_stands(void)
+{
+    put(0x6060, 0, 1, 3);
+    put(0x60ff, 0, 4, TURN);
+    control(0x06);
+    bench_periods(20);
+    control(0x10f);
+    bench_periods(2000);
+    TEST_ASSERT_EQUAL_HEX32(0x27, status(0x6f));
+    TEST_ASSERT_EQUAL_INT(0, (int)get(0x606b));
+    put(0x6060, 0, 1, 6);
+    put(0x6098, 0, 1, (uint32_t)-1);
+    bench_periods(50);
+    control(0x11f);
+    bench_periods(2000);
+    TEST_ASSERT_EQUAL_INT(0, (int)get(0x606b));
+    put(0x6060, 0, 1, 3);
+    bench_periods(2000);
+    TEST_ASSERT_EQUAL_INT(0, (int)get(0x606b));
+    control(0x0f);
+    bench_periods(8000);
+    TEST_ASSERT_INT_WITHIN(1, TURN, (int)get(0x606b));
+}
+
+static void test_a_target_at_once_replaces_one_that_waits(void)
+{
+    enable(1);
+    put(0x607a, 0, 4, 4 * TURN);
+    control(0x1f);
+    control(0x0f);
+    put(0x607a, 0, 4, 8 * TURN);
+    control(0x1f);
+    control(0x0f);
+    put(0x607a, 0, 4, TURN / 2);
+    control(0x1f); /* finds the buffer full */
+    control(0x0f);
+    put(0x607a, 0, 4, TURN);
+    control(0x3f);
+    control(0x0f);
+    TEST_ASSERT_TRUE(furthest() < 3 * TURN);
+    TEST_ASSERT_EQUAL_INT(TURN, (int)get(0x6062));
+}
+
+static void test_a_target_that_waits_keeps_the_profile_that_it_came_with(void)
+{
+    enable(1);
+    put(0x607a, 0, 4, TURN);
+    control(0x1f);
+    control(0x0f);
+    put(0x607a, 0, 4, 8 * TURN);
+    put(0x6081, 0, 4, TURN);
+    control(0x1f);
+    control(0x0f);
+    put(0x6081, 0, 4, TURN / 8);
+    bench_periods(20000);
+    TEST_ASSERT_INT_WITHIN(5, TURN, (int)get(0x606b));
+    control(0x10f);
+    bench_periods(4000);
+    control(0x0f);
+    bench_periods(8000);
+    TEST_ASSERT_INT_WITHIN(5, TURN, (int)get(0x606b));
+}
+
+/* ---- positions beyond 32 bits ---- */
+
+/* Where 607ch puts it. */
+static void at(int32_t position)
+{
+    enable(6);
+    put(0x6098, 0, 1, 37);
+    put(0x607c, 0, 4, (uint32_t)position);
+    control(0x1f);
+    bench_periods(50);
+    control(0x0f);
+    put(0x6060, 0, 1, 1);
+    bench_periods(50);
+    TEST_ASSERT_EQUAL_INT32(position, (int32_t)get(0x6062));
+}
+
+static void go(int32_t target, unsigned word)
+{
+    put(0x607a, 0, 4, (uint32_t)target);
+    control(word);
+    control(0x0f);
+    bench_periods(30000);
+    TEST_ASSERT_TRUE(rests());
+}
+
+static void test_a_position_wraps_and_targets_are_of_the_range_it_is_in(void)
+{
+    at(INT32_MAX - 1000);
+    go(3000, 0x5f);
+    TEST_ASSERT_EQUAL_INT32(INT32_MIN + 1999, (int32_t)get(0x6062));
+    go(INT32_MIN + 500, 0x1f);
+    TEST_ASSERT_EQUAL_INT32(INT32_MIN + 500, (int32_t)get(0x6062));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 1501.0 * unit_rad,
+                              link_bench_reference_rad() - (INT32_MAX - 1000.0) * unit_rad);
+    TEST_ASSERT_EQUAL_HEX32(0, status(LIMITED));
+    go(-3000, 0x5f);
+    TEST_ASSERT_EQUAL_INT32(INT32_MAX - 2499, (int32_t)get(0x6062));
+}
+
+static void test_a_software_limit_ends_what_would_wrap(void)
+{
+    put(0x607d, 2, 4, INT32_MAX - 10);
+    at(INT32_MAX - 1000);
+    go(3000, 0x5f);
+    TEST_ASSERT_EQUAL_INT32(INT32_MAX - 10, (int32_t)get(0x6062));
+    TEST_ASSERT_EQUAL_HEX32(LIMITED, status(LIMITED));
+}
+
 /* ---- from mode to mode ---- */
+
+static void test_a_mode_that_is_asked_for_again_goes_on(void)
+{
+    enable(3);
+    put(0x60ff, 0, 4, TURN);
+    bench_periods(8000);
+    put(0x6060, 0, 1, 1);
+    bench_periods(20);
+    put(0x6060, 0, 1, 3);
+    bench_periods(8000);
+    TEST_ASSERT_INT_WITHIN(1, TURN, (int)get(0x606b));
+}
 
 static void test_a_mode_begins_at_rest(void)
 {
@@ -775,6 +899,12 @@ int main(void)
     RUN_TEST(test_a_halt_at_rest_takes_two_targets);
     RUN_TEST(test_a_halt_that_ends_before_the_rest_lets_it_go_on);
     RUN_TEST(test_a_halt_behind_a_move_moves_nothing);
+    RUN_TEST(test_nothing_begins_in_a_halt_that_stands);
+    RUN_TEST(test_a_target_at_once_replaces_one_that_waits);
+    RUN_TEST(test_a_target_that_waits_keeps_the_profile_that_it_came_with);
+    RUN_TEST(test_a_position_wraps_and_targets_are_of_the_range_it_is_in);
+    RUN_TEST(test_a_software_limit_ends_what_would_wrap);
+    RUN_TEST(test_a_mode_that_is_asked_for_again_goes_on);
     RUN_TEST(test_a_mode_begins_at_rest);
     RUN_TEST(test_homing_is_reached_at_rest_once_it_was_asked_for);
     return UNITY_END();

@@ -136,6 +136,20 @@ static void test_blocks_are_received_and_checked(void)
     TEST_ASSERT_EQUAL_STRING("8020210010000706", link_bench_sdo("C620210004000000"));
 }
 
+/* Of a client that is gone. */
+static void test_a_request_ends_a_block_that_was_left(void)
+{
+    static const char *const requests[] = {"4000100000000000", "2B17100010000000",
+                                           "C420210000000000", "A000100004000000"};
+
+    link_bench_open();
+    for (size_t i = 0; i < sizeof requests / sizeof requests[0]; i++) {
+        TEST_ASSERT_EQUAL_STRING("A420210002000000", link_bench_sdo("C420210000000000"));
+        TEST_ASSERT_NOT_EQUAL('8', link_bench_sdo(requests[i])[0]);
+        TEST_ASSERT_EQUAL_STRING("4300100092010400", link_bench_sdo("4000100000000000"));
+    }
+}
+
 static void test_a_setting_that_waits_is_refused_while_the_drive_is_ready(void)
 {
     link_bench_open();
@@ -402,6 +416,7 @@ int main(int count, char **arguments)
     RUN_TEST(test_a_block_has_no_checksum_unless_it_is_asked_for);
     RUN_TEST(test_more_than_was_sent_is_not_acknowledged);
     RUN_TEST(test_blocks_are_received_and_checked);
+    RUN_TEST(test_a_request_ends_a_block_that_was_left);
     RUN_TEST(test_a_setting_that_waits_is_refused_while_the_drive_is_ready);
     RUN_TEST(test_a_fault_is_an_emergency_and_stays_in_the_list);
     RUN_TEST(test_a_pdo_is_mapped_at_run_time_and_sent_when_it_changes);

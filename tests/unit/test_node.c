@@ -205,6 +205,8 @@ static void test_a_heartbeat_that_was_heard_must_come_again_in_time(void)
     enable(); /* none has come: none is missed */
     beat(6, 400);
     TEST_ASSERT_FALSE(bench_link.comm_errors);
+    (void)link_bench_say("t7050", 400); /* a heartbeat has a state */
+    TEST_ASSERT_FALSE(bench_link.comm_errors);
     beat(5, 195);
     TEST_ASSERT_FALSE(bench_link.comm_errors);
     beat(5, 195);
@@ -282,6 +284,22 @@ static void test_sync_may_be_late_by_half_of_its_period(void)
     TEST_ASSERT_TRUE(is_off());
 }
 
+/* None counts while the node is not operational: the first one behind is the one that begins. */
+static void test_sync_is_missed_from_the_first_one_of_an_operational_node_on(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1006, 0, 4, 4000));
+    enable();
+    (void)link_bench_nmt(START, 2);
+    (void)link_bench_say("t0800", 30);
+    (void)link_bench_nmt(PRE_OPERATIONAL, 2);
+    for (int i = 0; i < 20; i++) {
+        (void)link_bench_say("t0800", 40);
+    }
+    (void)link_bench_nmt(START, 30);
+    TEST_ASSERT_FALSE(bench_link.comm_errors);
+    link_bench_heard("t08180081110000000000\r", link_bench_say("t0800", 75));
+}
+
 static void test_a_sync_that_is_not_watched_may_stay_away(void)
 {
     enable();
@@ -336,6 +354,7 @@ int main(void)
     RUN_TEST(test_a_heartbeat_has_all_of_its_time);
     RUN_TEST(test_heartbeats_are_watched_only_with_a_time);
     RUN_TEST(test_sync_may_be_late_by_half_of_its_period);
+    RUN_TEST(test_sync_is_missed_from_the_first_one_of_an_operational_node_on);
     RUN_TEST(test_a_sync_that_is_not_watched_may_stay_away);
     RUN_TEST(test_a_channel_that_closes_ends_what_sync_has_driven);
     RUN_TEST(test_a_frame_that_does_not_fit_is_lost_whole);

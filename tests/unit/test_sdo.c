@@ -230,7 +230,10 @@ static void test_defaults_are_put_in_force_by_their_word_only(void)
     asked("1D40000000000000", "3000000000000000");
     TEST_ASSERT_EQUAL_HEX32(OBJECT_NOT_TRANSFERRED, link_bench_put(0x1011, 1, 4, 0x65766173));
     TEST_ASSERT_TRUE(bench.application.chosen.current_limit_A == 2.0);
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1010, 1, 4, 0x65766173));
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1011, 1, 4, 0x64616f6c));
+    TEST_ASSERT_TRUE(bench.application.chosen.current_limit_A == limit_A);
+    (void)link_bench_nmt(0x81, 20); /* finds what is stored, which are the defaults */
     TEST_ASSERT_TRUE(bench.application.chosen.current_limit_A == limit_A);
     (void)link_bench_put(0x2200, 0, 1, 1); /* enable */
     bench_periods(10);
