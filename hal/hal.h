@@ -58,7 +58,7 @@ struct hal_facts {
     double control_period_s;
     uint32_t pwm_half_period_counts; /* timer counts from valley to peak: 8500 at 170 MHz and
                                         10 kHz */
-    double dead_time_s;
+    double dead_time_s;       /* 3 % of the period at most: 10 % of the supply lost is a fault */
     double leg_delay_s;       /* largest difference between the delays of the two legs of a phase */
     double low_state_s;       /* in which all four low sides are to conduct around each S(k), to
                                  measure the currents there; dead time included */

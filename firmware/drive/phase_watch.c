@@ -149,15 +149,18 @@ static void take_code(struct phase_watch *watch, const struct phase_look *look, 
 }
 
 /* A rotor that turns takes a phase's voltage through zero, where none is wrong by much. Returns
-   whether it is sure. */
-static bool count_wrong(struct phase_watch *watch, bool wrong)
+   whether it is sure. What is suspected is one store: the control interrupt reads it. */
+static bool judge_voltage(struct phase_watch *watch, bool wrong, uint32_t passed, uint8_t suspected)
 {
+    if (passed > GAP_PERIODS) {
+        watch->wrong = 0u;
+    }
     if (wrong) {
-        watch->suspected = DRIVE_FAULT_VOLTAGE_SENSOR;
         watch->wrong = (uint8_t)(watch->wrong + (watch->wrong < WRONG_LOOKS));
     } else {
         watch->wrong = watch->wrong > RIGHT_COUNTS ? (uint8_t)(watch->wrong - RIGHT_COUNTS) : 0u;
     }
+    watch->suspected = wrong ? (uint8_t)DRIVE_FAULT_VOLTAGE_SENSOR : suspected;
     return watch->wrong == WRONG_LOOKS;
 }
 
@@ -173,11 +176,11 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
 {
     const uint32_t passed = look->period - watch->period;
     enum drive_fault fault = DRIVE_FAULT_NONE;
+    uint8_t suspected = DRIVE_FAULT_NONE;
     num_t furthest = NUM(0.0);
 
     watch->period = look->period;
     watch->apart = (uint8_t)((watch->apart + 1u) % LOOKS_APART);
-    watch->suspected = DRIVE_FAULT_NONE;
     for (int phase = 0; phase < 2; phase++) {
         struct phase_count *count = &watch->count[phase];
         const bool alive = watch->count[1 - phase].same < SAME_OTHER_MAX; /* the other one */
@@ -199,7 +202,7 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
 
         if ((gone || count->missed >= MISSED) && look->off[phase] >= furthest) {
             furthest = look->off[phase];
-            watch->suspected = name;
+            suspected = name;
         }
         if (dead ||
             (is_sure(count, num_abs(watch->pushed[phase]), gone, flows, look->fast) &&
@@ -208,7 +211,10 @@ enum drive_fault phase_watch_step(struct phase_watch *watch,
             fault = (enum drive_fault)name;
         }
     }
-    return count_wrong(watch, look->voltage_wrong) ? DRIVE_FAULT_VOLTAGE_SENSOR : fault;
+    if (judge_voltage(watch, look->voltage_wrong, passed, suspected)) {
+        fault = DRIVE_FAULT_VOLTAGE_SENSOR;
+    }
+    return fault;
 }
 
 void phase_watch_forget(struct phase_watch *watch)

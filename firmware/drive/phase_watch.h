@@ -41,8 +41,9 @@
  *
  * A voltage that is measured as far beside what was commanded as no bridge's loss is (actuation.h)
  * is one that is measured wrong, of a leg or of the bus, of which the duty was made. Eight looks
- * make sure, each without it counting against two; one is a suspicion of which a lost or stalled
- * estimate comes, too. A bus voltage of which the share r is shown shows from 0.12 / |1 - r| of
+ * make sure, each without it counting against two; one is a suspicion, of which come a lost or
+ * stalled estimate, a current beyond the trip and a following error. A leg that does not switch
+ * looks the same. A bus voltage of which the share r is shown shows from 0.12 / |1 - r| of
  * the supply on.
  *
  * In the background, by four looks at least; behind fourteen periods that it does not come to it

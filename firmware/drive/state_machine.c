@@ -178,8 +178,9 @@ __attribute__((noinline)) static void disable(struct drive *drive)
    estimate that was made of a wrong voltage stalls without a rotor that does. */
 static bool comes_of(enum drive_fault suspected, enum drive_fault fault)
 {
-    if (suspected == DRIVE_FAULT_VOLTAGE_SENSOR && fault == DRIVE_FAULT_STALLED) {
-        return true;
+    if (suspected == DRIVE_FAULT_VOLTAGE_SENSOR &&
+        (fault == DRIVE_FAULT_STALLED || fault == DRIVE_FAULT_HARDWARE_OVERCURRENT)) {
+        return fault == DRIVE_FAULT_STALLED; /* a comparator has tripped for what flows */
     }
     return suspected != DRIVE_FAULT_NONE && (COMES_OF_PHASE >> fault & 1u) != 0u &&
            (fault > DRIVE_FAULT_HARDWARE_OVERCURRENT || suspected >= DRIVE_FAULT_CURRENT_SENSOR_A);

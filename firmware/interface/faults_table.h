@@ -84,6 +84,6 @@
           STANDS, "correct inductance_H")                                                          \
     FAULT(VOLTAGE_SENSOR, 0xff08, "voltage-sensor",                                                \
           "a phase's voltage is measured far beside what was commanded", NO_LIMIT, WITH_ENCODER,   \
-          "check the dividers of the legs and of the bus voltage")
+          "check the dividers of the legs and of the bus voltage, and that each leg switches")
 
 #endif

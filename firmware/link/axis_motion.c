@@ -215,7 +215,9 @@ void axis_motion_start(struct application *application)
     *motion_of(application) = (struct axis_motion){
         .target_rad = cia402_signals(application)->theta_ref_rad,
         .reached = true,
+        .halted = (link->axis.controlword & HALT) != 0u,
     };
+    motion_of(application)->begun_rad = motion_of(application)->target_rad;
     link->axis.stream.last_rad = motion_of(application)->target_rad;
     link->axis.stream.before_rad = motion_of(application)->target_rad;
     link->axis.stream.by_sync = false;
@@ -239,7 +241,7 @@ double axis_motion_target(struct application *application)
         target += motion->target_rad / unit_rad;
     } else if (link->axis.mode == CIA402_PROFILE_POSITION) {
         target += cia402_wraps(reference);
-    } else { /* the nearest one */
+    } else if (least == INT32_MIN || most == INT32_MAX) { /* the nearest one */
         target += cia402_wraps(reference - asked);
     }
     if (target < (double)least && least != INT32_MIN) {
@@ -269,6 +271,9 @@ static void take_set_point(struct application *application)
 
     if (motion->waits && (application->link->axis.controlword & AT_ONCE) == 0u) {
         return; /* one is acknowledged already */
+    }
+    if (motion->waits) {
+        motion->target_rad = motion->begun_rad; /* a relative one goes on from there */
     }
     motion->limited = false;
     motion->target_rad = axis_motion_target(application);
@@ -449,8 +454,12 @@ void axis_motion_control(struct application *application, uint16_t risen)
     motion->halted = halted;
     if ((risen & NEW_SET_POINT) != 0u && axis->mode == CIA402_PROFILE_POSITION) {
         take_set_point(application);
-    } else if ((risen & START_HOMING) != 0u && axis->mode == CIA402_HOMING && !halted) {
-        axis_homing_start(application);
+    } else if ((risen & START_HOMING) != 0u && axis->mode == CIA402_HOMING) {
+        if (halted) {
+            motion->homed = false;
+        } else {
+            axis_homing_start(application);
+        }
     }
 }
 

@@ -36,12 +36,12 @@ enum cia402_mode {
 
 struct application;
 
-/* What the motion of a mode goes by: axis_motion.c. */
 /* Of a set-point as it came, in units: 6081h, and for both ends the lesser of 6083h and 6084h. */
 struct axis_profile {
     uint32_t speed, acceleration;
 };
 
+/* What the motion of a mode goes by: axis_motion.c. */
 struct axis_motion {
     struct axis_homing homing;
     double target_rad;                  /* of the last set-point */

@@ -60,9 +60,8 @@ static int32_t rounded(double value)
 double cia402_wraps(double units)
 {
     const double range = 4294967296.0;
-    const double ranges = units / range;
 
-    return range * (double)(int32_t)(ranges < 0.0 ? ranges - 0.5 : ranges + 0.5);
+    return range * (double)rounded(units / range);
 }
 
 /* Of the motor: mA, mN m; what it makes of them, in thousandths; mV. */

@@ -20,8 +20,8 @@ uint32_t sdo_block_upload(struct application *application, const struct can_fram
 uint32_t sdo_block_download(struct application *application, const struct can_frame *request,
                             struct can_frame *response);
 
-/* Whether a frame may be one while segments are awaited: no other request's first byte is as low.
- */
+/* Whether a frame is one where they are awaited, or an abort: what begins another transfer has a
+   higher first byte. */
 bool sdo_block_is_segment(const struct can_frame *request);
 
 /* A segment of a block download. */

@@ -15,7 +15,8 @@
 
 #include "firmware/motor/park.h"
 
-/* More than any dead time takes, less than a failed voltage sensor would make of it. */
+/* More than any dead time takes, less than a failed voltage sensor would make of it: where it is
+   reached, phase_watch.h calls the voltage wrong. */
 #define ACTUATION_LOSS_MAX NUM(0.1)
 
 struct actuation {

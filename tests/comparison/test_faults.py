@@ -87,10 +87,12 @@ class Outcomes(unittest.TestCase):
 class Bounds(unittest.TestCase):
     def test_every_cell_has_its_bound_and_every_bound_its_cell_and_reason(self):
         bounds = outcome.read_bounds(BOUNDS)
-        others = map(read_motor, ("8hs15-0604s", "17hs19-2004s1", "87hs78-4204"))
+        others = [read_motor(name) for name in ("8hs15-0604s", "17hs19-2004s1", "87hs78-4204")]
+        unnamed = read_motor("sh1603-5240")
         used = [outcome.bound_of(cell, bounds, BOUNDS) for cell in
                 (*cells.cells_of(HOME), *(cell for motor in others
-                                          for cell in cells.cells_of(motor, cells.DRIVES[:2])))]
+                                          for cell in cells.cells_of(motor, cells.DRIVES[:2])),
+                 *cells.cells_of(unnamed))]
         self.assertEqual([], [bound for bound in bounds if not any(bound is one for one in used)])
         self.assertEqual([], [bound for bound in bounds if len(bound.reason) < 10])
 

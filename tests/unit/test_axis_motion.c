@@ -712,9 +712,11 @@ static void test_nothing_begins_in_a_halt_that_stands(void)
     put(0x6060, 0, 1, 6);
     put(0x6098, 0, 1, (uint32_t)-1);
     bench_periods(50);
+    bench_link.axis.motion.homed = true; /* before */
     control(0x11f);
     bench_periods(2000);
     TEST_ASSERT_EQUAL_INT(0, (int)get(0x606b));
+    TEST_ASSERT_EQUAL_HEX32(0, status(OF_MODE));
     put(0x6060, 0, 1, 3);
     bench_periods(2000);
     TEST_ASSERT_EQUAL_INT(0, (int)get(0x606b));
@@ -740,6 +742,22 @@ static void test_a_target_at_once_replaces_one_that_waits(void)
     control(0x0f);
     TEST_ASSERT_TRUE(furthest() < 3 * TURN);
     TEST_ASSERT_EQUAL_INT(TURN, (int)get(0x6062));
+}
+
+/* What waited was not gone to. */
+static void test_a_relative_target_at_once_goes_on_from_the_one_that_has_begun(void)
+{
+    enable(1);
+    put(0x607a, 0, 4, 2 * TURN);
+    control(0x1f);
+    control(0x0f);
+    put(0x607a, 0, 4, 8 * TURN);
+    control(0x1f);
+    control(0x0f);
+    put(0x607a, 0, 4, TURN);
+    control(0x7f);
+    control(0x0f);
+    TEST_ASSERT_EQUAL_INT32(3 * TURN, furthest());
 }
 
 static void test_a_target_that_waits_keeps_the_profile_that_it_came_with(void)
@@ -901,6 +919,7 @@ int main(void)
     RUN_TEST(test_a_halt_behind_a_move_moves_nothing);
     RUN_TEST(test_nothing_begins_in_a_halt_that_stands);
     RUN_TEST(test_a_target_at_once_replaces_one_that_waits);
+    RUN_TEST(test_a_relative_target_at_once_goes_on_from_the_one_that_has_begun);
     RUN_TEST(test_a_target_that_waits_keeps_the_profile_that_it_came_with);
     RUN_TEST(test_a_position_wraps_and_targets_are_of_the_range_it_is_in);
     RUN_TEST(test_a_software_limit_ends_what_would_wrap);

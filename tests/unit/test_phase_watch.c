@@ -353,6 +353,18 @@ static void test_eight_looks_with_a_wrong_voltage_make_sure_less_two_for_each_wi
     TEST_ASSERT_EQUAL_INT(NEVER, looks_until_voltage(2));
 }
 
+static void test_what_was_measured_wrong_before_a_gap_is_forgotten(void)
+{
+    look.voltage_wrong = true;
+    for (int n = 1; n < 8; n++) {
+        look_behind(NUM(0.0));
+    }
+    look.period += 14u;
+    for (int n = 1; n < 8; n++) {
+        look_behind(NUM(0.0));
+    }
+}
+
 static void test_what_was_measured_wrong_before_the_drive_was_off_is_forgotten(void)
 {
     (void)looks_until_voltage(7);
@@ -535,6 +547,7 @@ int main(void)
     RUN_TEST(test_of_two_phases_the_one_that_is_further_off_is_suspected);
     RUN_TEST(test_a_wrong_voltage_is_suspected_before_a_phase);
     RUN_TEST(test_eight_looks_with_a_wrong_voltage_make_sure_less_two_for_each_without);
+    RUN_TEST(test_what_was_measured_wrong_before_a_gap_is_forgotten);
     RUN_TEST(test_what_was_measured_wrong_before_the_drive_was_off_is_forgotten);
     RUN_TEST(test_what_stands_for_long_goes_on_standing);
     RUN_TEST(test_a_hold_whose_current_stands_at_zero_against_its_voltage_is_open);

@@ -30,7 +30,7 @@ def _add_settings(commands: "Commands") -> None:
     _add(settings, "export", "all of them as text").add_argument("file", nargs="?", default="-")
     _add(settings, "import", "from such a text what differs").add_argument("file")
     _add(settings, "motor", "those of a motor of the library").add_argument("motor")
-    _add(settings, "defaults", "all but the motor's back")
+    _add(settings, "defaults", "all but the motor's back, and stored")
     _add(commands, "store", "settings and what was learned, to flash")
 
 

@@ -59,7 +59,7 @@ class Drive(Axis):
         self.objects.write(0x1010, SAVE, 1)
 
     def defaults(self) -> None:
-        """Of all settings but the motor's, at the next enabling."""
+        """Of all settings but the motor's, at the next enabling, and to flash."""
         self.objects.write(0x1011, LOAD, 1)
 
     # ---- captures ----

@@ -96,7 +96,7 @@ function prepareControls() {
   one("#stop").onclick = () => act("stop");
   all("[data-act]").forEach((button) => {
     button.onclick = async () => {
-      const words = { store: "stored in the drive", defaults: "the defaults are in force at the next enable" };
+      const words = { store: "stored in the drive", defaults: "the defaults are stored, and in force at the next enable" };
       if (await act(button.dataset.act) && words[button.dataset.act]) say(words[button.dataset.act]);
       if (button.dataset.act === "defaults") tried(() => page.settings.refresh());
     };
