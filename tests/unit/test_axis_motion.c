@@ -725,21 +725,21 @@ static void test_nothing_begins_in_a_halt_that_stands(void)
     TEST_ASSERT_INT_WITHIN(1, TURN, (int)get(0x606b));
 }
 
+/* A set-point, its bit 4 with it and gone again. */
+static void give(int32_t target, unsigned word)
+{
+    put(0x607a, 0, 4, (uint32_t)target);
+    control(word);
+    control(0x0f);
+}
+
 static void test_a_target_at_once_replaces_one_that_waits(void)
 {
     enable(1);
-    put(0x607a, 0, 4, 4 * TURN);
-    control(0x1f);
-    control(0x0f);
-    put(0x607a, 0, 4, 8 * TURN);
-    control(0x1f);
-    control(0x0f);
-    put(0x607a, 0, 4, TURN / 2);
-    control(0x1f); /* finds the buffer full */
-    control(0x0f);
-    put(0x607a, 0, 4, TURN);
-    control(0x3f);
-    control(0x0f);
+    give(4 * TURN, 0x1f);
+    give(8 * TURN, 0x1f);
+    give(TURN / 2, 0x1f); /* finds the buffer full */
+    give(TURN, 0x3f);
     TEST_ASSERT_TRUE(furthest() < 3 * TURN);
     TEST_ASSERT_EQUAL_INT(TURN, (int)get(0x6062));
 }
@@ -748,28 +748,18 @@ static void test_a_target_at_once_replaces_one_that_waits(void)
 static void test_a_relative_target_at_once_goes_on_from_the_one_that_has_begun(void)
 {
     enable(1);
-    put(0x607a, 0, 4, 2 * TURN);
-    control(0x1f);
-    control(0x0f);
-    put(0x607a, 0, 4, 8 * TURN);
-    control(0x1f);
-    control(0x0f);
-    put(0x607a, 0, 4, TURN);
-    control(0x7f);
-    control(0x0f);
+    give(2 * TURN, 0x1f);
+    give(8 * TURN, 0x1f);
+    give(TURN, 0x7f);
     TEST_ASSERT_EQUAL_INT32(3 * TURN, furthest());
 }
 
 static void test_a_target_that_waits_keeps_the_profile_that_it_came_with(void)
 {
     enable(1);
-    put(0x607a, 0, 4, TURN);
-    control(0x1f);
-    control(0x0f);
-    put(0x607a, 0, 4, 8 * TURN);
+    give(TURN, 0x1f);
     put(0x6081, 0, 4, TURN);
-    control(0x1f);
-    control(0x0f);
+    give(8 * TURN, 0x1f);
     put(0x6081, 0, 4, TURN / 8);
     bench_periods(20000);
     TEST_ASSERT_INT_WITHIN(5, TURN, (int)get(0x606b));
@@ -798,9 +788,7 @@ static void at(int32_t position)
 
 static void go(int32_t target, unsigned word)
 {
-    put(0x607a, 0, 4, (uint32_t)target);
-    control(word);
-    control(0x0f);
+    give(target, word);
     bench_periods(30000);
     TEST_ASSERT_TRUE(rests());
 }
