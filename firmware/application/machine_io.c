@@ -24,10 +24,20 @@ const char *machine_stop_text(enum machine_stop stop)
     return texts[stop];
 }
 
+static uint32_t active(const struct application *application, uint8_t levels)
+{
+    return (levels ^ (uint32_t)application->chosen.inputs_low) &
+           (uint32_t)application->chosen.inputs_used;
+}
+
 uint32_t machine_io_active(const struct application *application)
 {
-    return (application->io.levels ^ (uint32_t)application->chosen.inputs_low) &
-           (uint32_t)application->chosen.inputs_used;
+    return active(application, application->io.levels);
+}
+
+uint32_t machine_io_seen(const struct application *application)
+{
+    return active(application, application->io.seen);
 }
 
 static uint8_t levels_of(const struct application *application)
@@ -184,6 +194,10 @@ static void stop(struct application *application, enum machine_stop stop)
 {
     static const uint16_t codes[] = {0, LIMIT_CODE, LIMIT_CODE, QUICK_STOP_CODE, ENABLE_CODE};
 
+    if (codes[stop] == LIMIT_CODE && link_operates(application) &&
+        axis_homing_seeks_switch(&application->link->axis.motion.homing)) {
+        return; /* which looks, too */
+    }
     if (LINK_CARRIED && application->link != NULL && application->link->open) {
         link_warn(application, codes[stop]);
     }

@@ -51,6 +51,9 @@ bool machine_io_start(struct application *application, bool starts, char error[D
 /* Of the inputs that are wired those that are active, HAL_INPUT_... */
 uint32_t machine_io_active(const struct application *application);
 
+/* Those that the last look has found active, whether or not the one before has, too. */
+uint32_t machine_io_seen(const struct application *application);
+
 /* Background, all the time. */
 void machine_io_background(struct application *application);
 

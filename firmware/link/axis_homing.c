@@ -3,6 +3,7 @@
 #include "firmware/application/application.h"
 #include "firmware/drive/interrupt_view.h"
 #include "firmware/link/axis_homing_stop.h"
+#include "firmware/link/axis_homing_switch.h"
 #include "firmware/link/axis_motion.h"
 #include "firmware/link/link.h"
 
@@ -16,10 +17,21 @@ static const float sets_out_steps = 1.0f;
 
 static const float index_travel_rad = 1.125f * 6.2831853f;
 
+static const int8_t methods[LINK_HOMING_METHODS_IN_ALL] = {LINK_HOMING_METHODS};
+
+int8_t axis_homing_method(uint8_t number)
+{
+    return methods[number - 1u];
+}
+
 bool axis_homing_is_method(int8_t method)
 {
-    return method == STOP_DOWN || method == STOP_UP || method == INDEX_DOWN || method == INDEX_UP ||
-           method == HERE_BEFORE || method == HERE;
+    for (size_t i = 0; i < sizeof methods; i++) {
+        if (methods[i] == method) {
+            return true;
+        }
+    }
+    return false;
 }
 
 float axis_homing_full_step_rad(const struct application *application)
@@ -50,7 +62,8 @@ static bool shows_index(const struct drive *drive)
 
 uint8_t axis_homing_methods(const struct application *application)
 {
-    return shows_index(&application->drive) ? 6 : 4;
+    return LINK_HOMING_METHODS_IN_ALL -
+           (shows_index(&application->drive) ? 0 : LINK_HOMING_METHODS_ON_INDEX);
 }
 
 void axis_homing_give_up(struct application *application)
@@ -111,6 +124,8 @@ void axis_homing_start(struct application *application)
     motion->homed = false;
     if (method >= HERE_BEFORE) {
         set_position(application, 0.0);
+    } else if (method >= AXIS_HOMING_SWITCH_FIRST && method <= AXIS_HOMING_SWITCH_LAST) {
+        motion->not_homed = !axis_homing_switch_start(application, method);
     } else {
         search(application, method);
     }
@@ -119,6 +134,11 @@ void axis_homing_start(struct application *application)
 bool axis_homing_seeks_stop(const struct axis_homing *homing)
 {
     return homing->on_stop && homing->phase != HOMING_ENDED;
+}
+
+bool axis_homing_seeks_switch(const struct axis_homing *homing)
+{
+    return homing->phase >= HOMING_SEEKS_SWITCH && homing->phase <= HOMING_CROSSES_SWITCH;
 }
 
 void axis_homing_end(struct application *application, double place_rad)
@@ -140,9 +160,9 @@ static void go_to_index(struct application *application, int32_t count)
     const struct link_objects *objects = &application->link->objects;
     struct axis_homing *homing = &application->link->axis.motion.homing;
 
-    homing->index_rad = drive_position_at_count_rad(&application->drive, count);
+    homing->edge_rad = drive_position_at_count_rad(&application->drive, count);
     axis_homing_enter(application, HOMING_SETTLES);
-    axis_homing_go(application, DRIVE_COMMAND_RETARGET, homing->index_rad,
+    axis_homing_go(application, DRIVE_COMMAND_RETARGET, homing->edge_rad,
                    axis_motion_speed(application, objects->homing_zero_speed),
                    objects->quick_stop_deceleration);
 }
@@ -181,9 +201,11 @@ void axis_homing_look(struct application *application)
         axis_motion_brake(application, false); /* interrupted */
     } else if (homing->on_stop) {
         axis_homing_stop_look(application);
+    } else if (axis_homing_seeks_switch(homing)) {
+        axis_homing_switch_look(application);
     } else if (homing->phase != HOMING_SETTLES) {
         look_for_index(application);
     } else if (axis_homing_has_rested(application, SETTLES_ms)) {
-        axis_homing_end(application, homing->index_rad);
+        axis_homing_end(application, homing->edge_rad);
     }
 }

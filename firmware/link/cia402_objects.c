@@ -156,9 +156,6 @@ void cia402_ask(struct application *application, const struct object *object, ui
     case 0x6502:
         can_put(value, MODES | (axis_torque_is_carried(application) ? MODE_OF_TORQUE : 0u), 4);
         break;
-    case 0x60e3:
-        can_put(value, axis_homing_methods(application), 1);
-        break;
     case 0x60fd:
     case 0x60fe:
         can_put(value, wires(application, object->index), 4);

@@ -22,7 +22,7 @@ enum nmt_command {
 
 /* A silence ends what has come of a request: longer than a host's driver puts between two pieces.
  */
-enum { MILLISECOND_us = 1000, MODBUS_SILENCE_us = 5000, ERRORS_KEPT = 4 };
+enum { MILLISECOND_us = 1000, LATE_us = 5000, MODBUS_SILENCE_us = 5000, ERRORS_KEPT = 4 };
 
 /* Of the profile and our own: defaults follow as soon as communication begins. */
 static void put_presets(struct link *link)
@@ -125,7 +125,8 @@ static void send_emergency(struct application *application, uint16_t code, uint8
     can_put(emergency.data, code, 2);
     emergency.data[2] = link_error_register(application);
     emergency.data[3] = more;
-    if (application->link->nmt != LINK_STOPPED) {
+    if (application->link->nmt != LINK_STOPPED &&
+        (application->link->objects.emergency_cob_id & PDO_INVALID) == 0u) {
         link_send(application, &emergency);
     }
     if (code != 0u) {
@@ -198,7 +199,7 @@ static void hear(struct application *application, const struct can_frame *frame)
     }
 }
 
-/* A SYNC may be late by half of its period. */
+/* A SYNC may be late by half of its period, and by what a host's clock and line take anyway. */
 static void watch(struct application *application)
 {
     const struct link *link = application->link;
@@ -215,7 +216,8 @@ static void watch(struct application *application)
         link_since(link, link->heard_us) > 1000u * heartbeat_ms) {
         lose(application, LINK_ERROR_HEARTBEAT, HEARTBEAT_LOST);
     } else if (link->synced && period_us > 0u && link->nmt == LINK_OPERATIONAL &&
-               link_since(link, link->synced_us) > period_us + period_us / 2u) {
+               link_since(link, link->synced_us) >
+                   period_us + (period_us > 2u * LATE_us ? period_us / 2u : LATE_us)) {
         lose(application, LINK_ERROR_SYNC, COMMUNICATION_LOST);
     }
 }

@@ -21,6 +21,18 @@ static uint32_t capture_shown(const struct capture *capture, uint8_t sub)
                                    : capture_period(capture, 0);
 }
 
+static enum object_abort ask_methods(const struct application *application, uint8_t sub,
+                                     uint8_t *value)
+{
+    const uint8_t count = axis_homing_methods(application);
+
+    if (sub > count) {
+        return OBJECT_SUB_MISSING;
+    }
+    value[0] = sub == 0u ? count : (uint8_t)axis_homing_method(sub);
+    return OBJECT_DONE;
+}
+
 enum object_abort link_ask(struct application *application, const struct object *object,
                            uint8_t value[OBJECT_BYTES_MAX], const char **text)
 {
@@ -51,6 +63,8 @@ enum object_abort link_ask(struct application *application, const struct object 
         can_put(value, capture_shown(&application->link->capture, object->sub),
                 object_bytes(object));
         break;
+    case 0x60e3:
+        return ask_methods(application, object->sub, value);
     case 0x2402: /* sdo.h asks for it itself */
         break;
     default:
@@ -143,7 +157,10 @@ bool link_accepts(const struct application *application, const struct object *ob
 
     switch (object->index) {
     case 0x1005:
-        return pdo_may_have(number); /* it makes none, and has no identifiers of 29 bits */
+        /* bit 31 means nothing; it makes none, and has no identifiers of 29 bits */
+        return pdo_may_have(number & ~PDO_INVALID);
+    case 0x1014:
+        return pdo_may_become(application->link->objects.emergency_cob_id, number);
     case 0x1016:
         return number >> 16 <= 127u;
     case 0x2400:

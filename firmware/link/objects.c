@@ -60,8 +60,7 @@ static bool is_of_pdo(uint16_t index)
 static bool find_row(uint16_t index, uint8_t sub, struct object *found, bool *sub_missing)
 {
     const uint16_t of_rows = is_of_pdo(index) ? index & 0xfffcu : index;
-    const bool is_entry = is_of_pdo(index) && (index & 0x200u) != 0u && sub > 1u && sub <= 8u;
-    const uint8_t sub_of_rows = is_entry ? 1 : sub;
+    const uint8_t sub_of_rows = sub > 1u && sub <= LINK_OBJECT_ENTRIES(index, 1u) ? 1 : sub;
 
     for (const struct object_row *row = rows; row != rows + ROWS; row++) {
         if (row->index == of_rows && row->sub == sub_of_rows) {

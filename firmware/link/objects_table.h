@@ -11,13 +11,26 @@
  *
  * - access: RO, RW, WO; _T: may be mapped into a PDO that is sent, _R: that is received; NODE: the
  *   node's number is added to the preset.
- * - Of 1400h, 1600h, 1800h and 1a00h there are four each, one behind the other, and of a mapping
- *   eight entries; the rows show the first.
+ * - Of 1400h, 1600h, 1800h and 1a00h there are four each, one behind the other; the rows show the
+ *   first. Of a mapping and of 60e3h a row stands for as many as LINK_OBJECT_ENTRIES has.
  * - Bytes that count sub-indexes stand last: members lie in the rows' order, and a byte between
  * wider ones takes four.
  */
 #ifndef STEADYSTEP_OBJECTS_TABLE_H
 #define STEADYSTEP_OBJECTS_TABLE_H
+
+/* The methods of homing in 60e3h: those that take an encoder's index last. */
+#define LINK_HOMING_METHODS                                                                        \
+    37, 35, -1, -2, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 33, 34
+
+enum { LINK_HOMING_METHODS_IN_ALL = 20, LINK_HOMING_METHODS_ON_INDEX = 2, LINK_PDO_OBJECTS = 8 };
+
+/* For how many sub-indexes, from its own on, a row stands. */
+#define LINK_OBJECT_ENTRIES(index, sub)                                                            \
+    ((sub) != 1u          ? 1u                                                                     \
+     : (index) == 0x60e3u ? (unsigned)LINK_HOMING_METHODS_IN_ALL                                   \
+     : ((index)&0xfffcu) == 0x1600u || ((index)&0xfffcu) == 0x1a00u ? (unsigned)LINK_PDO_OBJECTS   \
+                                                                    : 1u)
 
 #define LINK_OBJECT_GROUPS(GROUP)                                                                  \
     GROUP(0x1003, "Pre-defined error field")                                                       \
@@ -56,7 +69,7 @@
     ASKED(0x100a, 0, TEXT, RO, 0, "Manufacturer software version")                                 \
     ASKED(0x1010, 1, U32, RW, 1, "Save all parameters")                                            \
     ASKED(0x1011, 1, U32, RW, 1, "Restore all default parameters")                                 \
-    STORED(0x1014, 0, U32, RO_NODE, emergency_cob_id, 0x80, "COB-ID EMCY")                         \
+    STORED(0x1014, 0, U32, RW_NODE, emergency_cob_id, 0x80, "COB-ID EMCY")                         \
     STORED(0x1016, 1, U32, RW, consumer_heartbeat, 0, "Consumer heartbeat time 1")                 \
     STORED(0x1017, 0, U16, RW, heartbeat_ms, 0, "Producer heartbeat time")                         \
     STORED(0x1018, 1, U32, RO, vendor, 0, "Vendor-ID")                                             \
@@ -142,19 +155,14 @@
     STORED(0x609a, 0, U32, RW, homing_acceleration, 0, "Homing acceleration")                      \
     STORED(0x60c2, 1, U8, RW, interval, 4, "Interpolation time period value")                      \
     STORED(0x60c2, 2, I8, RW, interval_exponent, -3, "Interpolation time index")                   \
-    ASKED(0x60e3, 0, U8, RO, 4, "Number of supported homing methods")                              \
+    ASKED(0x60e3, 0, U8, RO, 18, "Number of supported homing methods")                             \
+    ASKED(0x60e3, 1, I8, RO, 0, "Supported homing method")                                         \
     ASKED(0x60f4, 0, I32, RO_T, 0, "Following error actual value")                                 \
     ASKED(0x60fd, 0, U32, RO_T, 0, "Digital inputs")                                               \
     ASKED(0x60fe, 1, U32, RO_T, 0, "Physical outputs")                                             \
     STORED(0x60ff, 0, I32, RW_R, target_velocity, 0, "Target velocity")                            \
     ASKED(0x6502, 0, U32, RO, 0x000000a5, "Supported drive modes")                                 \
     STORED(0x607e, 0, U8, RW, polarity, 0, "Polarity")                                             \
-    STORED(0x60e3, 1, I8, RO, homing_method_1, 37, "Supported homing method 1")                    \
-    STORED(0x60e3, 2, I8, RO, homing_method_2, 35, "Supported homing method 2")                    \
-    STORED(0x60e3, 3, I8, RO, homing_method_3, -1, "Supported homing method 3")                    \
-    STORED(0x60e3, 4, I8, RO, homing_method_4, -2, "Supported homing method 4")                    \
-    STORED(0x60e3, 5, I8, RO, homing_method_5, 33, "Supported homing method 5")                    \
-    STORED(0x60e3, 6, I8, RO, homing_method_6, 34, "Supported homing method 6")                    \
     STORED(0x1010, 0, U8, RO, store_highest, 1, "Highest sub-index supported")                     \
     STORED(0x1011, 0, U8, RO, restore_highest, 1, "Highest sub-index supported")                   \
     STORED(0x1016, 0, U8, RO, consumer_highest, 1, "Highest sub-index supported")                  \

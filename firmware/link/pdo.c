@@ -152,15 +152,15 @@ bool pdo_may_have(uint32_t id)
 }
 
 /* Masters that know of no remote frames leave their bit at 0: it means nothing here. */
-static bool may_become(const struct pdo *pdo, uint32_t cob_id)
+bool pdo_may_become(uint32_t present, uint32_t cob_id)
 {
     const uint32_t id = cob_id & ~NO_REMOTE;
 
     if ((cob_id & EXTENDED) != 0u) {
         return false;
     }
-    return (cob_id & PDO_INVALID) != 0u || id == (pdo->cob_id & ~NO_REMOTE) ||
-           (!exists(pdo) && pdo_may_have(id));
+    return (cob_id & PDO_INVALID) != 0u || id == (present & ~NO_REMOTE) ||
+           ((present & PDO_INVALID) != 0u && pdo_may_have(id));
 }
 
 /* Of one that is received: the last was shorter than what is mapped. */
@@ -184,7 +184,7 @@ enum object_abort pdo_obey(struct application *application, const struct object 
     }
     switch (object->sub) {
     case 1:
-        if (!may_become(pdo, number)) {
+        if (!pdo_may_become(pdo->cob_id, number)) {
             return OBJECT_OUT_OF_RANGE;
         }
         pdo->cob_id = number;

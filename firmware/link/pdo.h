@@ -10,7 +10,7 @@
 #include "firmware/link/can_frame.h"
 #include "firmware/link/objects.h"
 
-enum { PDOS = 4, PDO_OBJECTS = 8, PDO_EVENT = 254 };
+enum { PDOS = 4, PDO_OBJECTS = LINK_PDO_OBJECTS, PDO_EVENT = 254 };
 
 #define PDO_INVALID 0x80000000u /* in a COB-ID */
 
@@ -43,6 +43,9 @@ enum object_abort pdo_obey(struct application *application, const struct object 
 /* Whether a client may give a COB-ID this identifier: CiA 301 keeps those of NMT, the default SDO
    and the heartbeat from it. */
 bool pdo_may_have(uint32_t id);
+
+/* Whether a COB-ID may become another one: its identifier changes only while it is invalid. */
+bool pdo_may_become(uint32_t present, uint32_t cob_id);
 
 /* In NMT state operational: a frame; one that SYNC waited for; the look of each millisecond. */
 void pdo_receive(struct application *application, const struct can_frame *frame);

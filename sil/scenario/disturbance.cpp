@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "hal/hal.h"
+
 namespace scenario
 {
 
@@ -171,6 +173,8 @@ constexpr FaultReader fault_readers[] = {
     {"stops", read_stops_anew},
 };
 
+constexpr double furthest_rad = 1e7; /* what belongs to the machine */
+
 } // namespace
 
 const std::vector<PlantScaleField> &plant_scale_fields()
@@ -205,7 +209,6 @@ std::vector<Drift> read_drifts(const Value &table, const std::string &path)
 
 void read_stops(TableReader &reader, plant::StopConfig &stops)
 {
-    constexpr double furthest_rad = 1e7;
     const bool low = reader.number("stop_low_rad", stops.low_rad, -furthest_rad, furthest_rad);
     if (reader.number("stop_high_rad", stops.high_rad, -furthest_rad, furthest_rad) && low &&
         stops.high_rad <= stops.low_rad) {
@@ -213,6 +216,36 @@ void read_stops(TableReader &reader, plant::StopConfig &stops)
     }
     reader.number("stop_stiffness_Nm_rad", stops.stiffness_Nm_rad, 0.1, 1e5);
     reader.number("stop_damping", stops.damping, 0, 2);
+}
+
+std::uint32_t MachineSwitches::active(double angle_rad) const
+{
+    std::uint32_t inputs = 0;
+    inputs |= angle_rad < limit_low_rad ? HAL_INPUT_LIMIT_MINUS : 0;
+    inputs |= angle_rad > limit_high_rad ? HAL_INPUT_LIMIT_PLUS : 0;
+    inputs |= angle_rad > home_low_rad && angle_rad < home_high_rad ? HAL_INPUT_HOME : 0;
+    return inputs & wired;
+}
+
+void read_switches(TableReader &reader, MachineSwitches &switches)
+{
+    const auto read = [&](const char *key, double &angle_rad, std::uint32_t input) {
+        if (reader.number(key, angle_rad, -furthest_rad, furthest_rad)) {
+            switches.wired |= input;
+        }
+    };
+    read("limit_switch_low_rad", switches.limit_low_rad, HAL_INPUT_LIMIT_MINUS);
+    read("limit_switch_high_rad", switches.limit_high_rad, HAL_INPUT_LIMIT_PLUS);
+    read("home_switch_low_rad", switches.home_low_rad, HAL_INPUT_HOME);
+    read("home_switch_high_rad", switches.home_high_rad, HAL_INPUT_HOME);
+    if (switches.home_high_rad <= switches.home_low_rad) {
+        reader.fail("home_switch_high_rad", "expected more than home_switch_low_rad");
+    }
+    if ((switches.wired & HAL_INPUT_LIMIT_MINUS) != 0 &&
+        (switches.wired & HAL_INPUT_LIMIT_PLUS) != 0 &&
+        switches.limit_high_rad <= switches.limit_low_rad) {
+        reader.fail("limit_switch_high_rad", "expected more than limit_switch_low_rad");
+    }
 }
 
 const char *const load_torque_key = "load_torque_Nm";

@@ -5,7 +5,9 @@
 #ifndef STEADYSTEP_SCENARIO_DISTURBANCE_H
 #define STEADYSTEP_SCENARIO_DISTURBANCE_H
 
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -77,6 +79,20 @@ void put_load(const LoadChange &change, plant::Plant &plant);
 
 /* The keys of the machine's stops; throws InputError. */
 void read_stops(TableReader &reader, plant::StopConfig &stops);
+
+/* Switches that the machine works as it turns, on inputs that count as HAL_INPUT_...: at which
+   angles of the rotor, mechanical, they are active. */
+struct MachineSwitches {
+    double home_low_rad = -std::numeric_limits<double>::infinity();
+    double home_high_rad = std::numeric_limits<double>::infinity();
+    double limit_low_rad = 0, limit_high_rad = 0; /* from there down, up */
+    std::uint32_t wired = 0;
+
+    std::uint32_t active(double angle_rad) const;
+};
+
+/* Their keys; throws InputError. */
+void read_switches(TableReader &reader, MachineSwitches &switches);
 
 /* The names of the faults, by which an event is recognised as one. */
 const std::vector<std::string> &plant_fault_names();

@@ -116,7 +116,7 @@ struct Access {
 };
 constexpr Access RO = {"ro", false, false}, RO_T = {"ro", true, false},
                  RO_NODE = {"ro", false, true}, RW = {"rw", false, false},
-                 RW_R = {"rww", true, false};
+                 RW_NODE = {"rw", false, true}, RW_R = {"rww", true, false};
 
 struct Row {
     unsigned index, sub;
@@ -135,6 +135,10 @@ std::string preset_of(const Row &row)
                          (row.index == 0x2403 && row.sub == 2);
     const bool shows = row.index >= 0x6000 && row.index != 0x6061 && row.access.word == RO_T.word &&
                        row.access.mapped;
+    if (row.index == 0x60e3 && row.sub != 0) {
+        static const int methods[] = {LINK_HOMING_METHODS};
+        return std::to_string(methods[row.sub - 1]);
+    }
     if (row.type == text_visible || row.type == domain || follows || shows) {
         return "";
     }
@@ -182,12 +186,12 @@ void add_standard(Objects &objects)
             if (group != groups.end()) {
                 index.name = group->second + (of_pdo ? format(" %u", n + 1) : "");
             }
-            const bool is_entry = of_pdo && (row.index & 0x200) != 0 && row.sub == 1;
-            for (unsigned entry = 0; entry < (is_entry ? 8 : 1); ++entry) {
+            const unsigned entries = LINK_OBJECT_ENTRIES(row.index, row.sub);
+            for (unsigned entry = 0; entry < entries; ++entry) {
                 Row one = row;
                 one.sub += entry;
-                const std::string number = is_entry ? format(" %u", one.sub) : "";
-                const std::string preset = of_pdo ? preset_of_pdo(one, n) : preset_of(row);
+                const std::string number = entries > 1 ? format(" %u", one.sub) : "";
+                const std::string preset = of_pdo ? preset_of_pdo(one, n) : preset_of(one);
                 index.subs[one.sub] = {row.name + number, row.type, row.access.word, preset, "", "",
                                        row.access.mapped};
             }

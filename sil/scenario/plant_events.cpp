@@ -49,7 +49,8 @@ void PlantEvents::act(const Event &event, std::uint32_t n)
     if (event.shorted_leg) {
         board_.short_circuit(*event.shorted_leg, event.short_circuit_A);
     } else if (event.inputs) {
-        board_.put_inputs(*event.inputs);
+        inputs_ = *event.inputs;
+        board_.put_inputs(inputs_);
     } else if (event.stall_us) {
         board_.stall_control_interrupt(*event.stall_us * 1e-6);
     } else if (event.load) {
@@ -63,6 +64,23 @@ void PlantEvents::act(const Event &event, std::uint32_t n)
                                 std::max(1u, static_cast<std::uint32_t>(ramp))});
         }
     }
+}
+
+/* Active at the level at which the drive's settings say that they are. */
+void PlantEvents::put_switches()
+{
+    const MachineSwitches &switches = scenario_.switches;
+    const auto low = static_cast<std::uint32_t>(scenario_.drive.inputs_low);
+    if (switches.wired != 0) {
+        const std::uint32_t levels = switches.active(board_.plant().state().theta_rad) ^ low;
+        board_.put_inputs((inputs_ & ~switches.wired) | (levels & switches.wired));
+    }
+}
+
+void PlantEvents::go_on(std::uint32_t n)
+{
+    drift(n);
+    put_switches();
 }
 
 void PlantEvents::drift(std::uint32_t n)

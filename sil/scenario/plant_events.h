@@ -25,8 +25,8 @@ class PlantEvents
 
     /* In period n: load, fault, short circuit, stall, or drifts, which begin. */
     void act(const Event &event, std::uint32_t n);
-    /* In each period, behind act(): what drifts goes on. */
-    void drift(std::uint32_t n);
+    /* In each period, behind act(): what drifts goes on, and so do the machine's switches. */
+    void go_on(std::uint32_t n);
 
     const plant::MotorConfig &motor() const
     {
@@ -41,8 +41,12 @@ class PlantEvents
         std::uint32_t start, periods;
     };
 
+    void drift(std::uint32_t n);
+    void put_switches();
+
     const Scenario &scenario_;
     sil::DriveBoard &board_;
+    std::uint32_t inputs_ = HAL_INPUTS; /* levels, but for switches that the machine works */
     PlantValues values_;
     plant::MotorConfig motor_;
     std::vector<Course> courses_;

@@ -214,7 +214,7 @@ class Runner
             tape_.type(n, time_zero_, line_);
         }
         stream(n);
-        plant_events_.drift(n);
+        plant_events_.go_on(n);
     }
 
     void post(const Event &event, std::uint32_t n)

@@ -340,6 +340,7 @@ void read_plant(const Value &table, Scenario &scenario)
     read_imperfections(reader, plant.imperfections);
     read_supply(reader, plant);
     read_stops(reader, plant.stops);
+    read_switches(reader, scenario.switches);
     read_mismatches(reader, sensors);
     reader.number("dead_time_s", bridge.dead_time_s, 0, 1e-5);
     reader.number("diode_drop_V", bridge.diode_drop_V, 0, 5);

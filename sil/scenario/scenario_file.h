@@ -43,6 +43,7 @@ struct Scenario {
     drive_settings drive{};
     plant::Config plant; /* motor: as the plant starts, scales applied */
     PlantScales scales;
+    MachineSwitches switches;
     double comparator_trip_A = 0; /* of the simulated board; 0: not fitted */
     std::vector<Event> events;    /* sorted by time */
     std::vector<Expectation> expectations;

@@ -80,7 +80,7 @@ std::string Knobs::turn(const std::string &bytes, std::uint32_t n)
 
 void Knobs::act(std::uint32_t n)
 {
-    events_.drift(n);
+    events_.go_on(n);
 }
 
 bool Knobs::take_restart()

@@ -30,7 +30,7 @@ WORDS = [
     (r"doubts?|grip|torn|lagging|mirrored", SYNCHRONISM,
      "load angle, pull-out, stall, opposite half-turn; doubtful"),
     (r"drawing|aside", ALIGNMENT, "aligning, offset"),
-    (r"home(?! the axis)", ALIGNMENT, "final angle"),
+    (r"(?<!input )home(?! (the axis|switch))", ALIGNMENT, "final angle"),
     (r"hides?|hidden", [*ALIGNMENT, "firmware/control/"], "blanks"),
     (r"house|rooms|arrows", [EVERYWHERE], "structure, project; modules; dependencies"),
     (r"(the|a|no|each|this|which|next) room(?! (for|on|below|before))", [EVERYWHERE], "module"),
@@ -76,7 +76,7 @@ PLANTED = [
     "lagging_blocks", "STAGE_DRAWING", "a quarter turn aside", "the angle at home", "pulses hide it",
     "arrows between the rooms", "no room is left out", "the drive is fault",
 ]
-PROPER = ["room for a record", "a retold tale", "the handle over there", "grips", "homed"]
+PROPER = ["room for a record", "a retold tale", "the handle over there", "grips", "homed", "the home switch", "HAL_INPUT_HOME"]
 
 
 def self_test(root):

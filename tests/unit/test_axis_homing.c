@@ -806,16 +806,17 @@ static void test_a_sensorless_drive_refuses_an_index(void)
 
 static void test_its_methods_are_listed_those_on_an_index_where_there_is_one(void)
 {
-    TEST_ASSERT_EQUAL(4, link_bench_get(0x60e3, 0));
+    TEST_ASSERT_EQUAL(18, link_bench_get(0x60e3, 0));
     start_with_encoder(0.0, 1.0, false);
-    TEST_ASSERT_EQUAL(4, link_bench_get(0x60e3, 0));
+    TEST_ASSERT_EQUAL(18, link_bench_get(0x60e3, 0));
+    TEST_ASSERT_EQUAL_STRING("80E3601311000906", link_bench_sdo("40E3601300000000"));
     start_with_encoder(0.0, 1.0, true);
-    TEST_ASSERT_EQUAL(6, link_bench_get(0x60e3, 0));
-    for (unsigned sub = 1; sub <= 6; sub++) {
+    TEST_ASSERT_EQUAL(20, link_bench_get(0x60e3, 0));
+    for (unsigned sub = 1; sub <= 20; sub++) {
         const uint32_t method = link_bench_get(0x60e3, sub) & 0xffu;
 
         TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x6098, 0, 1, method));
-        TEST_ASSERT_EQUAL(sub > 4, method == 33u || method == 34u);
+        TEST_ASSERT_EQUAL(sub > 18, method == 33u || method == 34u);
     }
 }
 

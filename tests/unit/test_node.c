@@ -268,20 +268,47 @@ static void test_heartbeats_are_watched_only_with_a_time(void)
     TEST_ASSERT_FALSE(bench_link.comm_errors);
 }
 
-static void test_sync_may_be_late_by_half_of_its_period(void)
+/* Of a period, in microseconds: late by fewer control periods, and by as many. */
+static void sync_may_be_late(uint32_t period_us, int less, int late)
 {
-    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1006, 0, 4, 4000));
+    const int period = (int)(period_us / 100u);
+
+    link_bench_start();
+    link_bench_open();
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1006, 0, 4, period_us));
     enable();
-    (void)link_bench_say("t0800", 200); /* not operational */
+    (void)link_bench_say("t0800", 1000); /* not operational */
     TEST_ASSERT_FALSE(bench_link.comm_errors);
     (void)link_bench_nmt(START, 2);
     for (int i = 0; i < 20; i++) {
-        (void)link_bench_say("t0800", 58);
+        (void)link_bench_say("t0800", period + less);
     }
     TEST_ASSERT_FALSE(bench_link.comm_errors);
-    link_bench_heard("t08180081110000000000\r", link_bench_say("t0800", 75));
+    link_bench_heard("t08180081110000000000\r", link_bench_say("t0800", period + late));
     bench_periods(4000);
     TEST_ASSERT_TRUE(is_off());
+}
+
+static void test_sync_may_be_late_by_half_of_its_period_and_by_5_ms(void)
+{
+    sync_may_be_late(20000, 98, 115);
+    sync_may_be_late(2000, 48, 65);
+}
+
+/* It has its own identifier, that of another node's, or is not sent at all. */
+static void test_emergencies_have_the_identifier_of_1014h(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1014, 0, 4, 0x81));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x1014, 0, 4, 0x82));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1014, 0, 4, 0x80000081));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x1014, 0, 4, 0x601));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x1014, 0, 4, 0x20000082));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1016, 1, 4, 0x00050014));
+    TEST_ASSERT_EQUAL_INT(0, link_bench_count("t081", link_bench_say("t705105", 300)));
+    TEST_ASSERT_EQUAL_HEX32(0x8130, link_bench_get(0x1003, 1)); /* kept all the same */
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1014, 0, 4, 0x82));
+    TEST_ASSERT_EQUAL_INT(
+        2, link_bench_count("t082", link_bench_say("t705105", 300))); /* back, lost */
 }
 
 /* None counts while the node is not operational: the first one behind is the one that begins. */
@@ -297,7 +324,7 @@ static void test_sync_is_missed_from_the_first_one_of_an_operational_node_on(voi
     }
     (void)link_bench_nmt(START, 30);
     TEST_ASSERT_FALSE(bench_link.comm_errors);
-    link_bench_heard("t08180081110000000000\r", link_bench_say("t0800", 75));
+    link_bench_heard("t08180081110000000000\r", link_bench_say("t0800", 110));
 }
 
 static void test_a_sync_that_is_not_watched_may_stay_away(void)
@@ -353,7 +380,8 @@ int main(void)
     RUN_TEST(test_a_drive_that_is_only_switched_on_is_off_at_once_when_nobody_is_heard);
     RUN_TEST(test_a_heartbeat_has_all_of_its_time);
     RUN_TEST(test_heartbeats_are_watched_only_with_a_time);
-    RUN_TEST(test_sync_may_be_late_by_half_of_its_period);
+    RUN_TEST(test_sync_may_be_late_by_half_of_its_period_and_by_5_ms);
+    RUN_TEST(test_emergencies_have_the_identifier_of_1014h);
     RUN_TEST(test_sync_is_missed_from_the_first_one_of_an_operational_node_on);
     RUN_TEST(test_a_sync_that_is_not_watched_may_stay_away);
     RUN_TEST(test_a_channel_that_closes_ends_what_sync_has_driven);

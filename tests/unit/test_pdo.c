@@ -370,6 +370,9 @@ static void test_sync_is_what_1005h_says(void)
     (void)link_bench_nmt(START, 2);
     TEST_ASSERT_EQUAL_INT(0, link_bench_count("t1812", link_bench_say("t0800", 2)));
     TEST_ASSERT_EQUAL_INT(1, link_bench_count("t1812", link_bench_say("t0900", 2)));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1005, 0, 4, 0x80000080)); /* as old masters do */
+    TEST_ASSERT_EQUAL_INT(1, link_bench_count("t1812", link_bench_say("t0800", 2)));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x1005, 0, 4, 0x40000080)); /* makes none */
 }
 
 static void test_a_node_of_another_number_has_its_own_identifiers(void)

@@ -11,7 +11,7 @@ FOLDER = ROOT / "firmware/link"
 GROUPS = (
     ("channel, NMT, emergencies, CAN bus", ("link", "can_bus", "can_frame")),
     ("dictionary, SDO, PDO", ("objects", "objects_table", "link_objects", "data_sheet", "sdo", "sdo_block", "pdo")),
-    ("CiA 402: states, modes, quantities", ("cia402", "cia402_objects", "axis_motion", "axis_homing", "axis_homing_stop", "axis_stream", "axis_torque")),
+    ("CiA 402: states, modes, quantities", ("cia402", "cia402_objects", "axis_motion", "axis_homing", "axis_homing_stop", "axis_homing_switch", "axis_stream", "axis_torque")),
     ("slcan", ("slcan",)),
     ("Modbus RTU", ("modbus",)),
     ("capture", ("capture",)),

@@ -19,12 +19,15 @@ SHUTDOWN, SWITCH_ON, ENABLE_OPERATION, QUICK_STOP, RESET = 0x06, 0x07, 0x0F, 0x0
 NEW_SET_POINT, AT_ONCE, RELATIVE = 0x10, 0x20, 0x40
 REFUSED, REACHED, ACKNOWLEDGED = 0x0080, 0x0400, 0x1000
 START, ATTAINED, HOMING_ERROR = 0x10, 0x1000, 0x2000
-HOMING_METHODS = {"here": 37, "stop-down": -1, "stop-up": -2, "index-down": 33, "index-up": 34}
+HOMING_METHODS = {"here": 37, "stop-down": -1, "stop-up": -2, "index-down": 33, "index-up": 34, "limit-down": 17,
+                  "limit-up": 18, "switch-down": 28, "switch-up": 24}
 STOP_TORQUE, STOP_TRAVEL = (0x2403, 1), (0x2403, 2)
 WHY_NOT = {"here": "the axis moves",
            "stop": "within its travel nothing bore the torque and stood, or no place was found twice, or the drive's law "
                    "knows no load",
-           "index": "none has passed in a turn, or the drive has no encoder with an index"}
+           "index": "none has passed in a turn, or the drive has no encoder with an index",
+           "limit": "no limit switch is wired there (inputs_used), or none within the travel",
+           "switch": "no home switch is wired (inputs_used), or none within the travel and between the limit switches"}
 
 
 class Axis:
@@ -266,9 +269,11 @@ class Axis:
     def home(self, method: str, position_rad: float = 0.0, *, torque_share: float | None = None,
              travel_rad: float | None = None, speed_rad_s: float | None = None, timeout_s: float = 120.0,
              progress: Progress = unseen) -> None:
-        """Finds where the axis is: `here`, or on a hard stop (`stop-down`, `stop-up`), or on the encoder's index
-        (`index-down`, `index-up`). There is position_rad. Of a stop: the torque that it bears, as a share of the rated
-        torque, and the travel within which it is. What is not given stays as it was. Raises NotHomed, DriveFault."""
+        """Finds where the axis is: `here`, or on a hard stop (`stop-down`, `stop-up`), on the encoder's index
+        (`index-down`, `index-up`), on a limit switch (`limit-down`, `limit-up`) or on the home switch, where it is
+        entered (`switch-down`, `switch-up`). There is position_rad. Of a stop: the torque that it bears, as a share of
+        the rated torque; of a stop or a switch the travel within which it is. What is not given stays as it was.
+        Raises NotHomed, DriveFault."""
         if method not in HOMING_METHODS:
             raise Refused(f"method: expected one of {', '.join(HOMING_METHODS)}, got {method}")
         offset = self._position_units(position_rad)

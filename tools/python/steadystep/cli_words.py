@@ -57,11 +57,11 @@ def _add_motion(commands: "Commands") -> None:
     for each in (move, velocity, torque):
         each.add_argument("--enable", action="store_true", help="first")
     _add(commands, "set-position", "the axis, at rest, is here").add_argument("position_rad", type=float)
-    home = _add(commands, "home", "finds where the axis is: here, on a hard stop, or on the encoder's index")
+    home = _add(commands, "home", "finds where the axis is: here, on a hard stop, a switch, or the encoder's index")
     home.add_argument("method", metavar="METHOD", help=", ".join(HOMING_METHODS))
     home.add_argument("--at", type=float, default=0.0, metavar="RAD", help="where that is (0)")
     home.add_argument("--torque", type=float, metavar="SHARE", help="that a stop bears, of the rated torque")
-    home.add_argument("--travel", type=float, metavar="RAD", help="within which a stop is")
+    home.add_argument("--travel", type=float, metavar="RAD", help="within which a stop or a switch is")
     home.add_argument("--speed", type=float, metavar="RAD_S")
     home.add_argument("--timeout", type=float, default=120.0, metavar="S")
     home.add_argument("--enable", action="store_true", help="first")
