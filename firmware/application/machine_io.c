@@ -182,10 +182,27 @@ static void command(struct application *application, enum drive_command_kind kin
     (void)application_command(application, &command, command.at_period, refusal);
 }
 
+static bool has_link(const struct application *application)
+{
+    return LINK_CARRIED && application->link != NULL && application->link->open;
+}
+
 static bool link_operates(const struct application *application)
 {
-    return LINK_CARRIED && application->link != NULL && application->link->open &&
-           application->link->axis.state == CIA402_OPERATION_ENABLED;
+    return has_link(application) && application->link->axis.state == CIA402_OPERATION_ENABLED;
+}
+
+/* What an emergency has said is over. */
+static void end_errors(struct application *application)
+{
+    const uint32_t inputs = machine_io_active(application);
+
+    if ((inputs & (HAL_INPUT_LIMIT_MINUS | HAL_INPUT_LIMIT_PLUS)) == 0u) {
+        link_end_error(application, LINK_ERROR_LIMIT);
+    }
+    if ((inputs & HAL_INPUT_QUICK_STOP) == 0u && is_enabled(application)) {
+        link_end_error(application, LINK_ERROR_INPUT);
+    }
 }
 
 /* On a fieldbus with the quick stop's deceleration, which cia402.c begins with its input by itself;
@@ -198,15 +215,19 @@ static void stop(struct application *application, enum machine_stop stop)
         axis_homing_seeks_switch(&application->link->axis.motion.homing)) {
         return; /* which looks, too */
     }
-    if (LINK_CARRIED && application->link != NULL && application->link->open) {
-        link_warn(application, codes[stop]);
+    if (has_link(application)) {
+        link_begin_error(application,
+                         codes[stop] == LIMIT_CODE ? LINK_ERROR_LIMIT : LINK_ERROR_INPUT,
+                         codes[stop]);
     }
     if (!link_operates(application)) {
-        command(application, DRIVE_COMMAND_STOP);
+        if (moves(application)) {
+            command(application, DRIVE_COMMAND_STOP);
+        }
     } else if (stop == MACHINE_STOP_NOT_ENABLED) {
         cia402_lose(application);
     } else if (stop != MACHINE_STOP_QUICK) {
-        axis_motion_brake(application, true);
+        axis_motion_end_at_switch(application, stop == MACHINE_STOP_LIMIT_PLUS);
     }
 }
 
@@ -223,23 +244,26 @@ static void obey_inputs(struct application *application)
 {
     struct machine_io *io = &application->io;
     const enum drive_state state = interrupt_view_state(&application->drive);
-    const bool enabled = is_enabled(application);
+    const bool on = state != DRIVE_SWITCH_ON_DISABLED && state != DRIVE_FAULT;
+    const bool moving = state == DRIVE_OPERATION_ENABLED && moves(application);
     enum machine_stop found = MACHINE_STOP_NONE;
 
-    if (state == DRIVE_OPERATION_ENABLED && moves(application) &&
-        application->chosen.inputs_used != 0) {
-        const num_t way = way_of_motion(&application->drive);
+    if (on && application->chosen.inputs_used != 0) {
+        const num_t way = moving ? way_of_motion(&application->drive) : NUM(0.0);
 
         found = stop_of(application, way > NUM(0.0), way < NUM(0.0));
-    } else if (!enabled && !io->engages && state != DRIVE_SWITCH_ON_DISABLED &&
-               state != DRIVE_FAULT) {
-        command(application, DRIVE_COMMAND_DISABLE);
     }
     if (found != io->stop) {
         io->stop = (uint8_t)found;
         if (found != MACHINE_STOP_NONE) {
             stop(application, found);
         }
+    }
+    if (on && !moving && !io->engages && !is_enabled(application)) {
+        command(application, DRIVE_COMMAND_DISABLE);
+    }
+    if (has_link(application)) {
+        end_errors(application);
     }
 }
 

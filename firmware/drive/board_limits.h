@@ -70,6 +70,18 @@ double no_load_speed_rad_s(const struct drive_settings *settings, const struct h
 struct speed_limit board_limits_speed(const struct drive_settings *settings,
                                       const struct hal_facts *facts);
 
+/*
+ * What the supply drives along the torque at a speed, A: to accelerate there, and to brake from
+ * there, where the back-EMF helps; 0: nothing. Of the largest modulation of the motor's supply.
+ *
+ *   V^2 = (Km w +- R i)^2 + (N w L i)^2
+ */
+struct supplied_current {
+    double accelerating_A, braking_A;
+};
+struct supplied_current board_limits_current(const struct drive_settings *settings,
+                                             const struct hal_facts *facts, double speed_rad_s);
+
 #ifdef __cplusplus
 }
 #endif

@@ -16,6 +16,8 @@ enum { REACHED = 0x0400, LIMITED = 0x0800, OF_MODE = 0x1000, OFF = 0x2000 };
 
 enum { QUICKLY = 2 }; /* option code of a halt */
 
+enum { GIVEN_MAX_SPEED = 1 }; /* bit of what is given: the first of `defaults` */
+
 /* A ramp's jerk phases: a quarter of it each, as the console's moves, but no shorter. */
 static const float jerk_share = 0.25f;
 static const float jerk_min_s = 2e-3f;
@@ -30,6 +32,11 @@ static bool moves(const struct drive *drive)
     return interrupt_view_moves(drive) || command_queue_holds_any(&drive->commands);
 }
 
+bool axis_motion_is_free(const struct application *application)
+{
+    return application->link->axis.state != CIA402_OPERATION_ENABLED && !moves(&application->drive);
+}
+
 /* Not while the drive aligns: it takes no motion then. */
 bool axis_motion_rests(const struct application *application)
 {
@@ -42,20 +49,72 @@ bool axis_motion_rests(const struct application *application)
 
 /* Speeds and accelerations are in single precision, which the core computes by itself. */
 
-/* Where the drive refuses, rad/s and rad/s^2, and a little less. */
+/* Where the drive refuses, and a little less. */
 float axis_motion_speed_limit(const struct application *application)
 {
     const struct drive *drive = &application->drive;
+    const float limit =
+        0.999f * (float)board_limits_speed(&drive->settings, drive->board->facts).rad_s;
+    const float given = AXIS_RAD_S_PER_RPM * (float)application->link->objects.max_speed_rpm;
+    const bool is_given = (application->link->given & GIVEN_MAX_SPEED) != 0u;
 
-    return 0.999f * (float)board_limits_speed(&drive->settings, drive->board->facts).rad_s;
+    return is_given && given < limit ? given : limit;
 }
 
-float axis_motion_acceleration_limit(const struct application *application)
+/* Of what the supply drives: its voltage and the motor are not quite as stated. */
+static const float supply_share = 0.9f;
+
+/* By the time that it accelerates no more it has come nearer to its speed by half of a jerk phase.
+ */
+static const float still_accelerates = 1.0f - 0.5f * 0.25f;
+
+static float lesser(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+static struct supplied_current supplied(const struct application *application, float speed_rad_s)
+{
+    const struct drive *drive = &application->drive;
+
+    return board_limits_current(&drive->settings, drive->board->facts,
+                                magnitude((double)speed_rad_s));
+}
+
+/* Of a current, where the drive refuses more, and a little less; some is always left. */
+static float acceleration_of(const struct application *application, float current_A)
 {
     const struct drive_settings *settings = &application->drive.settings;
+    const float limit_A = (float)settings->current_limit_A;
+    const float least_A = 0.01f * limit_A;
+    const float given_A = current_A > least_A ? current_A : least_A;
 
-    return 0.999f * (float)settings->current_limit_A * (float)settings->motor.torque_constant_Nm_A /
+    return 0.999f * lesser(given_A, limit_A) * (float)settings->motor.torque_constant_Nm_A /
            (float)settings->motor.inertia_kgm2;
+}
+
+float axis_motion_acceleration_limit(const struct application *application, float speed_rad_s)
+{
+    return acceleration_of(application,
+                           supply_share * (float)supplied(application, speed_rad_s).braking_A);
+}
+
+int32_t axis_motion_braking_thousandths(const struct application *application, float speed_rad_s)
+{
+    return (int32_t)(1e3f * supply_share * (float)supplied(application, speed_rad_s).braking_A /
+                     (float)application->drive.settings.motor.rated_current_A);
+}
+
+float axis_motion_ramp_limit(const struct application *application, float from_rad_s,
+                             float to_rad_s)
+{
+    const float from = (float)magnitude((double)from_rad_s);
+    const float to = (float)magnitude((double)to_rad_s);
+    const float rising =
+        supply_share * (float)supplied(application, still_accelerates * to).accelerating_A;
+
+    return lesser(acceleration_of(application, rising),
+                  axis_motion_acceleration_limit(application, to > from ? to : from));
 }
 
 float axis_motion_torque_Nm(const struct application *application, float thousandths)
@@ -128,7 +187,7 @@ void axis_motion_put_defaults(struct application *application)
         [SPEED] = speed / unit_rad,
         [NO_LOAD_SPEED] =
             9.99e-3f * (float)no_load_speed_rad_s(&drive->settings, drive->board->facts) / unit_rad,
-        [ACCELERATION] = 0.01f * axis_motion_acceleration_limit(application) / unit_rad,
+        [ACCELERATION] = 0.01f * axis_motion_acceleration_limit(application, 0.0f) / unit_rad,
         [TURN] = 0.062831853f / unit_rad,
         [UNIT] = 6.2831853f / 65536.0f / unit_rad,
     };
@@ -167,9 +226,10 @@ static float jerk_to_end(struct axis_motion *motion, float jerk)
 bool axis_motion_post(struct application *application, enum drive_command_kind kind,
                       double position_rad, float speed_rad_s, uint32_t acceleration_units)
 {
+    const float present = (float)cia402_signals(application)->omega_ref_rad_s;
     const float acceleration =
         axis_motion_limited(application, units(application) * (float)acceleration_units, 1e-3f,
-                            axis_motion_acceleration_limit(application));
+                            axis_motion_ramp_limit(application, present, speed_rad_s));
     const float jerk_s =
         jerk_share * (speed_rad_s < 0.0f ? -speed_rad_s : speed_rad_s) / acceleration;
     const float jerk = jerk_to_end(motion_of(application),
@@ -221,6 +281,29 @@ void axis_motion_start(struct application *application)
     link->axis.stream.last_rad = motion_of(application)->target_rad;
     link->axis.stream.before_rad = motion_of(application)->target_rad;
     link->axis.stream.by_sync = false;
+}
+
+void axis_motion_end_at_switch(struct application *application, bool up)
+{
+    struct axis_motion *motion = motion_of(application);
+
+    motion->not_homed = motion->not_homed || motion->homing.phase != HOMING_ENDED;
+    motion->limited = true;
+    motion->waits = false;
+    motion->pending = false;
+    axis_motion_brake(application, true);
+    motion->barred = up ? 1 : -1;
+}
+
+bool axis_motion_is_barred(struct application *application, float way)
+{
+    struct axis_motion *motion = motion_of(application);
+
+    if ((float)motion->barred * way < 0.0f) {
+        motion->barred = 0;
+    }
+    motion->limited = motion->limited || motion->barred != 0;
+    return motion->barred != 0;
 }
 
 /* ---- profile position ---- */
@@ -276,6 +359,7 @@ static void take_set_point(struct application *application)
         motion->target_rad = motion->begun_rad; /* a relative one goes on from there */
     }
     motion->limited = false;
+    motion->barred = 0;
     motion->target_rad = axis_motion_target(application);
     motion->waiting = profile_now(application);
     motion->waits = true;
@@ -326,19 +410,24 @@ static bool slows(float before, float speed)
     return before > 0.0f ? speed < before : speed > before && before < 0.0f;
 }
 
-/* How far the reference may go on in the direction of a speed, rad. The limits' presets are none.
- */
-static float room_rad(struct application *application, float speed, double *end_rad)
+/* The limits' presets are none. */
+double axis_motion_limit_rad(const struct application *application, float way)
 {
     const struct link_objects *objects = &application->link->objects;
     const double unit_rad = cia402_turned_unit_rad(objects, CIA402_POSITION_TURNED);
-    const bool up = (speed > 0.0f) == (unit_rad > 0.0);
+    const bool up = (way > 0.0f) == (unit_rad > 0.0);
     const int32_t end = up ? objects->position_most : objects->position_least;
 
-    *end_rad = unit_rad * (double)end;
     if (end == (up ? INT32_MAX : INT32_MIN)) {
-        return 1e9f;
+        return way > 0.0f ? 1e9 : -1e9;
     }
+    return unit_rad * (double)end;
+}
+
+/* How far the reference may go on in the direction of a speed, rad. */
+static float room_rad(struct application *application, float speed, double *end_rad)
+{
+    *end_rad = axis_motion_limit_rad(application, speed);
     const float room = (float)(*end_rad - cia402_signals(application)->theta_ref_rad);
 
     return speed > 0.0f ? room : -room;
@@ -349,9 +438,8 @@ static float room_rad(struct application *application, float speed, double *end_
 static float stopping_rad(struct application *application, float speed, uint32_t deceleration_units)
 {
     const float command_s = 0.01f;
-    const float most = axis_motion_acceleration_limit(application);
-    const float asked = units(application) * (float)deceleration_units;
-    const float acceleration = asked < most ? asked : most;
+    const float acceleration = lesser(units(application) * (float)deceleration_units,
+                                      axis_motion_acceleration_limit(application, speed));
     const float ramp_s = speed / acceleration;
 
     return speed * (0.5f * ramp_s + 1.5f * (jerk_share * ramp_s + jerk_min_s) + command_s);
@@ -414,6 +502,12 @@ static void go_at_speed(struct application *application)
                                     (float)cia402_turned_unit_rad(objects, CIA402_VELOCITY_TURNED) *
                                         (float)objects->target_velocity,
                                     -most, most);
+    }
+    if (speed == 0.0f) {
+        motion->barred = 0;
+    }
+    if (axis_motion_is_barred(application, speed)) {
+        speed = 0.0f;
     }
     if (ends_at_limit(application, &speed)) {
         return;

@@ -37,9 +37,28 @@ void axis_motion_cycle(struct application *application);
 /* The target position in rad, within the software limits. */
 double axis_motion_target(struct application *application);
 
-/* What the drive can: rad/s, rad/s^2. */
+/* What the drive can, and 6080h allows, rad/s. */
 float axis_motion_speed_limit(const struct application *application);
-float axis_motion_acceleration_limit(const struct application *application);
+
+/* What the current limit and, at a speed, the supply leave, rad/s^2: to brake from there. */
+float axis_motion_acceleration_limit(const struct application *application, float speed_rad_s);
+
+/* Of a ramp from a speed to another one: what it takes at its end and to brake. */
+float axis_motion_ramp_limit(const struct application *application, float from_rad_s,
+                             float to_rad_s);
+
+/* That current in thousandths of the rated one: a torque that brakes is no larger. */
+int32_t axis_motion_braking_thousandths(const struct application *application, float speed_rad_s);
+
+/* Whether nothing is in operation nor in motion: units and directions may change. */
+bool axis_motion_is_free(const struct application *application);
+
+/* A limit switch on the way of the motion, up or down of the motor: to rest, and from then on no
+   further that way until something else is asked for. */
+void axis_motion_end_at_switch(struct application *application, bool up);
+
+/* Whether a switch has ended the motion on this way, by its sign; another way is free again. */
+bool axis_motion_is_barred(struct application *application, float way);
 
 /* Of thousandths of the rated torque. */
 float axis_motion_torque_Nm(const struct application *application, float thousandths);
@@ -53,6 +72,9 @@ float axis_motion_speed(struct application *application, uint32_t speed_units);
 /* Posts a command that goes to `speed_rad_s`, with jerk; false: the drive refuses it. */
 bool axis_motion_post(struct application *application, enum drive_command_kind kind,
                       double position_rad, float speed_rad_s, uint32_t acceleration_units);
+
+/* The software limit on this way, up or down of the motor by its sign; of none beyond all. */
+double axis_motion_limit_rad(const struct application *application, float way);
 
 /* Whether a software limit on this way, up or down by its sign, is no further than what it takes to
    stop from the speed with 6085h. */

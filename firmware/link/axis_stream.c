@@ -54,10 +54,15 @@ static float late(const struct application *application)
     return (float)periods / (float)application->drive.planner.set_points.interval_periods;
 }
 
+static float lesser(float a, float b)
+{
+    return a < b ? a : b;
+}
+
 static bool put(struct application *application, double position_rad)
 {
     struct axis_stream *stream = &application->link->axis.stream;
-    const float acceleration = axis_motion_acceleration_limit(application);
+    const float acceleration = axis_motion_acceleration_limit(application, 0.0f);
     struct drive_command point = {.kind = DRIVE_COMMAND_SET_POINT,
                                   .position_rad = position_rad,
                                   .interval_s = (double)interval_s(application),
@@ -77,26 +82,58 @@ static void begin(struct application *application)
 {
     struct axis_stream *stream = &application->link->axis.stream;
 
-    stream->owed = 0;
     stream->last_rad = drive_planned_end_rad(&application->drive);
+    stream->asked_rad = stream->last_rad;
     for (int i = 0; i < (stream->by_sync ? IN_HAND + 1 : IN_HAND); i++) {
         (void)put(application, stream->last_rad);
     }
     stream->due = interrupt_view_period(&application->drive);
+    stream->refused = !is_open(application);
+    stream->owed = stream->refused ? 1 : 0;
 }
 
-/* As far towards the target as speed and acceleration allow. */
+/* Of the acceleration limit: what comes up to its target leaves as much for the rotor to follow. */
+static const float closing_share = 0.5f;
+
+/* Of set-points that get slower by `change` in each interval: the speed from which they come to
+   rest within a way. */
+static float stopping_speed(float way_rad, float change, float T)
+{
+    const float half = 0.5f * change;
+
+    return way_rad > 0.0f
+               ? (float)square_root((double)(half * half + 2.0f * change * way_rad / T)) - half
+               : 0.0f;
+}
+
+/* As far towards the target as speed and acceleration allow, so that it stops where the target
+   does, and at a software limit. */
 static double within_limits(struct application *application, double target_rad)
 {
     const struct axis_stream *stream = &application->link->axis.stream;
     const float T = interval_s(application);
     const float most = axis_motion_speed_limit(application);
-    const float change = acceleration_share * axis_motion_acceleration_limit(application) * T;
     const float before = (float)(stream->last_rad - stream->before_rad) / T;
+    const float limit = axis_motion_ramp_limit(application, before, before);
+    const float gentle =
+        lesser(limit, closing_share * axis_motion_acceleration_limit(application, 0.0f));
+    const float slower = acceleration_share * limit * T;
     const float asked = (float)(target_rad - stream->last_rad) / T;
-    float speed = axis_motion_limited(application, asked, -most, most);
+    const float of_target = (float)(target_rad - stream->asked_rad) / T;
+    const float behind_rad = (float)(stream->asked_rad - stream->last_rad);
+    const bool follows =
+        behind_rad == 0.0f && magnitude((double)(asked - before)) <= (double)slower;
+    const float change = follows ? slower : gentle * T;
+    const float closing = stopping_speed((float)magnitude((double)behind_rad), gentle * T, T);
+    const float down_rad = (float)(stream->last_rad - axis_motion_limit_rad(application, -1.0f));
+    const float up_rad = (float)(axis_motion_limit_rad(application, 1.0f) - stream->last_rad);
+    float speed = axis_motion_limited(application, asked, of_target - closing, of_target + closing);
 
-    speed = axis_motion_limited(application, speed, before - change, before + change);
+    speed = axis_motion_limited(application, speed,
+                                -lesser(most, stopping_speed(down_rad, gentle * T, T)),
+                                lesser(most, stopping_speed(up_rad, gentle * T, T)));
+    speed = axis_motion_limited(application, speed, before - (before > 0.0f ? slower : change),
+                                before + (before < 0.0f ? slower : change));
     return speed == asked ? target_rad : stream->last_rad + (double)(T * speed);
 }
 
@@ -113,6 +150,7 @@ static void follow(struct application *application, double position_rad)
     stream->stays = !moves;
     if (!is_open(application) && axis_motion_rests(application)) {
         begin(application);
+        motion->limited = motion->limited || stream->refused;
     }
     if (!is_open(application)) {
         return;
@@ -120,6 +158,7 @@ static void follow(struct application *application, double position_rad)
     if (waiting(application) < MOST_IN_HAND) { /* else in a heap: the next one stands for it, too */
         motion->limited =
             !put(application, within_limits(application, position_rad)) || motion->limited;
+        stream->asked_rad = position_rad;
     }
 }
 
@@ -130,6 +169,17 @@ static float within(float value, float most)
     return value > most ? most : value < -most ? -most : value;
 }
 
+/* What a step differs from the one before, of a motion that the drive can follow: between targets
+   that jump the parabola would pass both. */
+static float curve_of(const struct application *application)
+{
+    const struct axis_stream *stream = &application->link->axis.stream;
+    const float T = interval_s(application);
+
+    return within(stream->step_rad - stream->step_before_rad,
+                  axis_motion_acceleration_limit(application, 0.0f) * T * T);
+}
+
 /* Up to the latest target; of a motion, as long as the next one is overdue, beyond. */
 static void advance(struct application *application)
 {
@@ -138,8 +188,7 @@ static void advance(struct application *application)
     while (stream->ahead + (float)stream->owed <= (float)OWED_MAX &&
            (stream->ahead <= 0.0f ||
             (stream->last_rad != stream->before_rad && late(application) > OVERDUE_BY_SYNC))) {
-        const float curve =
-            stream->ahead < 0.0f ? stream->step_rad - stream->step_before_rad : 0.0f;
+        const float curve = stream->ahead < 0.0f ? curve_of(application) : 0.0f;
         const float step_rad = stream->step_rad + 0.5f * (stream->ahead + 1.0f) * curve;
 
         follow(application, stream->target_rad + (double)(stream->ahead * step_rad));
@@ -211,12 +260,24 @@ static void make_up(struct application *application)
 
 /* ---- both ---- */
 
+/* Behind a limit switch no target is any further. */
+static void stay_within_switch(struct application *application)
+{
+    struct axis_motion *motion = &application->link->axis.motion;
+    const double end_rad = drive_planned_end_rad(&application->drive);
+
+    if (axis_motion_is_barred(application, (float)(motion->target_rad - end_rad))) {
+        motion->target_rad = end_rad;
+    }
+}
+
 void axis_stream_take(struct application *application)
 {
     struct axis_motion *motion = &application->link->axis.motion;
 
     motion->limited = false;
     motion->target_rad = axis_motion_target(application);
+    stay_within_switch(application);
     if (motion->halted) {
         return;
     }
@@ -238,7 +299,7 @@ static void end(struct application *application)
     struct axis_stream *stream = &application->link->axis.stream;
     const struct axis_motion *motion = &application->link->axis.motion;
 
-    if (stream->last_rad != motion->target_rad && !motion->halted &&
+    if (stream->last_rad != motion->target_rad && !motion->halted && !stream->refused &&
         late(application) > (float)OWED_MAX && axis_motion_rests(application)) {
         stream->last_rad = motion->target_rad;
         stream->before_rad = motion->target_rad;

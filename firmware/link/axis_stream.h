@@ -12,7 +12,10 @@
  * intervals and 1.3 ms behind its SYNC. One that is missing, or its SYNC, for up to one and a half
  * intervals beyond, is predicted from the last two, up to three in a row; then as above.
  *
- * What asks for more than the drive's speed or acceleration is followed as closely as those allow.
+ * What asks for more than the drive's speed or acceleration is followed as closely as those allow:
+ * what is behind its target comes up to it with half of the acceleration, as one that can stop
+ * there, and stops at a software limit, but for a thirtieth of acceleration x interval^2, by which
+ * the curve through set-points swings.
  */
 #ifndef STEADYSTEP_AXIS_STREAM_H
 #define STEADYSTEP_AXIS_STREAM_H
@@ -22,12 +25,14 @@
 
 struct axis_stream {
     double last_rad, before_rad; /* the last two set-points */
+    double asked_rad;            /* what the last one was to be */
 
     uint32_t due; /* period in which the next one should come */
     uint8_t owed; /* targets whose places were taken, or SYNCs without one, in a row */
     bool stays;   /* the last three set-points are the same */
     bool at_sync; /* SYNC is here: what comes now comes with it */
     bool by_sync; /* the last target did */
+    bool refused; /* set-points are, by their interval */
 
     /* with SYNC */
     double target_rad, target_before_rad; /* the latest one, or as foreseen, and the one before */

@@ -10,11 +10,19 @@ bool axis_torque_is_carried(const struct application *application)
     return reads_encoder(&application->drive.settings);
 }
 
-/* The target, cut at the current limit, in thousandths of the rated torque. */
+/* What brakes a fast rotor follows its speed in steps, of thousandths. */
+enum { BRAKING_STEP = 16 };
+
+/* The target, cut at the current limit and, where it brakes, at what the supply drives, in
+   thousandths of the rated torque. */
 static int32_t limited_target(struct application *application)
 {
     const int32_t target = application->link->objects.target_torque;
-    const int32_t most = cia402_thousandths(application, 0x6072);
+    const float speed = (float)cia402_signals(application)->omega_est_rad_s;
+    const int32_t limit = cia402_thousandths(application, 0x6072);
+    const int32_t braking = axis_motion_braking_thousandths(application, speed);
+    const bool brakes = (float)target * speed < 0.0f && braking < limit;
+    const int32_t most = brakes ? braking - braking % BRAKING_STEP : limit;
 
     application->link->axis.motion.limited = target > most || target < -most;
     return target > most ? most : target < -most ? -most : target;
@@ -35,7 +43,7 @@ static bool stays_at_limit(struct application *application, float torque)
         motion->way = way;
     }
     motion->at_limit = motion->at_limit && (torque == 0.0f || motion->way * torque > 0.0f);
-    return motion->at_limit;
+    return axis_motion_is_barred(application, torque) || motion->at_limit;
 }
 
 /* By more than a thousandth and what rounds: the speed is at its limit. */

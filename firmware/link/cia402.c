@@ -116,7 +116,8 @@ static void leave_switched_on(struct application *application, enum drive_state 
 {
     struct cia402 *axis = &application->link->axis;
 
-    if (request == REQUEST_ENABLE_OPERATION && drive == DRIVE_OPERATION_ENABLED) {
+    if (request == REQUEST_ENABLE_OPERATION && drive == DRIVE_OPERATION_ENABLED &&
+        axis_motion_rests(application)) { /* what brakes yet is no place to begin at */
         axis->state = CIA402_OPERATION_ENABLED;
         axis_motion_start(application);
     } else if (request < REQUEST_SWITCH_ON) {
@@ -178,7 +179,7 @@ static void leave_quick_stop(struct application *application, enum request reque
 
     if (request == REQUEST_DISABLE_VOLTAGE || (has_settled(application) && !stays)) {
         switch_off(application, CIA402_SWITCH_ON_DISABLED);
-    } else if (stays && request == REQUEST_ENABLE_OPERATION) {
+    } else if (stays && request == REQUEST_ENABLE_OPERATION && axis_motion_rests(application)) {
         axis->state = CIA402_OPERATION_ENABLED;
         axis_motion_start(application);
     }
@@ -272,7 +273,8 @@ void cia402_lose(struct application *application)
 {
     struct cia402 *axis = &application->link->axis;
 
-    if (axis->state == CIA402_OPERATION_ENABLED || axis->state == CIA402_QUICK_STOP_ACTIVE) {
+    if (axis->state == CIA402_OPERATION_ENABLED || axis->state == CIA402_QUICK_STOP_ACTIVE ||
+        (axis->state == CIA402_SWITCHED_ON && !axis_motion_is_free(application))) {
         axis->state = CIA402_QUICK_STOP_ACTIVE;
         axis_motion_brake(application, true);
         axis->lost = true;

@@ -54,6 +54,7 @@ struct axis_motion {
     uint32_t max_speed_rpm;             /* of the torque commanded last */
     int16_t target;                     /* that, in thousandths */
     uint16_t in_window_ms, off_ms;
+    int8_t barred;     /* the way on which a limit switch has ended the motion: 1 up, -1 down */
     uint8_t steady_ms; /* for so long the reference's speed has been constant */
     bool waits;        /* a set-point has not begun */
     bool at_once;      /* it preempts what is in motion */

@@ -92,17 +92,18 @@ static void send_state(struct application *application, uint8_t state)
 
 /* ---- errors ---- */
 
-/* Of CiA 301: generic, and what kind of code it is. */
+/* Of CiA 301: generic, and what kind of code it is; of 8xxxh a following error is the profile's. */
 uint8_t link_error_register(const struct application *application)
 {
     static const uint8_t kinds[16] = {[2] = 0x02, [3] = 0x04, [4] = 0x08, [5] = 0x20,
-                                      [6] = 0x20, [7] = 0x20, [8] = 0x10, [15] = 0x80};
-    const enum drive_fault fault = application->link->reported;
+                                      [6] = 0x20, [7] = 0x20, [8] = 0x20, [15] = 0x80};
+    const struct link *link = application->link;
+    const unsigned of_machine = link->other_errors & (LINK_ERROR_LIMIT | LINK_ERROR_INPUT);
+    const bool of_communication = link->other_errors != of_machine || link->bus_errors != 0u;
+    const enum drive_fault fault = link->reported;
 
     return (uint8_t)((fault == DRIVE_FAULT_NONE ? 0u : 0x01u | kinds[fault_at(fault)->code >> 12]) |
-                     (application->link->comm_errors != 0u || application->link->bus_errors != 0u
-                          ? 0x11u
-                          : 0u));
+                     (of_communication ? 0x11u : 0u) | (of_machine != 0u ? 0x21u : 0u));
 }
 
 static void keep_error(struct link *link, uint32_t error)
@@ -143,8 +144,8 @@ void link_begin_error(struct application *application, unsigned error, uint16_t 
 {
     struct link *link = application->link;
 
-    if ((link->comm_errors & error) == 0u) {
-        link->comm_errors |= (uint8_t)error;
+    if ((link->other_errors & error) == 0u) {
+        link->other_errors |= (uint8_t)error;
         link_warn(application, code);
     }
 }
@@ -153,8 +154,8 @@ void link_end_error(struct application *application, unsigned error)
 {
     struct link *link = application->link;
 
-    if ((link->comm_errors & error) != 0u) {
-        link->comm_errors &= (uint8_t)~error;
+    if ((link->other_errors & error) != 0u) {
+        link->other_errors &= (uint8_t)~error;
         if (link_error_register(application) == 0u) {
             link_warn(application, 0);
         }
@@ -237,7 +238,7 @@ void link_reset_communication(struct application *application)
     link->errors = 0;
     link->heard = false;
     link->synced = false;
-    link->comm_errors = 0;
+    link->other_errors = 0;
     cia402_start(application);
     send_state(application, 0); /* boot-up */
 }
@@ -263,10 +264,10 @@ static void obey_nmt(struct application *application, enum nmt_command command)
         link->nmt = LINK_PRE_OPERATIONAL;
         break;
     case NMT_RESET_NODE:
-        cia402_control(application, 0);
         application_recall_settings(application);
         put_presets(link);
         link_reset_communication(application);
+        cia402_lose(application); /* off, as soon as it rests */
         break;
     case NMT_RESET_COMMUNICATION:
         link_reset_communication(application);
@@ -313,6 +314,7 @@ static bool is_text(const char *line, size_t length, const char *text)
     return length == strlen(text) && memcmp(line, text, length) == 0;
 }
 
+/* One that is open already is another client's, which is gone. */
 static void open_channel(struct application *application, bool listens_only)
 {
     struct link *link = application->link;
@@ -320,9 +322,9 @@ static void open_channel(struct application *application, bool listens_only)
     if (!link_has_line(link)) {
         can_bus_leave(application);
         link->open = true;
-        link->listens_only = listens_only;
-        link_reset_communication(application);
     }
+    link->listens_only = listens_only;
+    link_reset_communication(application);
 }
 
 /* The console goes on with what happens from now on. */

@@ -30,7 +30,7 @@ struct link {
     bool on_bus;               /* the bus: the line is the console's */
     bool heard;                /* the heartbeat that 1016h names, at least once */
     bool synced;               /* SYNC has come, at least once */
-    uint8_t comm_errors;       /* which last, in bits: emergencies have said so */
+    uint8_t other_errors;      /* which last, in bits: emergencies have said so */
     bool listens_only;         /* the client does: it sends nothing */
     bool modbus;               /* the line carries Modbus RTU (modbus.h), not frames */
     bool byte_came;            /* of Modbus, in this pass */
@@ -95,8 +95,15 @@ void link_reset_communication(struct application *application);
 /* Whether so many more frames fit into what is being sent. */
 bool link_has_room(const struct application *application, size_t count);
 
-/* Errors of communication, in bits; from LINK_ERROR_OF_PDO on one for each PDO that is received. */
-enum { LINK_ERROR_HEARTBEAT = 1, LINK_ERROR_SYNC = 2, LINK_ERROR_OF_PDO = 4 };
+/* Errors that are no fault of the drive, in bits: of communication, from LINK_ERROR_OF_PDO on one
+   for each PDO that is received; of the machine's switches. */
+enum {
+    LINK_ERROR_HEARTBEAT = 1,
+    LINK_ERROR_SYNC = 2,
+    LINK_ERROR_OF_PDO = 4,
+    LINK_ERROR_LIMIT = LINK_ERROR_OF_PDO << PDOS, /* a limit switch */
+    LINK_ERROR_INPUT = LINK_ERROR_LIMIT << 1      /* quick stop or enable */
+};
 
 /* One of them is there, or not: an emergency of this code when it begins, and one of code 0 when
    none is left. */

@@ -150,6 +150,16 @@ static bool is_mode(const struct application *application, int8_t mode)
            (mode == CIA402_CYCLIC_TORQUE && axis_torque_is_carried(application));
 }
 
+static bool accepts_of_capture(uint8_t sub, const uint8_t *value)
+{
+    double level;
+
+    memcpy(&level, value, sizeof level);
+    return sub == 2u   ? (value[0] | value[1]) != 0
+           : sub == 4u ? level == level
+                       : sub != 5u || value[0] == 1u || value[0] == UINT8_MAX;
+}
+
 bool link_accepts(const struct application *application, const struct object *object,
                   const uint8_t value[OBJECT_BYTES_MAX])
 {
@@ -164,7 +174,7 @@ bool link_accepts(const struct application *application, const struct object *ob
     case 0x1016:
         return number >> 16 <= 127u;
     case 0x2400:
-        return object->sub != 2u || number > 0u;
+        return accepts_of_capture(object->sub, value);
     case 0x2403:
         return number != 0u;
     case 0x6060:
@@ -177,15 +187,19 @@ bool link_accepts(const struct application *application, const struct object *ob
         return number <= 2u || number == 5u || number == 6u;
     case 0x605d:
         return number == 1u || number == 2u;
-    case 0x607e: /* the others have no meaning; nothing turns round in motion */
-        return (number & 0x3fu) == 0u && application->link->axis.state != CIA402_OPERATION_ENABLED;
+    case 0x607d:
+        return object->sub == 1u ? (int32_t)number <= application->link->objects.position_most
+                                 : (int32_t)number >= application->link->objects.position_least;
+    case 0x607e: /* the others have no meaning */
+        return (number & 0x3fu) == 0u && axis_motion_is_free(application);
+    case 0x6091:
+    case 0x6092:
+        return number != 0u && axis_motion_is_free(application);
     case 0x6080:
     case 0x6081:
     case 0x6083:
     case 0x6084:
     case 0x6085:
-    case 0x6091:
-    case 0x6092:
     case 0x6099:
     case 0x609a:
         return number != 0u;

@@ -177,10 +177,8 @@ enum object_abort pdo_obey(struct application *application, const struct object 
     const bool sent = is_sent(object);
     const uint32_t number = can_get(value, object_bytes(object));
 
-    pdo->waits = sent;
-    pdo->syncs = 0;
     if (is_mapping(object)) {
-        return put_mapping(pdo, object, number);
+        return put_mapping(pdo, object, number); /* it does not exist: nothing waits */
     }
     switch (object->sub) {
     case 1:
@@ -208,6 +206,8 @@ enum object_abort pdo_obey(struct application *application, const struct object 
         pdo->event_ms = (uint16_t)number;
         break;
     }
+    pdo->waits = sent;
+    pdo->syncs = 0;
     return OBJECT_DONE;
 }
 

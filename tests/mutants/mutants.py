@@ -1444,7 +1444,7 @@ MUTANTS = [
     Mutant(LINK + "pdo.c", "canopen", "identifiers_that_the_bus_needs_are_not_to_be_had",
            "id >= 0x80u && ", ""),
     Mutant(LINK + "link.c", "canopen", "a_pdo_that_is_too_short_is_an_emergency_until_one_is_right",
-           "if ((link->comm_errors & error) == 0u) {", "if (true) {"),
+           "if ((link->other_errors & error) == 0u) {", "if (true) {"),
     Mutant(LINK + "pdo.c", "canopen", "errors_of_pdos_end_with_the_last_of_them",
            "        if (!sent) {\n            link_end_error(application, shortness(link, pdo));\n        }\n", ""),
     Mutant(LINK + "pdo.c", "pdo", "while_a_pdo_exists_its_identifier_inhibit_time_and_mapping_stay",

@@ -49,12 +49,12 @@ static void put_rotor(double angle_rad)
     rotor_rad = angle_rad;
     furthest_rad = fmax(furthest_rad, rotor_rad);
     least_rad = fmin(least_rad, rotor_rad);
-    bench.inputs =
-        (rotor_rad < limit_minus_rad ? HAL_INPUT_LIMIT_MINUS : 0u) |
-        (rotor_rad > limit_plus_rad ? HAL_INPUT_LIMIT_PLUS : 0u) |
-        (switch_sticks || (!switch_is_mute && rotor_rad > switch_from_rad && rotor_rad < switch_to_rad)
-             ? HAL_INPUT_HOME
-             : 0u);
+    bench.inputs = (rotor_rad < limit_minus_rad ? HAL_INPUT_LIMIT_MINUS : 0u) |
+                   (rotor_rad > limit_plus_rad ? HAL_INPUT_LIMIT_PLUS : 0u) |
+                   (switch_sticks || (!switch_is_mute && rotor_rad > switch_from_rad &&
+                                      rotor_rad < switch_to_rad)
+                        ? HAL_INPUT_HOME
+                        : 0u);
 }
 
 /* At an angle, disabled, with these inputs wired. */

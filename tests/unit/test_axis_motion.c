@@ -87,6 +87,31 @@ static double acceleration_limit_rad_s2(void)
            bench_params.torque_constant_Nm_A / bench_params.inertia_kgm2;
 }
 
+/* What nine tenths of the current that the supply drives at a speed accelerate, or brake. */
+static double supplied_rad_s2(double speed_rad_s, bool brakes)
+{
+    const struct motor_params *motor = &bench.application.drive.settings.motor;
+    const double volts =
+        (1.0 - 2.0 * bench_facts.low_state_s / bench_facts.control_period_s) * motor->supply_V;
+    const double emf_V = motor->torque_constant_Nm_A * speed_rad_s;
+    const double across = motor->rotor_teeth * motor->inductance_H * speed_rad_s;
+    double least_A = 0.0, most_A = volts / motor->resistance_ohm * 10.0;
+
+    for (int i = 0; i < 100; i++) { /* where the voltage is used up */
+        const double current_A = 0.5 * (least_A + most_A);
+        const double along = emf_V + (brakes ? -1.0 : 1.0) * motor->resistance_ohm * current_A;
+
+        if (hypot(along, across * current_A) < volts) {
+            least_A = current_A;
+        } else {
+            most_A = current_A;
+        }
+    }
+    const double current_A = fmin(0.9 * least_A, bench.application.drive.settings.current_limit_A);
+
+    return 0.999 * current_A * motor->torque_constant_Nm_A / motor->inertia_kgm2;
+}
+
 /* ---- units ---- */
 
 static void test_profile_quantities_come_from_the_motor(void)
@@ -99,7 +124,7 @@ static void test_profile_quantities_come_from_the_motor(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-4, speed_limit_rad_s(),
                               axis_motion_speed_limit(&bench.application));
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, acceleration_limit_rad_s2(),
-                              axis_motion_acceleration_limit(&bench.application));
+                              axis_motion_acceleration_limit(&bench.application, 0.0f));
 }
 
 static void test_gear_and_feed_say_what_a_unit_is(void)
@@ -210,7 +235,10 @@ static void test_speed_and_acceleration_beyond_what_the_drive_can_are_cut_and_sa
     put(0x60ff, 0, 4, 0x7fffffff);
     const double most = greatest_acceleration(&periods);
 
-    TEST_ASSERT_DOUBLE_WITHIN(0.01 * most, acceleration_limit_rad_s2(), most);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01 * most,
+                              fmin(supplied_rad_s2(speed_limit_rad_s(), true),
+                                   supplied_rad_s2(0.875 * speed_limit_rad_s(), false)),
+                              most);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, speed_limit_rad_s(), link_bench_speed_rad_s());
     TEST_ASSERT_EQUAL_HEX32(LIMITED | REACHED, status(LIMITED | REACHED));
     put(0x60ff, 0, 4, 0x80000001);
@@ -220,6 +248,95 @@ static void test_speed_and_acceleration_beyond_what_the_drive_can_are_cut_and_sa
     put(0x60ff, 0, 4, TURN);
     bench_periods(4000);
     TEST_ASSERT_EQUAL_HEX32(0, status(LIMITED));
+}
+
+/* A quick stop, too: what the supply does not drive the rotor does not follow. */
+static void test_a_stop_is_no_steeper_than_the_supply_drives_it(void)
+{
+    int periods;
+
+    for (int share = 1; share <= 4; share++) {
+        const double speed = 0.25 * share * speed_limit_rad_s();
+
+        setUp();
+        enable(3);
+        put(0x6085, 0, 4, 0xffffffff);
+        put(0x60ff, 0, 4, (uint32_t)(speed / unit_rad));
+        bench_periods(12000);
+        control(0x0b);
+        const double most = greatest_acceleration(&periods);
+
+        TEST_ASSERT_DOUBLE_WITHIN(0.01 * most, supplied_rad_s2(speed, true), most);
+        TEST_ASSERT_TRUE(share < 4 || most < 0.9 * acceleration_limit_rad_s2());
+    }
+}
+
+static void test_no_speed_is_above_6080h_once_it_is_given(void)
+{
+    enable(3);
+    put(0x60ff, 0, 4, 3 * TURN);
+    bench_periods(6000);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 3.0 * TWO_PI, link_bench_speed_rad_s());
+    TEST_ASSERT_EQUAL_HEX32(0, status(LIMITED));
+    put(0x6080, 0, 4, 60);
+    bench_periods(6000);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, TWO_PI, link_bench_speed_rad_s());
+    TEST_ASSERT_EQUAL_HEX32(LIMITED, status(LIMITED));
+}
+
+/* A unit that grows under way would be another speed at once, and a turned one its reverse. */
+static void test_units_and_directions_change_at_rest_and_out_of_operation_alone(void)
+{
+    static const unsigned indexes[] = {0x607e, 0x6091, 0x6092};
+
+    for (size_t i = 0; i < 3; i++) {
+        const unsigned sub = i == 0 ? 0 : 1, bytes = i == 0 ? 1 : 4;
+
+        setUp();
+        enable(3);
+        TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(indexes[i], sub, bytes, 0x40));
+        put(0x60ff, 0, 4, 2 * TURN);
+        bench_periods(6000);
+        control(0x07); /* brakes in SWITCHED ON */
+        TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(indexes[i], sub, bytes, 0x40));
+        bench_periods(6000);
+        put(indexes[i], sub, bytes, 0x40);
+    }
+}
+
+static void test_an_operation_begins_at_rest(void)
+{
+    static const unsigned words[] = {0x07, 0x0b};
+
+    for (size_t i = 0; i < 2; i++) {
+        setUp();
+        put(0x605a, 0, 2, 6);
+        enable(1);
+        put(0x607a, 0, 4, 20 * TURN);
+        control(0x1f);
+        bench_periods(2000);
+        control(words[i]);
+        bench_periods(20);
+        control(0x0f);
+        bench_periods(20);
+        TEST_ASSERT_NOT_EQUAL(0x27, status(0x6f));
+        bench_periods(6000);
+        TEST_ASSERT_EQUAL_HEX32(0x27, status(0x6f));
+        const double rest_rad = link_bench_reference_rad();
+
+        put(0x607a, 0, 4, TURN / 8);
+        control(0x5f);
+        bench_periods(6000);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, rest_rad + TWO_PI / 8.0, link_bench_reference_rad());
+    }
+}
+
+static void test_a_least_position_is_not_above_the_most(void)
+{
+    put(0x607d, 1, 4, (uint32_t)-100);
+    put(0x607d, 2, 4, 100);
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x607d, 1, 4, 101));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x607d, 2, 4, (uint32_t)-101));
 }
 
 static void test_the_speed_counts_as_reached_within_a_thousandth(void)
@@ -883,6 +1000,11 @@ int main(void)
     RUN_TEST(test_a_quick_stop_brakes_by_its_own_deceleration);
     RUN_TEST(test_a_quick_stop_ends_a_much_steeper_acceleration_at_once);
     RUN_TEST(test_speed_and_acceleration_beyond_what_the_drive_can_are_cut_and_said);
+    RUN_TEST(test_a_stop_is_no_steeper_than_the_supply_drives_it);
+    RUN_TEST(test_no_speed_is_above_6080h_once_it_is_given);
+    RUN_TEST(test_units_and_directions_change_at_rest_and_out_of_operation_alone);
+    RUN_TEST(test_an_operation_begins_at_rest);
+    RUN_TEST(test_a_least_position_is_not_above_the_most);
     RUN_TEST(test_the_speed_counts_as_reached_within_a_thousandth);
     RUN_TEST(test_a_halt_of_a_speed_brakes_and_lets_it_go_on);
     RUN_TEST(test_a_speed_ends_at_either_software_limit_and_goes_back_from_it);

@@ -236,6 +236,23 @@ static void test_a_limit_switch_stops_what_pushes_on_and_lets_the_way_back(void)
     TEST_ASSERT_FALSE(leads()); /* coasts further */
 }
 
+/* A cam: until the torque points away. */
+static void test_a_limit_switch_that_is_passed_bars_the_way(void)
+{
+    put(0x6071, 0, 2, LITTLE);
+    enable();
+    bench.inputs = HAL_INPUT_LIMIT_PLUS;
+    run(60);
+    bench.inputs = 0;
+    run(500);
+    TEST_ASSERT_FALSE(leads());
+    TEST_ASSERT_EQUAL_HEX32(LIMITED, status(LIMITED | OF_MODE));
+    put(0x6071, 0, 2, -LITTLE);
+    TEST_ASSERT_EQUAL(-LITTLE, demand());
+    put(0x6071, 0, 2, LITTLE);
+    TEST_ASSERT_EQUAL(LITTLE, demand());
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -250,5 +267,6 @@ int main(void)
     RUN_TEST(test_a_torque_ends_before_a_software_limit_by_its_way_to_stop);
     RUN_TEST(test_what_moves_away_from_a_limit_may_be_braked);
     RUN_TEST(test_a_limit_switch_stops_what_pushes_on_and_lets_the_way_back);
+    RUN_TEST(test_a_limit_switch_that_is_passed_bars_the_way);
     return UNITY_END();
 }

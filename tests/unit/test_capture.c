@@ -217,6 +217,16 @@ static void test_what_cannot_be_captured_is_refused(void)
 }
 
 /* The reference of ten samples at rest, 80 bytes, and what the console says of it. */
+static void test_an_edge_is_up_or_down(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x2400, 5, 1, 0xff));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x2400, 5, 1, 1));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x2400, 5, 1, 5));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x2400, 5, 1, 0));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(0x2400, 2, 2, 0));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x2400, 2, 2, 0x100));
+}
+
 static void test_it_is_uploaded_and_shown(void)
 {
     objects()->capture_1 = 0x2301; /* period */
@@ -266,6 +276,7 @@ int main(void)
     RUN_TEST(test_without_a_trigger_it_begins_at_once_and_takes_all_memory);
     RUN_TEST(test_positions_are_those_of_the_axis);
     RUN_TEST(test_what_cannot_be_captured_is_refused);
+    RUN_TEST(test_an_edge_is_up_or_down);
     RUN_TEST(test_it_is_uploaded_and_shown);
     RUN_TEST(test_what_is_armed_can_be_ended);
     return UNITY_END();

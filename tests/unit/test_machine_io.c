@@ -5,7 +5,9 @@
 #include "firmware/link/axis_motion.h"
 #include "tests/unit/link_bench.h"
 
-enum { TURN = 65536, LIMITED = 0x0800, LIMITS = HAL_INPUT_LIMIT_MINUS | HAL_INPUT_LIMIT_PLUS };
+enum { TURN = 65536, LIMITED = 0x0800, REACHED = 0x0400, FAILED = 0x2000, HOMING_BITS = 0x3400 };
+
+enum { LIMITS = HAL_INPUT_LIMIT_MINUS | HAL_INPUT_LIMIT_PLUS };
 
 /* Open switches are high; limits and quick stop are active high here, as of a broken wire. */
 static void start(int used, double brake_s)
@@ -188,7 +190,126 @@ static void test_a_limit_switch_on_the_bus_is_said_and_shown(void)
     TEST_ASSERT_TRUE(axis_motion_rests(&bench.application));
 }
 
+/* A cam, or contacts that bounce: who passes a limit switch is behind it. */
+static void pass_limit_switch(void)
+{
+    bench.inputs |= HAL_INPUT_LIMIT_PLUS;
+    bench_periods(60);
+    is_heard("t08181286210000000000\r", bench_heard());
+    TEST_ASSERT_EQUAL_HEX32(0x21, link_bench_get(0x1001, 0));
+    bench.inputs &= ~(uint32_t)HAL_INPUT_LIMIT_PLUS;
+    bench_periods(4000);
+    is_heard("t08180000000000000000\r", bench_heard());
+    TEST_ASSERT_TRUE(axis_motion_rests(&bench.application));
+    TEST_ASSERT_EQUAL_HEX32(LIMITED, link_bench_get(0x6041, 0) & LIMITED);
+}
+
+static void test_a_speed_that_a_limit_switch_has_ended_does_not_come_back(void)
+{
+    enable_on_bus(3);
+    for (int again = 0; again < 2; again++) {
+        put(0x60ff, 0, 4, TURN);
+        bench_periods(4000);
+        pass_limit_switch();
+        put(0x60ff, 0, 4, 2 * TURN); /* nor another one that way */
+        bench_periods(1000);
+        TEST_ASSERT_TRUE(axis_motion_rests(&bench.application));
+        put(0x60ff, 0, 4, again == 0 ? 0 : (uint32_t)-TURN);
+        bench_periods(4000);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, again == 0 ? 0.0 : -TWO_PI, now().omega_ref_rad_s);
+        TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(0x6041, 0) & LIMITED);
+    }
+}
+
+static void test_a_target_that_waits_behind_a_limit_switch_is_dropped(void)
+{
+    enable_on_bus(1);
+    put(0x607a, 0, 4, 10 * TURN);
+    put(0x6040, 0, 2, 0x1f);
+    put(0x6040, 0, 2, 0x0f);
+    put(0x607a, 0, 4, 20 * TURN);
+    put(0x6040, 0, 2, 0x1f);
+    put(0x6040, 0, 2, 0x0f);
+    bench_periods(2000);
+    pass_limit_switch();
+    const double end_rad = now().theta_ref_rad;
+
+    TEST_ASSERT_TRUE(end_rad < 9.0 * TWO_PI);
+    put(0x607a, 0, 4, TURN); /* a new one is gone to */
+    put(0x6040, 0, 2, 0x1f);
+    bench_periods(20000);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, TWO_PI, now().theta_ref_rad);
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(0x6041, 0) & LIMITED);
+}
+
+static void stream(int count, int32_t *target, int32_t step)
+{
+    for (int i = 0; i < count; i++) {
+        *target += step;
+        put(0x607a, 0, 4, (uint32_t)*target);
+        bench_periods(37); /* and what the request takes */
+    }
+}
+
+static void test_no_cyclic_target_behind_a_limit_switch_is_followed(void)
+{
+    int32_t target = 0;
+
+    enable_on_bus(8);
+    stream(100, &target, 200);
+    TEST_ASSERT_FALSE(axis_motion_rests(&bench.application));
+    pass_limit_switch();
+    const double end_rad = now().theta_ref_rad;
+
+    target = TURN;
+    stream(100, &target, 200);
+    TEST_ASSERT_EQUAL_DOUBLE(end_rad, now().theta_ref_rad);
+    TEST_ASSERT_EQUAL_HEX32(LIMITED, link_bench_get(0x6041, 0) & LIMITED);
+    target = (int32_t)(end_rad / TWO_PI * TURN);
+    stream(100, &target, -200);
+    TEST_ASSERT_TRUE(now().theta_ref_rad < end_rad - 0.1);
+    stream(20, &target, 200);
+    TEST_ASSERT_FALSE(axis_motion_rests(&bench.application));
+}
+
+static void test_a_homing_that_a_limit_switch_ends_is_an_error(void)
+{
+    enable_on_bus(6);
+    put(0x6098, 0, 1, (uint8_t)-2);
+    put(0x6040, 0, 2, 0x1f);
+    bench_periods(2000);
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(0x6041, 0) & HOMING_BITS);
+    pass_limit_switch();
+    TEST_ASSERT_EQUAL_HEX32(REACHED | FAILED, link_bench_get(0x6041, 0) & HOMING_BITS);
+}
+
 /* ---- quick stop, enable ---- */
+
+/* At rest nothing brakes, and the bridge is off all the same. */
+static void test_what_switches_off_at_rest_is_said_on_the_bus(void)
+{
+    static const struct {
+        uint32_t inputs;
+        const char *said;
+    } causes[] = {{HAL_INPUT_ENABLE | HAL_INPUT_QUICK_STOP, "t08184154210000000000\r"},
+                  {0, "t08184254210000000000\r"}};
+
+    for (size_t i = 0; i < 2; i++) {
+        setUp();
+        enable_on_bus(1);
+        (void)bench_heard();
+        bench.inputs = causes[i].inputs;
+        bench_periods(4000);
+        const char *heard = bench_heard();
+
+        is_heard(causes[i].said, heard);
+        TEST_ASSERT_EQUAL_INT(1, link_bench_count("t0818", heard));
+        TEST_ASSERT_EQUAL(DRIVE_SWITCH_ON_DISABLED, now().state);
+        bench.inputs = HAL_INPUT_ENABLE;
+        bench_periods(60);
+        is_heard("t08180000000000000000\r", bench_heard());
+    }
+}
 
 static void test_a_quick_stop_input_stops_and_refuses_to_move(void)
 {
@@ -378,6 +499,11 @@ int main(void)
     RUN_TEST(test_a_level_counts_when_it_lasts);
     RUN_TEST(test_what_is_not_wired_is_not_obeyed_and_levels_have_their_polarity);
     RUN_TEST(test_a_limit_switch_on_the_bus_is_said_and_shown);
+    RUN_TEST(test_a_speed_that_a_limit_switch_has_ended_does_not_come_back);
+    RUN_TEST(test_a_target_that_waits_behind_a_limit_switch_is_dropped);
+    RUN_TEST(test_no_cyclic_target_behind_a_limit_switch_is_followed);
+    RUN_TEST(test_a_homing_that_a_limit_switch_ends_is_an_error);
+    RUN_TEST(test_what_switches_off_at_rest_is_said_on_the_bus);
     RUN_TEST(test_a_quick_stop_input_stops_and_refuses_to_move);
     RUN_TEST(test_a_quick_stop_input_on_the_bus_is_the_profile_s_quick_stop);
     RUN_TEST(test_nothing_is_enabled_without_the_enable_input);

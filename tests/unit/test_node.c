@@ -35,11 +35,17 @@ static void enable(void)
 
 /* ---- the channel ---- */
 
-static void test_a_channel_opens_once(void)
+/* What an earlier client has left open is opened anew. */
+static void test_a_channel_that_opens_is_reset_whatever_it_was(void)
 {
-    TEST_ASSERT_EQUAL_STRING("\r", link_bench_say("O", 2));
-    TEST_ASSERT_EQUAL_STRING("\r", link_bench_say("L", 2));
-    TEST_ASSERT_EQUAL_STRING("z\r", link_bench_say("t1230", 2)); /* does not listen only */
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1017, 0, 2, 500));
+    TEST_ASSERT_EQUAL_STRING("\a", link_bench_say("t60184018C", 2));
+    TEST_ASSERT_EQUAL_STRING("\rt701100\r", link_bench_say("O", 2));
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(0x1017, 0));
+    TEST_ASSERT_EQUAL_STRING("\rt701100\r", link_bench_say("L", 2));
+    TEST_ASSERT_EQUAL_STRING("\a", link_bench_say("t1230", 2)); /* listens only */
+    TEST_ASSERT_EQUAL_STRING("\rt701100\r", link_bench_say("O", 2));
+    TEST_ASSERT_EQUAL_STRING("z\r", link_bench_say("t1230", 2));
     TEST_ASSERT_EQUAL_STRING("V1010\r", link_bench_say("V", 2));
     TEST_ASSERT_EQUAL_STRING("N0001\r", link_bench_say("N", 2));
     TEST_ASSERT_EQUAL_STRING("F00\r", link_bench_say("F", 2));
@@ -108,7 +114,7 @@ static void test_nmt_is_two_bytes_for_this_node_or_all(void)
     TEST_ASSERT_EQUAL_HEX32(0x00040192, link_bench_get(0x1000, 0));
 }
 
-static void test_a_reset_of_the_node_opens_the_bridge_and_one_of_communication_does_not(void)
+static void test_a_reset_of_the_node_stops_and_switches_off_and_one_of_communication_stops(void)
 {
     enable();
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1017, 0, 2, 500));
@@ -116,10 +122,17 @@ static void test_a_reset_of_the_node_opens_the_bridge_and_one_of_communication_d
     TEST_ASSERT_FALSE(is_off());
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_get(0x1017, 0));
     TEST_ASSERT_EQUAL_HEX32(0x23, link_bench_get(0x6041, 0) & 0x6fu); /* is enabled already */
+    bench_periods(8000);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, link_bench_speed_rad_s());
+    TEST_ASSERT_EQUAL_HEX32(0x23, link_bench_get(0x6041, 0) & 0x6fu);
+    enable();
     (void)link_bench_nmt(START, 2);
     link_bench_heard("t701100\r", link_bench_nmt(RESET_NODE, 20));
-    TEST_ASSERT_TRUE(is_off());
     TEST_ASSERT_EQUAL(LINK_PRE_OPERATIONAL, bench_link.nmt);
+    TEST_ASSERT_FALSE(is_off()); /* brakes */
+    TEST_ASSERT_EQUAL_HEX32(0x07, link_bench_get(0x6041, 0) & 0x6fu);
+    bench_periods(8000);
+    TEST_ASSERT_TRUE(is_off());
     TEST_ASSERT_EQUAL_HEX32(0x40, link_bench_get(0x6041, 0) & 0x6fu);
 }
 
@@ -148,7 +161,7 @@ static void recover(void)
 static void test_every_fault_is_an_emergency_with_its_code_its_kind_and_its_place(void)
 {
     static const uint8_t kinds[16] = {[2] = 0x03, [3] = 0x05, [4] = 0x09, [5] = 0x21,
-                                      [6] = 0x21, [7] = 0x21, [8] = 0x11, [15] = 0x81};
+                                      [6] = 0x21, [7] = 0x21, [8] = 0x21, [15] = 0x81};
 
     for (int i = 1; i < (int)DRIVE_FAULTS; i++) {
         const unsigned code = fault_at((enum drive_fault)i)->code;
@@ -204,15 +217,15 @@ static void test_a_heartbeat_that_was_heard_must_come_again_in_time(void)
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1016, 1, 4, 0x00050014));
     enable(); /* none has come: none is missed */
     beat(6, 400);
-    TEST_ASSERT_FALSE(bench_link.comm_errors);
+    TEST_ASSERT_FALSE(bench_link.other_errors);
     (void)link_bench_say("t7050", 400); /* a heartbeat has a state */
-    TEST_ASSERT_FALSE(bench_link.comm_errors);
+    TEST_ASSERT_FALSE(bench_link.other_errors);
     beat(5, 195);
-    TEST_ASSERT_FALSE(bench_link.comm_errors);
+    TEST_ASSERT_FALSE(bench_link.other_errors);
     beat(5, 195);
-    TEST_ASSERT_FALSE(bench_link.comm_errors);
+    TEST_ASSERT_FALSE(bench_link.other_errors);
     link_bench_heard("t08183081110000000000\r", link_bench_say("", 20));
-    TEST_ASSERT_TRUE(bench_link.comm_errors);
+    TEST_ASSERT_TRUE(bench_link.other_errors);
     TEST_ASSERT_EQUAL_HEX32(0x11, link_bench_get(0x1001, 0));
     TEST_ASSERT_EQUAL_HEX32(0x8130, link_bench_get(0x1003, 1));
     bench_periods(4000);
@@ -244,8 +257,8 @@ static void test_a_heartbeat_has_all_of_its_time(void)
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1016, 1, 4, 0x00050014));
     for (int phase = 0; phase < 10; phase++) {
         beat(5, 1);
-        TEST_ASSERT_FALSE(bench_link.comm_errors);
-        while (!bench_link.comm_errors) {
+        TEST_ASSERT_FALSE(bench_link.other_errors);
+        while (!bench_link.other_errors) {
             bench_period();
         }
         const uint32_t since_us = bench_link.now_us - bench_link.heard_us;
@@ -265,7 +278,7 @@ static void test_heartbeats_are_watched_only_with_a_time(void)
     beat(5, 10);
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1016, 1, 4, 0));
     bench_periods(1000);
-    TEST_ASSERT_FALSE(bench_link.comm_errors);
+    TEST_ASSERT_FALSE(bench_link.other_errors);
 }
 
 /* Of a period, in microseconds: late by fewer control periods, and by as many. */
@@ -278,12 +291,12 @@ static void sync_may_be_late(uint32_t period_us, int less, int late)
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1006, 0, 4, period_us));
     enable();
     (void)link_bench_say("t0800", 1000); /* not operational */
-    TEST_ASSERT_FALSE(bench_link.comm_errors);
+    TEST_ASSERT_FALSE(bench_link.other_errors);
     (void)link_bench_nmt(START, 2);
     for (int i = 0; i < 20; i++) {
         (void)link_bench_say("t0800", period + less);
     }
-    TEST_ASSERT_FALSE(bench_link.comm_errors);
+    TEST_ASSERT_FALSE(bench_link.other_errors);
     link_bench_heard("t08180081110000000000\r", link_bench_say("t0800", period + late));
     bench_periods(4000);
     TEST_ASSERT_TRUE(is_off());
@@ -323,7 +336,7 @@ static void test_sync_is_missed_from_the_first_one_of_an_operational_node_on(voi
         (void)link_bench_say("t0800", 40);
     }
     (void)link_bench_nmt(START, 30);
-    TEST_ASSERT_FALSE(bench_link.comm_errors);
+    TEST_ASSERT_FALSE(bench_link.other_errors);
     link_bench_heard("t08180081110000000000\r", link_bench_say("t0800", 110));
 }
 
@@ -332,7 +345,7 @@ static void test_a_sync_that_is_not_watched_may_stay_away(void)
     enable();
     (void)link_bench_nmt(START, 2);
     (void)link_bench_say("t0800", 2000);
-    TEST_ASSERT_FALSE(bench_link.comm_errors);
+    TEST_ASSERT_FALSE(bench_link.other_errors);
     (void)link_bench_say("C", 2);
     bench_periods(8000);
     TEST_ASSERT_FALSE(is_off()); /* nobody was to be heard */
@@ -367,12 +380,12 @@ static void test_a_frame_that_does_not_fit_is_lost_whole(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_a_channel_opens_once);
+    RUN_TEST(test_a_channel_that_opens_is_reset_whatever_it_was);
     RUN_TEST(test_a_line_that_is_too_long_means_nothing_and_line_feeds_are_left_out);
     RUN_TEST(test_what_has_happened_while_it_was_open_is_not_announced_behind_it);
     RUN_TEST(test_a_pass_takes_a_frame);
     RUN_TEST(test_nmt_is_two_bytes_for_this_node_or_all);
-    RUN_TEST(test_a_reset_of_the_node_opens_the_bridge_and_one_of_communication_does_not);
+    RUN_TEST(test_a_reset_of_the_node_stops_and_switches_off_and_one_of_communication_stops);
     RUN_TEST(test_heartbeats_come_at_their_interval);
     RUN_TEST(test_every_fault_is_an_emergency_with_its_code_its_kind_and_its_place);
     RUN_TEST(test_the_last_four_errors_are_kept_until_they_are_deleted);

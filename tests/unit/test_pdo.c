@@ -352,6 +352,8 @@ static void test_what_waits_for_sync_acts_with_it_and_once(void)
     (void)link_bench_say("t0800", 2);
     TEST_ASSERT_EQUAL_HEX32(0x0240, link_bench_get(0x6041, 0));
     (void)link_bench_say("t20120600", 2);
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, link_bench_put(RPDO, 2, 1, 242)); /* changes nothing */
+    TEST_ASSERT_TRUE(bench_link.pdos.received[0].waits);
     (void)link_bench_nmt(PRE_OPERATIONAL, 1);
     (void)link_bench_nmt(START, 1); /* what waited is forgotten */
     (void)link_bench_say("t0800", 2);
