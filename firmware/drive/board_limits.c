@@ -112,23 +112,24 @@ static double supplied_speed_rad_s(const struct motor_params *motor, const struc
            square_root(along_Vs * along_Vs + across_Vs * across_Vs);
 }
 
+/* In single precision, which the core computes by itself. */
 struct supplied_current board_limits_current(const struct drive_settings *settings,
-                                             const struct hal_facts *facts, double speed_rad_s)
+                                             const struct hal_facts *facts, float speed_rad_s)
 {
     const struct motor_params *motor = &settings->motor;
-    const double supply_V =
-        modulation_max(facts->low_state_s, facts->control_period_s) * motor->supply_V;
-    const double emf_V = motor->torque_constant_Nm_A * speed_rad_s;
-    const double across_ohm = motor->rotor_teeth * motor->inductance_H * speed_rad_s;
-    const double impedance_ohm2 =
-        motor->resistance_ohm * motor->resistance_ohm + across_ohm * across_ohm;
-    const double left =
+    const float supply_V =
+        (float)motor->supply_V * (float)modulation_max(facts->low_state_s, facts->control_period_s);
+    const float resistance_ohm = (float)motor->resistance_ohm;
+    const float emf_V = (float)motor->torque_constant_Nm_A * speed_rad_s;
+    const float across_ohm = (float)motor->rotor_teeth * (float)motor->inductance_H * speed_rad_s;
+    const float impedance_ohm2 = resistance_ohm * resistance_ohm + across_ohm * across_ohm;
+    const float left =
         impedance_ohm2 * supply_V * supply_V - across_ohm * across_ohm * emf_V * emf_V;
-    const double both_A = left > 0.0 ? square_root(left) / impedance_ohm2 : 0.0;
-    const double drop_A = motor->resistance_ohm * emf_V / impedance_ohm2;
+    const float both_A = (float)square_root((double)left) / impedance_ohm2; /* 0: nothing is left */
+    const float drop_A = both_A > 0.0f ? resistance_ohm * emf_V / impedance_ohm2 : 0.0f;
 
-    return (struct supplied_current){.accelerating_A = both_A > drop_A ? both_A - drop_A : 0.0,
-                                     .braking_A = both_A > 0.0 ? both_A + drop_A : 0.0};
+    return (struct supplied_current){.accelerating_A = both_A > drop_A ? both_A - drop_A : 0.0f,
+                                     .braking_A = both_A + drop_A};
 }
 
 __attribute__((noinline)) double no_load_speed_rad_s(const struct drive_settings *settings,

@@ -77,10 +77,10 @@ struct speed_limit board_limits_speed(const struct drive_settings *settings,
  *   V^2 = (Km w +- R i)^2 + (N w L i)^2
  */
 struct supplied_current {
-    double accelerating_A, braking_A;
+    float accelerating_A, braking_A;
 };
 struct supplied_current board_limits_current(const struct drive_settings *settings,
-                                             const struct hal_facts *facts, double speed_rad_s);
+                                             const struct hal_facts *facts, float speed_rad_s);
 
 #ifdef __cplusplus
 }

@@ -1,7 +1,6 @@
 #include "firmware/link/axis_motion.h"
 
 #include "firmware/application/application.h"
-#include "firmware/design/elementary.h"
 #include "firmware/drive/board_limits.h"
 #include "firmware/drive/interrupt_view.h"
 #include "firmware/link/axis_stream.h"
@@ -68,17 +67,11 @@ static const float supply_share = 0.9f;
  */
 static const float still_accelerates = 1.0f - 0.5f * 0.25f;
 
-static float lesser(float a, float b)
-{
-    return a < b ? a : b;
-}
-
 static struct supplied_current supplied(const struct application *application, float speed_rad_s)
 {
     const struct drive *drive = &application->drive;
 
-    return board_limits_current(&drive->settings, drive->board->facts,
-                                magnitude((double)speed_rad_s));
+    return board_limits_current(&drive->settings, drive->board->facts, axis_size(speed_rad_s));
 }
 
 /* Of a current, where the drive refuses more, and a little less; some is always left. */
@@ -89,32 +82,32 @@ static float acceleration_of(const struct application *application, float curren
     const float least_A = 0.01f * limit_A;
     const float given_A = current_A > least_A ? current_A : least_A;
 
-    return 0.999f * lesser(given_A, limit_A) * (float)settings->motor.torque_constant_Nm_A /
+    return 0.999f * axis_lesser(given_A, limit_A) * (float)settings->motor.torque_constant_Nm_A /
            (float)settings->motor.inertia_kgm2;
 }
 
 float axis_motion_acceleration_limit(const struct application *application, float speed_rad_s)
 {
     return acceleration_of(application,
-                           supply_share * (float)supplied(application, speed_rad_s).braking_A);
+                           supply_share * supplied(application, speed_rad_s).braking_A);
 }
 
 int32_t axis_motion_braking_thousandths(const struct application *application, float speed_rad_s)
 {
-    return (int32_t)(1e3f * supply_share * (float)supplied(application, speed_rad_s).braking_A /
+    return (int32_t)(1e3f * supply_share * supplied(application, speed_rad_s).braking_A /
                      (float)application->drive.settings.motor.rated_current_A);
 }
 
 float axis_motion_ramp_limit(const struct application *application, float from_rad_s,
                              float to_rad_s)
 {
-    const float from = (float)magnitude((double)from_rad_s);
-    const float to = (float)magnitude((double)to_rad_s);
+    const float from = axis_size(from_rad_s);
+    const float to = axis_size(to_rad_s);
     const float rising =
-        supply_share * (float)supplied(application, still_accelerates * to).accelerating_A;
+        supply_share * supplied(application, still_accelerates * to).accelerating_A;
 
-    return lesser(acceleration_of(application, rising),
-                  axis_motion_acceleration_limit(application, to > from ? to : from));
+    return axis_lesser(acceleration_of(application, rising),
+                       axis_motion_acceleration_limit(application, to > from ? to : from));
 }
 
 float axis_motion_torque_Nm(const struct application *application, float thousandths)
@@ -230,8 +223,7 @@ bool axis_motion_post(struct application *application, enum drive_command_kind k
     const float acceleration =
         axis_motion_limited(application, units(application) * (float)acceleration_units, 1e-3f,
                             axis_motion_ramp_limit(application, present, speed_rad_s));
-    const float jerk_s =
-        jerk_share * (speed_rad_s < 0.0f ? -speed_rad_s : speed_rad_s) / acceleration;
+    const float jerk_s = jerk_share * axis_size(speed_rad_s) / acceleration;
     const float jerk = jerk_to_end(motion_of(application),
                                    acceleration / (jerk_s > jerk_min_s ? jerk_s : jerk_min_s));
     struct drive_command command = {
@@ -438,8 +430,8 @@ static float room_rad(struct application *application, float speed, double *end_
 static float stopping_rad(struct application *application, float speed, uint32_t deceleration_units)
 {
     const float command_s = 0.01f;
-    const float acceleration = lesser(units(application) * (float)deceleration_units,
-                                      axis_motion_acceleration_limit(application, speed));
+    const float acceleration = axis_lesser(units(application) * (float)deceleration_units,
+                                           axis_motion_acceleration_limit(application, speed));
     const float ramp_s = speed / acceleration;
 
     return speed * (0.5f * ramp_s + 1.5f * (jerk_share * ramp_s + jerk_min_s) + command_s);
@@ -450,7 +442,7 @@ bool axis_motion_nears_limit(struct application *application, float speed_rad_s,
     double end_rad;
 
     return room_rad(application, way, &end_rad) <=
-           stopping_rad(application, (float)magnitude((double)speed_rad_s),
+           stopping_rad(application, axis_size(speed_rad_s),
                         application->link->objects.quick_stop_deceleration);
 }
 
@@ -460,8 +452,8 @@ static bool ends_at_limit(struct application *application, float *speed)
 {
     struct axis_motion *motion = motion_of(application);
     double limit_rad;
-    const float asked = (float)magnitude((double)*speed);
-    const float present = (float)magnitude(cia402_signals(application)->omega_ref_rad_s);
+    const float asked = axis_size(*speed);
+    const float present = axis_size((float)cia402_signals(application)->omega_ref_rad_s);
     const float most = asked > present ? asked : present;
     const float room = room_rad(application, *speed, &limit_rad);
 
@@ -618,8 +610,8 @@ void axis_motion_look(struct application *application)
     const struct drive_signals *now = cia402_signals(application);
     const float unit_rad = units(application);
     const float speed = (float)now->omega_ref_rad_s;
-    const float off_rad = (float)magnitude(now->theta_ref_rad - now->theta_est_rad);
-    const float away_rad = (float)magnitude(motion->target_rad - now->theta_est_rad);
+    const float off_rad = axis_size((float)(now->theta_ref_rad - now->theta_est_rad));
+    const float away_rad = axis_size((float)(motion->target_rad - now->theta_est_rad));
     const bool there = !motion->waits && axis_motion_rests(application) &&
                        away_rad <= unit_rad * (float)link->objects.target_window;
 
@@ -640,10 +632,9 @@ static bool at_speed(struct application *application)
 {
     const struct axis_motion *motion = motion_of(application);
     const float off = (float)cia402_signals(application)->omega_ref_rad_s - motion->speed_rad_s;
-    const float least =
-        1e-5f + 1e-3f * (motion->speed_rad_s < 0.0f ? -motion->speed_rad_s : motion->speed_rad_s);
+    const float least = 1e-5f + 1e-3f * axis_size(motion->speed_rad_s);
 
-    return off <= least && -off <= least && !command_queue_holds_any(&application->drive.commands);
+    return axis_size(off) <= least && !command_queue_holds_any(&application->drive.commands);
 }
 
 uint16_t axis_motion_status(struct application *application)

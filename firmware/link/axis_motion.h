@@ -9,6 +9,16 @@
 
 struct application;
 
+static inline float axis_size(float value)
+{
+    return value < 0.0f ? -value : value;
+}
+
+static inline float axis_lesser(float a, float b)
+{
+    return a < b ? a : b;
+}
+
 /* What has been given none has a share of what the motor can, in the units of the factor group. */
 void axis_motion_put_defaults(struct application *application);
 

@@ -54,11 +54,6 @@ static float late(const struct application *application)
     return (float)periods / (float)application->drive.planner.set_points.interval_periods;
 }
 
-static float lesser(float a, float b)
-{
-    return a < b ? a : b;
-}
-
 static bool put(struct application *application, double position_rad)
 {
     struct axis_stream *stream = &application->link->axis.stream;
@@ -116,22 +111,21 @@ static double within_limits(struct application *application, double target_rad)
     const float before = (float)(stream->last_rad - stream->before_rad) / T;
     const float limit = axis_motion_ramp_limit(application, before, before);
     const float gentle =
-        lesser(limit, closing_share * axis_motion_acceleration_limit(application, 0.0f));
+        axis_lesser(limit, closing_share * axis_motion_acceleration_limit(application, 0.0f));
     const float slower = acceleration_share * limit * T;
     const float asked = (float)(target_rad - stream->last_rad) / T;
     const float of_target = (float)(target_rad - stream->asked_rad) / T;
     const float behind_rad = (float)(stream->asked_rad - stream->last_rad);
-    const bool follows =
-        behind_rad == 0.0f && magnitude((double)(asked - before)) <= (double)slower;
+    const bool follows = behind_rad == 0.0f && axis_size(asked - before) <= slower;
     const float change = follows ? slower : gentle * T;
-    const float closing = stopping_speed((float)magnitude((double)behind_rad), gentle * T, T);
+    const float closing = stopping_speed(axis_size(behind_rad), gentle * T, T);
     const float down_rad = (float)(stream->last_rad - axis_motion_limit_rad(application, -1.0f));
     const float up_rad = (float)(axis_motion_limit_rad(application, 1.0f) - stream->last_rad);
     float speed = axis_motion_limited(application, asked, of_target - closing, of_target + closing);
 
     speed = axis_motion_limited(application, speed,
-                                -lesser(most, stopping_speed(down_rad, gentle * T, T)),
-                                lesser(most, stopping_speed(up_rad, gentle * T, T)));
+                                -axis_lesser(most, stopping_speed(down_rad, gentle * T, T)),
+                                axis_lesser(most, stopping_speed(up_rad, gentle * T, T)));
     speed = axis_motion_limited(application, speed, before - (before > 0.0f ? slower : change),
                                 before + (before < 0.0f ? slower : change));
     return speed == asked ? target_rad : stream->last_rad + (double)(T * speed);
