@@ -21,18 +21,6 @@ static uint32_t capture_shown(const struct capture *capture, uint8_t sub)
                                    : capture_period(capture, 0);
 }
 
-static enum object_abort ask_methods(const struct application *application, uint8_t sub,
-                                     uint8_t *value)
-{
-    const uint8_t count = axis_homing_methods(application);
-
-    if (sub > count) {
-        return OBJECT_SUB_MISSING;
-    }
-    value[0] = sub == 0u ? count : (uint8_t)axis_homing_method(sub);
-    return OBJECT_DONE;
-}
-
 enum object_abort link_ask(struct application *application, const struct object *object,
                            uint8_t value[OBJECT_BYTES_MAX], const char **text)
 {
@@ -64,7 +52,9 @@ enum object_abort link_ask(struct application *application, const struct object 
                 object_bytes(object));
         break;
     case 0x60e3:
-        return ask_methods(application, object->sub, value);
+        value[0] = object->sub == 0u ? axis_homing_methods(application)
+                                     : (uint8_t)axis_homing_method(object->sub);
+        break;
     case 0x2402: /* sdo.h asks for it itself */
         break;
     default:

@@ -83,6 +83,7 @@ def a_switch_on_the_wires_is_obeyed(served):
     time.sleep(0.1)
     CHECKS.that("limit switch + is active" in drive.ask("move 100"), "refuses")
     CHECKS.that(knobs.ask("inputs = 23").startswith("ok"), "the enable switch")
+    CHECKS.that(drive.until("warning: stop: the enable input is not active"), "at rest it is said, too")
     time.sleep(0.2)
     CHECKS.that(drive.ask("state").startswith("ok switch-on-disabled"), "switches off")
     CHECKS.that(knobs.ask("inputs = 32").startswith("error: "), "there are five")
