@@ -76,8 +76,7 @@ void axis_torque_background(struct application *application)
     const struct link *link = application->link;
     struct axis_motion *motion = &application->link->axis.motion;
 
-    if (motion->halted || application->io.stop != MACHINE_STOP_NONE ||
-        command_queue_holds_any(&application->drive.commands)) {
+    if (motion->halted || command_queue_holds_any(&application->drive.commands)) {
         return;
     }
     const bool was_limited = motion->limited;
