@@ -317,6 +317,18 @@ def what_is_no_drive_is_said(place, folder):
     known.version = version
 
 
+def a_node_that_refuses_enables_no_other():
+    """The console is node 1's."""
+    with Simulated("--nodes", "2", program=SIL) as simulated, steadystep.Drive(simulated.place, node=2) as drive:
+        drive.settings["torque_constant_Nm_A"] = 0.001
+        found = refusal(drive.enable, steadystep.Refused)
+        CHECKS.that(found.startswith("node 2 refuses to be enabled") and "shared with node 1" in found, found)
+        time.sleep(0.2)
+        for n in ("", "2: "):
+            found = simulated.knobs.turn(n + "state")
+            CHECKS.that("state=switch-on-disabled" in found, f"{n}nothing is switched on: {found}")
+
+
 def a_terminal_serves_as_well():
     with Served() as served, steadystep.Drive(str(served.link)) as drive:
         drive.enable()
@@ -348,5 +360,6 @@ with tempfile.TemporaryDirectory() as scratch, Simulated(program=SIL) as simulat
         a_response_that_comes_late_is_not_the_next_one_s(DRIVE, simulated.process)
         an_interrupt_in_what_is_written_remains_one(DRIVE)
         a_lost_link_is_said(DRIVE, simulated.knobs)
+a_node_that_refuses_enables_no_other()
 a_terminal_serves_as_well()
 CHECKS.end()

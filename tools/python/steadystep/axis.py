@@ -113,9 +113,7 @@ class Axis:
                     "SWITCHED ON": ENABLE_OPERATION, "QUICK STOP ACTIVE": ENABLE_OPERATION}.get(state, 0)
             self._control(word)
             if word == SWITCH_ON and self.status & REFUSED:
-                answer = self.objects.bus.ask_console("enable")  # a fieldbus has no words
-                if not answer.startswith("ok"):
-                    raise Refused(answer.removeprefix("error: ") or "the drive refuses to be enabled")
+                self._enable_in_words()
             passed_s = time.monotonic() - begin
             progress("enabling", min(passed_s / timeout_s, 1.0))
             if passed_s > timeout_s:
@@ -123,6 +121,17 @@ class Axis:
             time.sleep(LOOK_S)
         self.objects.write(QUICK_STOP_OPTION, STAYS)  # ahead of a stop, whose process data does not wait for it
         progress("enabling", 1.0)
+
+    def _enable_in_words(self) -> None:
+        """A fieldbus has no words. The console says why not, or enables; where other nodes are on the line it may be
+        one of theirs."""
+        others = self.objects.others
+        if others:
+            raise Refused(f"node {self.objects.number} refuses to be enabled: settings or rotor forbid it; why, says the "
+                          f"console of its own line, as this one is shared with node {', '.join(map(str, others))}")
+        answer = self.objects.bus.ask_console("enable")
+        if not answer.startswith("ok"):
+            raise Refused(answer.removeprefix("error: ") or "the drive refuses to be enabled")
 
     def disable(self) -> None:
         """Opens the bridge."""

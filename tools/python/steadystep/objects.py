@@ -68,6 +68,11 @@ class Objects:
         self.network.disconnect()
 
     @property
+    def others(self) -> list[int]:
+        """Nodes on the line that have been heard beside this one."""
+        return sorted({*self.bus.heard_s} - {0, self.number})
+
+    @property
     def entries(self) -> Any:
         return self.node.object_dictionary
 
