@@ -1,8 +1,11 @@
 #include "sil/serve/byte_port.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
+#include <utility>
 
 #include <arpa/inet.h>
 #include <fcntl.h>
@@ -81,6 +84,25 @@ bool read_all(int file, std::string &bytes)
         bytes.append(piece, static_cast<std::size_t>(count));
     }
     return count < 0 && (errno == EAGAIN || errno == EINTR);
+}
+
+constexpr const char *http_methods[] = {"GET ",     "HEAD ",  "POST ",  "PUT ",    "DELETE ",
+                                        "OPTIONS ", "PATCH ", "TRACE ", "CONNECT "};
+
+bool is_http(const std::string &bytes)
+{
+    return std::any_of(std::begin(http_methods), std::end(http_methods),
+                       [&bytes](const std::string &method) {
+                           return bytes.compare(0, method.size(), method) == 0;
+                       });
+}
+
+bool may_become_http(const std::string &bytes)
+{
+    return std::any_of(std::begin(http_methods), std::end(http_methods),
+                       [&bytes](const std::string &method) {
+                           return method.compare(0, bytes.size(), bytes) == 0;
+                       });
 }
 
 } // namespace
@@ -220,6 +242,8 @@ void BytePort::accept_client()
     }
     client_ = accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (client_ >= 0) {
+        client_known_ = false;
+        client_begin_.clear();
         client_skips_ = in_line_;
         const int on = 1;
         setsockopt(client_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
@@ -230,6 +254,7 @@ void BytePort::close_client()
 {
     close(client_);
     client_ = -1;
+    client_begin_.clear();
     to_client_.clear();
 }
 
@@ -239,7 +264,20 @@ std::string BytePort::read()
     read_all(terminal_, bytes); /* what was written before it was closed, too */
     look_at_terminal();
     accept_client();
-    if (client_ >= 0 && !read_all(client_, bytes)) {
+    return bytes + read_client();
+}
+
+/* Of one that may yet turn out to be a browser nothing. */
+std::string BytePort::read_client()
+{
+    std::string bytes;
+    const bool is_there = client_ < 0 || read_all(client_, bytes);
+    if (!client_known_) {
+        client_begin_ += bytes;
+        client_known_ = !may_become_http(client_begin_) && !is_http(client_begin_);
+        bytes = client_known_ ? std::exchange(client_begin_, {}) : "";
+    }
+    if (!is_there || is_http(client_begin_)) {
         close_client();
     }
     return bytes;

@@ -2,7 +2,8 @@
  * A line of bytes that other programs open: a pseudo-terminal, as a serial adapter would be, and,
  * if asked for, TCP on the loopback interface. What comes in on either is one stream; what goes out
  * goes to both, for who opens one in the middle of a line from the next one on. Nothing waits:
- * bytes for a program that does not read them are lost, as on a wire.
+ * bytes for a program that does not read them are lost, as on a wire. A browser is no program: any
+ * page makes it send what it likes, so what begins like HTTP is closed, and nothing of it is read.
  */
 #ifndef STEADYSTEP_SERVE_BYTE_PORT_H
 #define STEADYSTEP_SERVE_BYTE_PORT_H
@@ -51,6 +52,7 @@ class BytePort
     void look_at_terminal();
     void accept_client();
     void close_client();
+    std::string read_client();
 
     PortPlace place_;
     std::string terminal_name_;
@@ -60,6 +62,8 @@ class BytePort
     bool in_line_ = false;       /* what was written last is a line, and has not ended */
     bool terminal_skips_ = false, client_skips_ = false; /* the rest of it */
     bool linked_ = false;
+    bool client_known_ = false;           /* for a program */
+    std::string client_begin_;            /* its first bytes until then */
     std::string to_terminal_, to_client_; /* not taken yet */
 };
 

@@ -79,6 +79,26 @@ def a_program_that_does_not_read_holds_up_nobody():
     listener.close()
 
 
+def a_browser_is_no_program():
+    """Whatever it sends, in whatever pieces, none of it is read; a program's first bytes are."""
+    listener = socket.create_server(("127.0.0.1", 0))
+    for pieces, read in (([b"POST / HTTP/1.1\r\n\r\n\rC\renable\n"], None), ([b"P", b"OST ", b"\rC\renable\n"], None),
+                         ([b"GET /\r"], None), ([b"O", b"PTIONS * x"], None), ([b"O\r"], b"O\r"),
+                         ([b"\rV\r"], b"\rV\r"), ([b"get law\n"], b"get law\n"), ([b"C", b"\renable\n"], b"C\renable\n")):
+        client = socket.create_connection(listener.getsockname())
+        line, found = ProgramLine(listener.accept()[0]), b""
+        try:
+            for piece in pieces:
+                client.sendall(piece)
+                found += line.read(1.0)
+        except steadystep.LostLink:
+            found = None
+        CHECKS.that(found == read, f"{pieces}: {found}")
+        client.close()
+        line.close()
+    listener.close()
+
+
 class Scripted:
     """A drive that answers nothing but the opening of its channel; the test does."""
 
@@ -132,6 +152,7 @@ a_transfer_is_one_program_s_to_its_end()
 a_program_that_gives_up_is_not_served_later()
 a_program_that_goes_leaves_no_turn()
 a_program_that_does_not_read_holds_up_nobody()
+a_browser_is_no_program()
 a_late_answer_is_for_nobody("given up", lambda program: program.write(GIVES_UP), 1.0)
 a_late_answer_is_for_nobody("gone", lambda program: program.close(), 1.0)
 a_late_answer_is_for_nobody("silent", lambda program: None, TURN_S + 2)

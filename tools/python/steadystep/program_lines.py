@@ -10,13 +10,31 @@ from .byte_line import ByteLine, TcpLine
 from .errors import LostLink, WrongPort
 
 
+# A page of any origin makes a browser send what it likes behind one of these.
+HTTP = tuple(method + b" " for method in (b"GET", b"HEAD", b"POST", b"PUT", b"DELETE", b"OPTIONS", b"PATCH", b"TRACE", b"CONNECT"))
+
+
 class ProgramLine(TcpLine):
-    """A program that has connected."""
+    """A program that has connected. A browser is none: its line ends before anything of it is read."""
 
     def __init__(self, connected: socket.socket) -> None:
         ByteLine.__init__(self, "tcp://%s:%d" % connected.getpeername()[:2])
         connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._socket = connected
+        self._begin: bytes | None = b""  # None: it is a program's
+
+    def _receive(self, timeout_s: float) -> bytes | None:
+        data = super()._receive(timeout_s)
+        if not data or self._begin is None:
+            return data
+        self._begin += data
+        if self._begin.startswith(HTTP):
+            self.close()
+            return b""
+        if any(one.startswith(self._begin) for one in HTTP):
+            return None  # not known yet
+        data, self._begin = self._begin, None
+        return data
 
     def write(self, data: bytes) -> None:
         try:
