@@ -46,6 +46,8 @@ class Board : public DriveBoard
        drive's text. */
     void command(const drive_command &command);
 
+    /* Throws std::runtime_error: more in one period than its stream holds. What a slow reader
+       leaves no room for is lost, as on a wire. */
     void send(const std::string &bytes) override;
     void power_cycle() override;
     void short_circuit(int leg, double current_A) override;

@@ -21,6 +21,7 @@ constexpr long short_nap_ns = 50000; /* while somebody waits for an answer */
 constexpr std::uint32_t answer_periods = 30;
 constexpr double bits_per_byte = 10;        /* 8N1 */
 constexpr std::size_t most_waiting = 65536; /* bytes for the drive; what comes beyond is lost */
+constexpr double most_in_period = 1024;     /* bytes, whatever the baud rate: what a board takes */
 constexpr double shown_slow_s = 1;
 
 std::string joined(const char *name, const std::vector<std::string> &places)
@@ -48,7 +49,7 @@ Server::Server(const scenario::Scenario &scenario,
     if (options.can) {
         can_port_.emplace(*options.can);
     }
-    const SerialPace pace(options.baud / bits_per_byte * period_s_);
+    const SerialPace pace(std::min(options.baud / bits_per_byte * period_s_, most_in_period));
     for (std::unique_ptr<sil::DriveBoard> &board : boards) {
         stations_.push_back(std::make_unique<Station>(scenario, std::move(board), pace));
     }

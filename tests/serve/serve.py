@@ -2,6 +2,7 @@
 
 usage: serve.py SIL
 """
+import contextlib
 import os
 import signal
 import subprocess
@@ -49,6 +50,49 @@ def tcp_carries_the_same(served):
     CHECKS.that(drive.ask("get law").startswith("ok get law"), "and the next client, too")
     drive.close()
     knobs.close()
+
+
+def a_browser_is_not_heard(served):
+    """A page of any origin makes it send lines of its own behind the head of a request."""
+    for place, line in ((served.serial[-1], "\rC\renable\n"), (served.knobs[-1], "plant.bus_V = 8\n")):
+        for head in ("POST / HTTP/1.1\r\n\r\n", "P", "GET "):
+            browser = Line(place)
+            browser.send(head)
+            time.sleep(0.02)
+            with contextlib.suppress(OSError):
+                browser.send(("OST " if head == "P" else "") + line)
+            try:
+                said = browser.socket.recv(100)
+            except OSError:
+                said = b""
+            CHECKS.that(said == b"", f"{head!r}: its line is closed: {said}")
+            browser.close()
+    knobs = Line(served.knobs[-1])
+    CHECKS.that("state=switch-on-disabled fault=none" in knobs.ask("state"), "and nothing of it acts")
+    knobs.close()
+
+
+def a_flood_is_lost_as_on_a_wire():
+    """SYNCs, for each of which the drive would send: more than it reads of."""
+    with Served() as served:
+        line = Line(served.serial[-1])
+        line.send("\rS6\rO\r")
+        line.socket.setblocking(False)
+        end = time.monotonic() + 1.5
+        while time.monotonic() < end and served.process.poll() is None:
+            with contextlib.suppress(OSError):
+                line.send("t0800\r" * 100)
+            with contextlib.suppress(OSError):
+                line.socket.recv(65536)
+        line.close()
+        CHECKS.that(served.process.poll() is None, f"it goes on: {served.process.poll()}")
+        line = Line(str(served.link))
+        end, said = time.monotonic() + 10, ""
+        while not said and time.monotonic() < end:  # what came before is being read yet, or this is lost, too
+            line.send("\rC\r\nstate\nstate\n")
+            said = line.until("ok switch-on-disabled", 0.3)
+        CHECKS.that(said != "", "and answers")
+        line.close()
 
 
 def knobs_do_what_events_do(served):
@@ -131,12 +175,14 @@ def what_cannot_be_had_is_said():
 
 
 with Served() as one:
+    a_browser_is_not_heard(one)
     a_drive_moves_as_on_a_table(one)
     a_client_that_comes_back_reads_nothing_old(one)
     tcp_carries_the_same(one)
     knobs_do_what_events_do(one)
     a_power_cycle_keeps_what_was_stored(one)
     a_switch_on_the_wires_is_obeyed(one)
+a_flood_is_lost_as_on_a_wire()
 it_ends_in_order(signal.SIGTERM)
 it_ends_in_order(signal.SIGINT)
 what_cannot_be_had_is_said()

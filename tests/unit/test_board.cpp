@@ -1,7 +1,9 @@
 /* The simulated board around a firmware image that only records what it is given. */
 #include <cstring>
 #include <stdexcept>
+#include <string>
 #include <unity.h>
+#include <vector>
 
 #include "hal/sil/hal_sil.h"
 #include "sil/board/board.h"
@@ -256,6 +258,27 @@ void test_refusals_carry_the_text_of_the_drive_or_the_plant()
     }
 }
 
+void test_what_a_slow_reader_leaves_no_room_for_is_lost()
+{
+    sil::Board board(config(), image, drive_settings());
+    const std::string piece(HAL_SIL_STREAM_BYTES / 2, 'x');
+    for (int period = 0; period < 5; period++) {
+        board.send(piece);
+        run(board, 1);
+    }
+    const hal *hal = dummy->board;
+    std::vector<std::uint8_t> read(2 * HAL_SIL_STREAM_BYTES);
+    std::uint32_t period = 0;
+    TEST_ASSERT_EQUAL_size_t(HAL_SIL_STREAM_BYTES,
+                             hal->stream_read(hal->context, read.data(), read.size(), &period));
+    try {
+        board.send(piece + piece + piece);
+        TEST_FAIL_MESSAGE("accepted at once");
+    } catch (const std::runtime_error &error) {
+        TEST_ASSERT_NOT_NULL(std::strstr(error.what(), "more lines are typed"));
+    }
+}
+
 void test_time_and_cycles_advance_with_the_periods_only()
 {
     sil::Board board(config(), image, drive_settings());
@@ -278,6 +301,7 @@ int main()
     RUN_TEST(test_the_comparator_opens_the_bridge_and_stays_latched_until_disabled);
     RUN_TEST(test_the_drive_switches_the_brake_where_it_is_not_a_chopper_of_its_own);
     RUN_TEST(test_refusals_carry_the_text_of_the_drive_or_the_plant);
+    RUN_TEST(test_what_a_slow_reader_leaves_no_room_for_is_lost);
     RUN_TEST(test_time_and_cycles_advance_with_the_periods_only);
     return UNITY_END();
 }
