@@ -236,6 +236,46 @@ def what_the_drive_records_itself(drive):
     CHECKS.that("reference_moving has not risen above 0.5 within 0.1 s" in found, found)
 
 
+def the_recorder_is_one_program_s(drive):
+    """Another one has armed it, has left what it has recorded, or takes it in the midst of a capture."""
+    control, signals, arm = capture_in_drive.CONTROL, capture_in_drive.SIGNALS, capture_in_drive.ARM
+
+    def another_arms(index, trigger, samples=10):
+        for sub, value in ((arm, capture_in_drive.OFF), (capture_in_drive.TRIGGER, trigger), (capture_in_drive.DIVIDER, 1),
+                           (capture_in_drive.BEFORE, 0), (capture_in_drive.SAMPLES, samples)):
+            drive.objects.write(control, value, sub)
+        for n in range(8):
+            drive.objects.write(signals, index if n == 0 else 0, n + 1)
+        drive.objects.write(control, capture_in_drive.ON, arm)
+
+    bus_V, moving, period = (drive.known.signal(name).index for name in ("bus_V", "reference_moving", "period"))
+    another_arms(bus_V, moving)
+    found = refusal(lambda: drive.capture(["period"], 0.01), steadystep.Refused)
+    CHECKS.that("records for another program" in found, f"it waits for that one's trigger: {found}")
+    CHECKS.that(drive.objects.read(control, arm) == 2 and drive.objects.read(signals, 1) == bus_V, "and goes on with that")
+    CHECKS.that(len(drive.capture(["period"], 0.01, take_over=True)) == 10, "unless it is taken over")
+    another_arms(bus_V, 0)
+    time.sleep(0.1)
+    made = drive.capture(["period"], 0.01)
+    CHECKS.that(made["period"][1] - made["period"][0] == 10, f"what was left undone is no hindrance: {made['period']}")
+    for what, index, samples in (("of another signal", bus_V, 10), ("of another length", period, 20)):
+        found = refusal(lambda index=index, samples=samples: drive.capture(
+            ["period"], 0.01, armed=lambda: another_arms(index, 0, samples)), steadystep.Refused)
+        CHECKS.that("another program has taken the drive's recorder" in found, f"{what}: {found}")
+        CHECKS.that(drive.objects.read(control, arm) == capture_in_drive.DONE, "it has its own")
+    drive.objects.write(control, capture_in_drive.OFF, arm)
+
+
+def what_is_asked_for_lasts_as_long(drive):
+    """More quickly than the link carries it, all the same."""
+    made = drive.capture(["theta_est_rad"], 0.5, 1e5, recorder=record)
+    CHECKS.that(0.5 <= made.time_s[-1] < 0.7 and made.rate_Hz > 50, f"{made.time_s[-1]} s, {made.rate_Hz:.0f} Hz")
+    begun = []
+    drive.capture(["period"], 0.05, 200, armed=lambda: begun.append(True))
+    drive.capture(["period"] * 9, 0.05, 200, armed=lambda: begun.append(True))
+    CHECKS.that(begun == [True, True], f"that it has begun is said once: {begun}")
+
+
 def a_fault_is_in_words(drive, knobs):
     knobs.turn("plant.bus_V = 8")
     time.sleep(0.2)
@@ -295,8 +335,13 @@ def an_interrupt_in_what_is_written_remains_one(drive):
 
 
 def a_lost_link_is_said(drive, knobs):
-    knobs.turn('command = "power-cycle"')
-    time.sleep(0.1)
+    def fails(_, share):
+        if share > 0.3:
+            knobs.turn('command = "power-cycle"')
+
+    begin = time.monotonic()
+    found = refusal(lambda: drive.capture(["period"], 1.0, 100, recorder=record, progress=fails), steadystep.LostLink)
+    CHECKS.that("the drive has restarted; connect anew" in found and time.monotonic() - begin < 1.0, f"in a capture: {found}")
     found = refusal(lambda: drive.state, steadystep.LostLink)
     CHECKS.that("the drive has restarted; connect anew" in found, found)
 
@@ -356,6 +401,8 @@ with tempfile.TemporaryDirectory() as scratch, Simulated(program=SIL) as simulat
         it_is_homed(DRIVE, simulated.knobs)
         it_captures(DRIVE, FOLDER)
         what_the_drive_records_itself(DRIVE)
+        the_recorder_is_one_program_s(DRIVE)
+        what_is_asked_for_lasts_as_long(DRIVE)
         a_fault_is_in_words(DRIVE, simulated.knobs)
         a_response_that_comes_late_is_not_the_next_one_s(DRIVE, simulated.process)
         an_interrupt_in_what_is_written_remains_one(DRIVE)

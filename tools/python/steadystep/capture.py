@@ -5,7 +5,7 @@ import dataclasses
 import pathlib
 import threading
 import time
-from typing import Any, Protocol, Sequence
+from typing import Any, Callable, Protocol, Sequence
 
 from .byte_line import LOST_S
 from .dictionary import Signal
@@ -15,6 +15,9 @@ from .settings import Progress, unseen
 
 PERIOD_INDEX, STATUS_INDEX = 0x2301, 0x6041
 PDOS, PDO_BYTES, INVALID, NO_REMOTE = 4, 8, 0x80000000, 0x40000000
+ANSWER_S = 0.1  # a sample that has not come by then is lost, and another is asked for
+
+Armed = Callable[[], object]
 
 
 @dataclasses.dataclass
@@ -64,6 +67,7 @@ class ProcessData:
         self.polled: list[Signal] = []
         self.samples: list[dict[int, Any]] = []
         self.changed = threading.Condition()
+        self.first = self.last = 0  # periods
         self._sample: dict[int, Any] = {}
         self._kept: list[tuple[Any, ...]] = []
         for signal in sorted(signals, key=lambda one: -_bytes_of(objects, one.index)):
@@ -129,41 +133,47 @@ class ProcessData:
             begin = end
         if len(self._sample) == sum(map(len, self.frames)):
             with self.changed:
+                self.last = self._sample[PERIOD_INDEX]
+                self.first = self.first if self.samples else self.last
                 self.samples.append(self._sample)
                 self.changed.notify_all()
             self._sample = {}
 
     def ask(self) -> None:
-        """For a sample."""
+        """For a sample, and waits for it: what is asked for more quickly than it comes would be lost."""
         before = len(self.samples)
         self._objects.network.sync.transmit()
-        if not self.polled:
-            return
         read = {signal.index: self._objects.read(signal.index) for signal in self.polled}
         with self.changed:
-            self.changed.wait_for(lambda: len(self.samples) > before, 0.1)
+            self.changed.wait_for(lambda: len(self.samples) > before, ANSWER_S)
             if len(self.samples) > before:
                 self.samples[-1].update(read)
 
+    def span_s(self, period_s: float) -> float:
+        """Of what has come, in the drive's time."""
+        return (self.last - self.first) % 2**32 * period_s
+
 
 def record(objects: Objects, signals: Sequence[Signal], duration_s: float, rate_Hz: float,
-           period_s: float, progress: Progress) -> Capture:
-    """At rate_Hz, or as quickly as the link and this machine do; the time is the drive's own."""
+           period_s: float, progress: Progress, armed: Armed | None = None) -> Capture:
+    """At rate_Hz, or as quickly as the link and this machine do; the time, and its end, are the drive's own. `armed` is
+    called behind the first sample."""
     with ProcessData(objects, signals) as data:
-        begin = time.monotonic()
-        due, heard_s, heard = begin, begin, 0
-        while (now := time.monotonic()) - begin < duration_s:
+        due = heard_s = time.monotonic()
+        heard = 0
+        while data.span_s(period_s) < duration_s:
+            objects.check()
+            data.ask()
+            now = time.monotonic()
             if len(data.samples) > heard:
+                if armed and not heard:
+                    armed()
                 heard_s, heard = now, len(data.samples)
             elif now - heard_s > LOST_S:
-                raise objects.bus.lost or LostLink(f"{objects.bus.channel_info}: no sample has come for "
-                                                   f"{LOST_S:g} s")
-            data.ask()
+                raise LostLink(f"{objects.bus.channel_info}: no sample has come for {LOST_S:g} s")
             due = max(due + 1 / rate_Hz, now)
+            progress("capturing", min(data.span_s(period_s) / duration_s, 0.99))
             time.sleep(max(0.0, due - time.monotonic()))
-            progress("capturing", min((now - begin) / duration_s, 1.0))
-        with data.changed:
-            data.changed.wait_for(lambda: False, 0.02)
     progress("capturing", 1.0)
     return _capture(data.samples, signals, period_s)
 

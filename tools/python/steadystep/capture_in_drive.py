@@ -4,20 +4,21 @@ import contextlib
 import dataclasses
 import struct
 import time
-from typing import Callable, Sequence
+from typing import Sequence
 
-from .capture import Capture
+from .capture import Armed, Capture
 from .dictionary import Signal, dictionary
 from .errors import Refused, TimedOut
 from .objects import NoAnswer, Objects
 from .settings import Progress
 
 CONTROL, SIGNALS, VALUES = 0x2400, 0x2401, 0x2402
-ARM, DIVIDER, TRIGGER, LEVEL, EDGE, BEFORE, SAMPLES = 1, 2, 3, 4, 5, 6, 7
+ARM, DIVIDER, TRIGGER, LEVEL, EDGE, BEFORE, SAMPLES, BEGAN = 1, 2, 3, 4, 5, 6, 7, 9
 OFF, ON, DONE = 0, 1, 4
 MOST_SIGNALS, VALUE_BYTES = 8, 8
 CONTROL_PERIOD_S = 1e-4  # of the boards and of the simulated one
 LOOK_S, LATE_S = 0.05, 5.0
+LEFT_S = 1.0  # what is done and not fetched for so long has been left by a program that has ended
 TRIES = 2
 
 
@@ -43,24 +44,58 @@ def is_there(objects: Objects) -> bool:
 
 def record_in_drive(objects: Objects, signals: Sequence[Signal], duration_s: float, rate_Hz: float,
                     period_s: float, progress: Progress, trigger: Trigger | None = None,
-                    armed: Callable[[], object] | None = None) -> Capture:
+                    armed: Armed | None = None, take_over: bool = False) -> Capture:
     """At rate_Hz, rounded to a whole part of the control rate; the time counts from the trigger. `armed` is called
-    when the drive waits for it. Raises TooMuch."""
+    when the drive waits for it. Raises TooMuch, and Refused while it records for another program; `take_over`: all the
+    same."""
     divider = min(max(1, round(1 / (rate_Hz * period_s))), 0xFFFF)
     samples = max(1, round(duration_s / (divider * period_s)))
     before = min(round(trigger.before_s / (divider * period_s)), samples - 1) if trigger else 0
+    if not take_over:
+        _check_that_it_is_free(objects)
     _arm(objects, signals, divider, samples, before, trigger)
+    asked = _asked_for(objects)
     try:
+        if asked[:MOST_SIGNALS] != _indexes(signals):
+            raise _taken()
         if armed:
             armed()
         _wait(objects, duration_s, trigger, progress)
+        began = objects.read(CONTROL, BEGAN)
         rows = _uploaded(objects, len(signals), progress)
+        if len(rows) != samples or objects.read(CONTROL, BEGAN) != began or _asked_for(objects) != asked:
+            raise _taken()
     finally:
-        if not objects.bus.lost:
+        if not objects.bus.lost and _asked_for(objects) == asked:
             objects.write(CONTROL, OFF, ARM)
     time_s = [(n - before) * divider * period_s for n in range(len(rows))]
     columns = {signal.name: [_shown(signal, row[n]) for row in rows] for n, signal in enumerate(signals)}
     return Capture(list(signals), time_s, columns)
+
+
+def _check_that_it_is_free(objects: Objects) -> None:
+    end = time.monotonic() + LEFT_S
+    while (state := objects.read(CONTROL, ARM)) != OFF:
+        if state != DONE:
+            raise Refused("the drive records for another program, until that has its capture; from one that has ended "
+                          "take_over takes it")
+        if time.monotonic() > end:
+            return
+        time.sleep(LOOK_S)
+
+
+def _taken() -> Refused:
+    return Refused("another program has taken the drive's recorder meanwhile; this capture is lost")
+
+
+def _indexes(signals: Sequence[Signal]) -> list[int]:
+    return [signals[n].index if n < len(signals) else 0 for n in range(MOST_SIGNALS)]
+
+
+def _asked_for(objects: Objects) -> list[int]:
+    """By whoever has armed it."""
+    return [*(int(objects.read(SIGNALS, n + 1)) for n in range(MOST_SIGNALS)),
+            *(int(objects.read(CONTROL, sub)) for sub in (DIVIDER, TRIGGER, BEFORE, SAMPLES))]
 
 
 def _shown(signal: Signal, value: float) -> float:
@@ -76,8 +111,8 @@ def _arm(objects: Objects, signals: Sequence[Signal], divider: int, samples: int
     if len(signals) > MOST_SIGNALS:
         raise TooMuch(f"the drive records {MOST_SIGNALS} signals at most")
     objects.write(CONTROL, OFF, ARM)
-    for n in range(MOST_SIGNALS):
-        objects.write(SIGNALS, signals[n].index if n < len(signals) else 0, n + 1)
+    for n, index in enumerate(_indexes(signals)):
+        objects.write(SIGNALS, index, n + 1)
     for sub, value in ((DIVIDER, divider), (BEFORE, before), (SAMPLES, samples),
                        (TRIGGER, dictionary().signal(trigger.signal).index if trigger else 0)):
         objects.write(CONTROL, value, sub)
@@ -93,7 +128,9 @@ def _arm(objects: Objects, signals: Sequence[Signal], divider: int, samples: int
 
 def _wait(objects: Objects, duration_s: float, trigger: Trigger | None, progress: Progress) -> None:
     begin = time.monotonic()
-    while objects.read(CONTROL, ARM) != DONE:
+    while (state := objects.read(CONTROL, ARM)) != DONE:
+        if state == OFF:
+            raise _taken()
         passed_s = time.monotonic() - begin
         if trigger and passed_s > trigger.timeout_s + duration_s:
             raise TimedOut(f"{trigger.signal} has not {'risen above' if trigger.rising else 'fallen to'} "

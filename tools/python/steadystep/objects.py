@@ -101,6 +101,11 @@ class Objects:
         """By RPDO1, as it is mapped unless a client has mapped something else; then it is passed over."""
         self.network.send_message(0x200 + self.number, word.to_bytes(2, "little"))
 
+    def check(self) -> None:
+        """Raises LostLink if there is no link any more."""
+        if self._is_over:
+            raise self._loss("")
+
     @contextlib.contextmanager
     def transfer(self) -> Iterator[None]:
         """Raises LostLink, OutOfRange or Refused for what python-canopen does."""
@@ -140,8 +145,7 @@ class Objects:
             silent_s = now - max(self._begun_s, self.bus.heard_s.get(self.number, 0.0))
             if self._is_late and (silent_s >= LOST_S or now - begin > PATIENCE_S):
                 raise LostLink(f"{self.bus.channel_info}: the drive does not answer any more")
-        if self._is_over:
-            raise self._loss("")
+        self.check()
 
     def _is_marker_answered(self) -> bool:
         sdo = self.node.sdo
