@@ -6,11 +6,15 @@ import asyncio
 import contextlib
 import os
 import pathlib
+import socket
+import threading
 import time
 
-from operated import steadystep
-from page_process import Page
+from operated import Simulated, refusal, steadystep
+from page_process import SIL, Page
 from served import Checks
+from steadystep.page.operation import Operation
+from steadystep.simulator import Knobs
 
 import aiohttp
 
@@ -185,15 +189,18 @@ async def settings_go_round(client):
     CHECKS.that(status == 200 and after == {**before, "current_limit_A": 2.5}, f"one is set: {status}")
     _, text = await client.ask("GET", "/api/settings.toml")
     CHECKS.that("current_limit_A = 2.5  # A\n" in text, "and exported")
-    await client.ask("POST", "/api/settings", {"name": "current_limit_A", "value": None})
+    await client.ask("POST", "/api/settings", {"name": "current_limit_A", "default": True})
     _, changed = await client.ask("POST", "/api/settings.toml", text)
     CHECKS.that(changed == ["current_limit_A"], f"and comes back: {changed}")
     for name, value, said in (("current_limit_A", 100, "0.01 × rated…2 × rated A"), ("law", 3, "one of"),
+                              ("current_limit_A", None, "got nan"), ("current_limit_A", "2,5", "expected a number in 0.01"),
                               ("nothing", 1, "no such setting")):
         status, answer = await client.ask("POST", "/api/settings", {"name": name, "value": value})
         CHECKS.that(status == 409 and said in answer["error"], f"{name} = {value}: {status} {answer}")
-    status, _ = await client.ask("POST", "/api/settings", {"name": "law"})
-    CHECKS.that(status == 400, f"half a request: {status}")
+    for path, body in (("settings", {"name": "law"}), ("settings", ["law"]), ("settings", "[" * 100000), ("act/move", []),
+                       ("act/move", '{"position_rad": ' + 4000 * "9" + "}"), ("knob", "no JSON")):
+        status, _ = await client.ask("POST", f"/api/{path}", body)
+        CHECKS.that(status == 400, f"half a request, {path} {str(body)[:20]}: {status}")
 
 
 async def traces_come(client):
@@ -210,9 +217,89 @@ async def traces_come(client):
         shown = [message.get("capturing") for message in [await live.receive_json(timeout=5) for _ in range(8)]]
     CHECKS.that(1.0 in shown, f"how far it is is shown: {shown}")
     CHECKS.that(status == 200 and len(made["columns"]["i_q_A"]) == len(made["time_s"]) > 5, f"captured: {made}")
+    _, other = await client.ask("POST", "/api/capture", {"signals": ["period"], "duration_s": 0.01, "rate_Hz": 100})
+    CHECKS.that(other["number"] != made["number"], "another page's is another one")
     for suffix, begin in (("csv", b"time_s,bus_V,i_q_A"), ("parquet", b"PAR1"), ("mcap", b"\x89MCAP")):
-        saved = await client.bytes_of(f"/api/capture.{suffix}")
+        saved = await client.bytes_of(f"/api/capture/{made['number']}.{suffix}")
         CHECKS.that(saved.startswith(begin), f"saved as .{suffix}: {saved[:60]}")
+    for path, code in (("999.csv", 409), ("1.exe", 409), ("1.csv%2f..%2fx.csv", 404), ("x.csv", 404)):
+        status, said = await client.ask("GET", f"/api/capture/{path}")
+        CHECKS.that(status == code, f"{path}: {status} {said}")
+
+
+async def a_capture_comes_with_its_move(client):
+    """And no move without it."""
+    body = {"signals": ["theta_est_rad", "reference_moving"], "duration_s": 1.0, "rate_Hz": 200,
+            "move": {"position_rad": 0.2, "relative": True}}
+    status, made = await client.ask("POST", "/api/capture", body)
+    CHECKS.that(status == 200 and "enable it first" in made["move_refused"], f"a move that is refused: {status}")
+    await client.act("enable")
+    before = (await client.status())["position_rad"]
+    status, said = await client.ask("POST", "/api/capture", {**body, "rate_Hz": 0})
+    CHECKS.that(status == 409 and "a rate of up to" in said["error"], f"a capture that is refused: {said}")
+    await asyncio.sleep(0.2)
+    CHECKS.that(abs((await client.status())["position_rad"] - before) < 0.01, "moves nothing")
+    status, made = await client.ask("POST", "/api/capture", body)
+    moving = made["columns"]["reference_moving"]
+    CHECKS.that(made["move_refused"] == "" and not moving[0] and any(moving), "the begin of the move is in it")
+
+
+async def a_capture_hides_nothing(client):
+    """What happens meanwhile is shown, another one waits, and it may be ended, by a stop or by itself."""
+    body = {"signals": ["period"] * 9, "duration_s": 60, "rate_Hz": 100}  # more than the drive records by itself
+    for ended_by, state in (("end-capture", "OPERATION ENABLED"), ("stop", "QUICK STOP ACTIVE")):
+        await client.act("enable")
+        await client.act("velocity", speed_rad_s=5)
+        capturing = asyncio.create_task(client.ask("POST", "/api/capture", body))
+        await client.status(lambda now: now["moving"])
+        status, said = await client.ask("POST", "/api/capture", body)
+        CHECKS.that(status == 409 and "a capture is under way" in said["error"], f"another one: {said}")
+        await client.act(ended_by)
+        status, said = await asyncio.wait_for(capturing, 5)
+        CHECKS.that(status == 409 and "ended" in said["error"], f"{ended_by}: {status} {said}")
+        found = await client.status(lambda now, state=state: now["state"] == state)
+        CHECKS.that(found["state"] == state, f"{ended_by}: then it is {found['state']}")
+    await client.act("enable")
+    capturing = asyncio.create_task(client.ask("POST", "/api/capture", body))
+    await asyncio.sleep(0.2)
+    await client.ask("POST", "/api/knob", {"line": "plant.bus_V = 8"})
+    found = await client.status(lambda now: now["fault"], 3)
+    CHECKS.that(found["fault"] and not capturing.done(), f"a fault meanwhile: {found['state']}")
+    await client.act("end-capture")
+    await capturing
+    await client.ask("POST", "/api/knob", {"line": "plant.bus_V = 24"})
+    await client.act("reset")
+
+
+def knobs_may_come_and_go():
+    """The drive behind them is there all the same."""
+    def answering(listener):
+        connected = listener.accept()[0]
+        with connected:
+            while connected.recv(100):
+                connected.sendall(b"ok theta_rad=1.5\n")
+
+    def served(port):
+        listener = socket.create_server(("127.0.0.1", port))
+        threading.Thread(target=answering, args=(listener,), daemon=True).start()
+        return listener
+
+    with Simulated(program=SIL) as simulated:
+        listener = served(0)
+        port = listener.getsockname()[1]
+        knobs = Knobs(f"tcp://127.0.0.1:{port}")
+        operation = Operation(simulated.place, knobs, None, 0)
+        status = operation._sample(True, True)["status"]
+        CHECKS.that(status["truth"] == {"theta_rad": "1.5"}, f"the truth: {status}")
+        listener.close()
+        knobs._line._socket.shutdown(socket.SHUT_RDWR)
+        status = operation._sample(True, True)["status"]
+        CHECKS.that(status["lost"] == "" and status["truth"] is None, f"gone: {status}")
+        served(port)
+        CHECKS.that(refusal(lambda: knobs.turn("state")) == "" and knobs.truth() == {"theta_rad": "1.5"}, "and back again")
+        CHECKS.that("a knob is one line" in refusal(lambda: knobs.turn(" ")), "an empty one is none")
+        operation.close()
+        knobs.close()
 
 
 async def what_breaks_is_said(client):
@@ -242,9 +329,12 @@ async def main(page):
         await stop_waits_for_nobody(client)
         await settings_go_round(client)
         await traces_come(client)
+        await a_capture_comes_with_its_move(client)
+        await a_capture_hides_nothing(client)
         await what_breaks_is_said(client)
 
 
+knobs_may_come_and_go()
 PAGE = Page()
 try:
     nothing_listens_beyond_loopback(PAGE)

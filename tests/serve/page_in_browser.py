@@ -3,6 +3,7 @@
 usage: page_in_browser.py SIL
 """
 import os
+import re
 import time
 
 from browser import NARROW, WIDE, expect, opened
@@ -122,7 +123,7 @@ def traces_run_smoothly(tab):
 def a_capture_is_zoomed(tab):
     view(tab, "captures")
     tab.fill("#capture [name=duration_s]", "1")
-    tab.click("#capture button")
+    tab.click("#capture button.main")
     expect(tab.locator("#capture-said")).to_contain_text("samples")
     # with the move of the other view
     tab.wait_for_function("Math.abs(parseFloat(document.querySelector('#position').textContent) - 1.5) < 0.02")
@@ -150,13 +151,50 @@ def settings_are_found_and_set(tab):
     limit.fill("100")
     limit.press("Enter")
     expect(tab.locator(".setting .error:visible")).to_contain_text("expected a number in 0.01 × rated")
+    for wrong, said in (("2,5", "decimals stand behind a point"), ("abc", "is not a number"), ("2 A", "is not a number"),
+                        ("1e999", "is not a number"), ("", "a number is missing")):
+        limit.fill(wrong)
+        limit.press("Enter")
+        expect(tab.locator(".setting .error:visible")).to_contain_text(said)
+    expect(tab.locator("#message")).to_be_hidden()
+    tab.fill("#search", "current")
+    bandwidth = tab.locator("#setting-current_bandwidth_rad_s")
     limit.fill("2.5")
-    limit.press("Enter")
+    tab.route("**/api/settings", lambda route: (time.sleep(0.3), route.continue_()))
+    bandwidth.press_sequentially("9")  # the limit is set by leaving it
     expect(tab.locator("#message")).to_contain_text("current_limit_A is set")
+    tab.unroute("**/api/settings")
+    expect(bandwidth).to_have_value(re.compile("9"))
+    bandwidth.press("Escape")
+    expect(bandwidth).not_to_have_value(re.compile("9"))
+    expect(limit).to_have_value("2.5")
     tab.reload()
     view(tab, "settings")
     tab.fill("#search", "current_limit")
     expect(tab.locator("#setting-current_limit_A")).to_have_value("2.5")
+
+
+def what_is_said_and_focused_is_seen(tab):
+    """On a telephone, far down the page."""
+    tab.set_viewport_size(NARROW)
+    view(tab, "guide")
+    tab.locator("#guide [data-act=store]").scroll_into_view_if_needed()
+    tab.click("#guide [data-act=store]")
+    expect(tab.locator("#message")).to_contain_text("stored")
+    expect(tab.locator("#message")).to_be_in_viewport()
+    tab.evaluate("window.scrollTo(0, document.body.scrollHeight)")
+    below = tab.locator("header").bounding_box()["height"]
+    for _ in range(6):
+        tab.keyboard.press("Shift+Tab")
+        top = tab.evaluate("document.activeElement.getBoundingClientRect().top")
+        in_header = tab.evaluate("document.activeElement.closest('header') !== null")
+        CHECKS.that(in_header or top >= below - 1, f"what the keyboard goes to is below the header: {top}, {below}")
+    tab.set_viewport_size(WIDE)
+    view(tab, "settings")
+    tab.locator("#export").focus()
+    tab.keyboard.press("Tab")
+    with tab.expect_file_chooser():
+        tab.keyboard.press("Enter")
 
 
 def a_fault_is_in_words(tab):
@@ -211,6 +249,7 @@ try:
         traces_run_smoothly(TAB)
         a_capture_is_zoomed(TAB)
         settings_are_found_and_set(TAB)
+        what_is_said_and_focused_is_seen(TAB)
         a_fault_is_in_words(TAB)
         the_guide_leads_to_a_motion(TAB)
         it_fits(TAB)

@@ -28,29 +28,47 @@ class Knobs:
     """The motor's world: what a timeline does, by the keys of an event."""
 
     def __init__(self, place: str) -> None:
-        self._line, self._pieces, self._lock = TcpLine(place), Pieces(), threading.Lock()
+        self._place, self._lock = place, threading.Lock()
+        self._line: TcpLine | None = TcpLine(place)
+        self._pieces = Pieces()
 
     def turn(self, line: str) -> str:
-        """`load_torque_Nm = 0.1, ramp_s = 0.5`, `plant.bus_V = 18`, `jam = true`, `state`; the answer."""
-        if "\n" in line or "\r" in line:
-            raise Refused("a knob is one line")
+        """`load_torque_Nm = 0.1, ramp_s = 0.5`, `plant.bus_V = 18`, `jam = true`, `state`; the answer. Connects anew if
+        the simulated drive has been started anew."""
+        if "\n" in line or "\r" in line or not line.strip():
+            raise Refused("a knob is one line, as `load_torque_Nm = 0.1` or `state`")
         with self._lock:
-            self._line.write(line.encode() + b"\n")
-            for _ in range(50):
-                for text, _ending in self._pieces.of(self._line.read(0.1)):
-                    said = text.decode(errors="replace")
-                    if said.startswith("error: "):
-                        raise Refused(said.removeprefix("error: "))
-                    if said:
-                        return said
+            try:
+                said = self._asked(line)
+            except LostLink:
+                self._disconnect()
+                raise
+        if said.startswith("error: "):
+            raise Refused(said.removeprefix("error: "))
+        return said
+
+    def _asked(self, line: str) -> str:
+        if self._line is None:
+            self._line, self._pieces = TcpLine(self._place), Pieces()
+        self._line.write(line.encode() + b"\n")
+        for _ in range(50):
+            for text, _ending in self._pieces.of(self._line.read(0.1)):
+                if text:
+                    return text.decode(errors="replace")
         raise LostLink("the simulated drive does not answer any more")
+
+    def _disconnect(self) -> None:
+        if self._line:
+            self._line.close()
+        self._line = None
 
     def truth(self) -> dict[str, str]:
         """What is true of the motor, unseen by the drive."""
         return dict(pair.split("=", 1) for pair in self.turn("state").split()[1:])
 
     def close(self) -> None:
-        self._line.close()
+        with self._lock:
+            self._disconnect()
 
 
 class Simulated:

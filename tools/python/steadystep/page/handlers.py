@@ -23,6 +23,7 @@ HEADERS = {
 }
 TYPES = {".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".json": "application/json"}
 MOST_BYTES = 1 << 20
+KEPT_CAPTURES = 8
 
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
@@ -45,7 +46,8 @@ class Web:
 
     def __init__(self, operation: Operation, token: str) -> None:
         self.operation, self._token = operation, token
-        self._captured: Capture | None = None
+        self._captured: dict[int, Capture] = {}  # the last ones, by number: each page shows its own
+        self._captures = 0
         self.application = web.Application(middlewares=[self._guard], client_max_size=MOST_BYTES)
         self.application.on_response_prepare.append(self._put_headers)
         routes = self.application.router
@@ -60,7 +62,7 @@ class Web:
         routes.add_get("/api/settings.toml", self._export)
         routes.add_post("/api/settings.toml", self._import)
         routes.add_post("/api/capture", self._capture)
-        routes.add_get("/api/capture.{suffix}", self._captured_file)
+        routes.add_get(r"/api/capture/{number:\d{1,9}}.{suffix:\w+}", self._captured_file)
         routes.add_post("/api/knob", self._knob)
 
     async def _put_headers(self, _: web.Request, response: web.StreamResponse) -> None:
@@ -86,7 +88,7 @@ class Web:
             return await handler(request)
         except SteadystepError as error:
             return answer({"error": str(error)}, 409)
-        except (ValueError, TypeError, KeyError) as error:
+        except (ValueError, TypeError, KeyError, OverflowError, RecursionError) as error:
             return answer({"error": f"expected another body: {error}"}, 400)
 
     async def _index(self, request: web.Request) -> web.StreamResponse:
@@ -139,18 +141,18 @@ class Web:
             await socket.send_str(json.dumps(plain(await queue.get())))
 
     async def _choose(self, request: web.Request) -> web.StreamResponse:
-        self.operation.show(_words((await request.json())["signals"]))
+        self.operation.show(_words((await _body(request))["signals"]))
         return answer({})
 
     # ---- actions ----
 
     async def _act(self, request: web.Request) -> web.StreamResponse:
-        values = await request.json() if request.can_read_body else {}
-        await asyncio.to_thread(self.operation.act, request.match_info["action"], dict(values))
+        values = await _body(request) if request.can_read_body else {}
+        await asyncio.to_thread(self.operation.act, request.match_info["action"], values)
         return answer({})
 
     async def _knob(self, request: web.Request) -> web.StreamResponse:
-        line = str((await request.json())["line"])
+        line = str((await _body(request))["line"])
         return answer({"said": await asyncio.to_thread(self.operation.turn_knob, line)})
 
     # ---- settings ----
@@ -160,16 +162,18 @@ class Web:
         return answer(await asyncio.to_thread(lambda: self.operation.drive.settings.all()))
 
     async def _set(self, request: web.Request) -> web.StreamResponse:
-        """{"name": …, "value": …}; null: its default. All of them come back, as one may move others."""
-        body = await request.json()
-        name = str(body["name"])
+        """{"name": …, "value": …}, null is not given; or {"name": …, "default": true}. All of them come back, as one may
+        move others."""
+        body = await _body(request)
+        name, is_default = str(body["name"]), body.get("default") is True
+        value = None if is_default else _given(body["value"])
 
         def put() -> dict[str, Any]:
             settings = self.operation.drive.settings
-            if body["value"] is None:
+            if value is None:
                 settings.default(name)
             else:
-                settings[name] = body["value"]
+                settings[name] = value
             return dict(settings.all())
 
         return answer(await asyncio.to_thread(put))
@@ -185,20 +189,38 @@ class Web:
     # ---- captures ----
 
     async def _capture(self, request: web.Request) -> web.StreamResponse:
-        body = await request.json()
-        made: Capture = await asyncio.to_thread(self.operation.capture, _words(body["signals"]),
-                                                float(body["duration_s"]), float(body["rate_Hz"]))
-        self._captured = made
-        return answer({"time_s": made.time_s, "columns": made.columns, "rate_Hz": made.rate_Hz})
+        body = await _body(request)
+        move = None if body.get("move") is None else dict(body["move"])
+        made, refused = await asyncio.to_thread(self.operation.capture, _words(body["signals"]),
+                                                float(body["duration_s"]), float(body["rate_Hz"]), move)
+        self._captures += 1
+        self._captured[self._captures] = made
+        self._captured.pop(self._captures - KEPT_CAPTURES, None)
+        return answer({"number": self._captures, "time_s": made.time_s, "columns": made.columns, "rate_Hz": made.rate_Hz,
+                       "move_refused": refused})
 
     async def _captured_file(self, request: web.Request) -> web.StreamResponse:
-        captured = self._captured
+        captured = self._captured.get(int(request.match_info["number"]))
         if captured is None:
-            raise Refused("nothing has been captured yet")
+            raise Refused(f"that capture is not kept any more; the last {KEPT_CAPTURES} are")
         with tempfile.TemporaryDirectory() as scratch:
             path = pathlib.Path(scratch) / f"capture.{request.match_info['suffix']}"
             await asyncio.to_thread(captured.save, path)
             return web.Response(body=path.read_bytes(), content_type="application/octet-stream")
+
+
+async def _body(request: web.Request) -> dict[str, Any]:
+    body = await request.json()
+    if not isinstance(body, dict):
+        raise TypeError("it is no object")
+    return body
+
+
+def _given(value: Any) -> Any:
+    """JSON has no NaN, which is "not given"."""
+    if isinstance(value, list):
+        return [_given(one) for one in value]
+    return math.nan if value is None else value
 
 
 def _words(value: Any) -> list[str]:

@@ -6,6 +6,7 @@ from typing import Any, Callable, Mapping
 
 from ..axis import state_of
 from ..byte_line import open_line
+from ..capture import Capture
 from ..dictionary import dictionary
 from ..drive import Drive
 from ..errors import LostLink, Refused, SteadystepError
@@ -13,6 +14,9 @@ from ..share import Share
 from ..simulator import Knobs
 
 SAMPLE_S, LOOK_S, RETRY_S = 0.05, 0.2, 1.0
+CAPTURING_LOOK_S = 0.5  # of a capture that is polled a look takes some samples
+KNOBS_AGAIN_S = 5.0     # behind knobs that have not answered
+LEAD_S = 0.3            # of a capture before its move, but a tenth of it at most
 TRACES, MOST_CAPTURE_S = 4, 600
 SHOWN = ["theta_est_rad", "omega_est_rad_s", "load_torque_est_Nm", "i_q_A"]  # at first
 
@@ -36,7 +40,9 @@ class Operation:
         self._acting = threading.Lock()
         self._stopping = threading.Event()
         self._ended = threading.Event()
-        self._capturing = False
+        self._capturing = threading.Lock()
+        self._ends_capture = threading.Event()
+        self._no_knobs_until_s = 0.0
         self._lost = ""
         self._doing = ""
         self._connect()
@@ -83,19 +89,26 @@ class Operation:
         looked_s = 0.0
         while not self._ended.is_set():
             begin = time.monotonic()
-            if self.listeners and not self._capturing:
-                message = self._sample(begin - looked_s >= LOOK_S)
-                looked_s = begin if "status" in message else looked_s
-                for listener in list(self.listeners):
-                    listener(message)
+            if self.listeners:
+                is_capturing = self._capturing.locked()
+                looks = begin - looked_s >= (CAPTURING_LOOK_S if is_capturing else LOOK_S)
+                if looks or not is_capturing:
+                    message = self._sample(not is_capturing, looks)
+                    looked_s = begin if "status" in message else looked_s
+                    self._tell(message)
             self._ended.wait(max(0.005, SAMPLE_S - (time.monotonic() - begin)))
 
-    def _sample(self, with_status: bool) -> dict[str, Any]:
+    def _tell(self, message: dict[str, Any]) -> None:
+        for listener in list(self.listeners):
+            listener(message)
+
+    def _sample(self, with_values: bool, with_status: bool) -> dict[str, Any]:
         message: dict[str, Any] = {"time_s": time.monotonic(), "signals": list(self.signals)}
         try:
             drive = self.drive
-            message["values"] = [float(drive.objects.read(drive.known.signal(name).index))
-                                 for name in message["signals"]]
+            if with_values:
+                message["values"] = [float(drive.objects.read(drive.known.signal(name).index))
+                                     for name in message["signals"]]
             if with_status:
                 message["status"] = self._status(drive)
         except SteadystepError as error:
@@ -112,7 +125,17 @@ class Operation:
             "fault": vars(fault) if fault else None, "position_rad": drive.position_rad,
             "moving": drive.read("reference_moving"), "bus_V": drive.read("bus_V"),
             "synchronism": drive.read("synchronism"), "reference": drive.read("position_reference"),
-            "simulated": self.knobs is not None, "truth": self.knobs.truth() if self.knobs else None}
+            "simulated": self.knobs is not None, "truth": self._truth()}
+
+    def _truth(self) -> dict[str, str] | None:
+        """None: it has no knobs, or they do not answer, which the drive behind them may do all the same."""
+        if self.knobs is None or time.monotonic() < self._no_knobs_until_s:
+            return None
+        try:
+            return self.knobs.truth()
+        except SteadystepError:
+            self._no_knobs_until_s = time.monotonic() + KNOBS_AGAIN_S
+            return None
 
     def _again(self, error: SteadystepError) -> None:
         if self._drive is not None:
@@ -128,9 +151,15 @@ class Operation:
     # ---- what it does ----
 
     def stop(self) -> None:
-        """At once, whatever else is going on; an enabling ends with the bridge off, homing with the rotor held."""
+        """At once, whatever else is going on; an enabling ends with the bridge off, homing with the rotor held, a capture
+        without what it has."""
         self._stopping.set()
+        self._ends_capture.set()
         self.drive.quick_stop()
+
+    def end_capture(self) -> None:
+        """The axis goes on."""
+        self._ends_capture.set()
 
     def _progress(self, what: str, share: float) -> None:
         self._doing = "" if share >= 1 else what
@@ -141,6 +170,9 @@ class Operation:
         """One at a time; raises SteadystepError."""
         if action == "stop":
             self.stop()
+            return
+        if action == "end-capture":
+            self.end_capture()
             return
         actions: dict[str, Callable[[Drive], object]] = {
             "enable": lambda drive: drive.enable(progress=self._progress),
@@ -183,24 +215,44 @@ class Operation:
         for setting, value in drive.known.motor(name).settings.items():
             drive.settings[setting] = value
 
-    def capture(self, signals: list[str], duration_s: float, rate_Hz: float) -> Any:
-        """Live traces wait meanwhile; how far it is comes in their place."""
+    def capture(self, signals: list[str], duration_s: float, rate_Hz: float,
+                move: Mapping[str, Any] | None = None) -> tuple[Capture, str]:
+        """Live traces wait meanwhile; how far it is comes in their place. `move`: begins when the capture has; with the
+        capture comes why it was refused, or ""."""
         if not 0 < duration_s <= MOST_CAPTURE_S:
             raise Refused(f"duration_s: expected a number above 0, at most {MOST_CAPTURE_S} s on the page")
+        if not self._capturing.acquire(blocking=False):
+            raise Refused("a capture is under way; end it first")
+        refused: list[str] = []
+        mover = threading.Timer(min(LEAD_S, duration_s / 10), lambda: self._move_along(move or {}, refused))
         shown_s = 0.0
 
         def show(_: str, share: float) -> None:
             nonlocal shown_s
+            if self._ends_capture.is_set():
+                raise Stopped("the capture has been ended")
             if time.monotonic() - shown_s >= LOOK_S or share >= 1:
                 shown_s = time.monotonic()
-                for listener in list(self.listeners):
-                    listener({"capturing": share})
+                self._tell({"capturing": share})
 
-        self._capturing = True
         try:
-            return self.drive.capture(signals, duration_s, rate_Hz, progress=show)
+            self._ends_capture.clear()
+            made = self.drive.capture(signals, duration_s, rate_Hz, progress=show,
+                                      armed=None if move is None else mover.start)
+        except BaseException:
+            mover.cancel()
+            raise
         finally:
-            self._capturing = False
+            self._capturing.release()
+        if mover.ident:
+            mover.join()
+        return made, "".join(refused)
+
+    def _move_along(self, move: Mapping[str, Any], refused: list[str]) -> None:
+        try:
+            self.act("move", move)
+        except SteadystepError as error:
+            refused.append(str(error))
 
     def turn_knob(self, line: str) -> str:
         if self.knobs is None:

@@ -45,10 +45,11 @@ function showState(status) {
   one("#state").className = `badge ${kind}`;
   one("#state-words").textContent = status.doing ? `${status.doing} …` : words;
   fault.hidden = !status.fault;
-  if (status.fault) {
+  if (status.fault && fault.dataset.name !== status.fault.name) { // is read out once
     fault.replaceChildren(element("strong", { textContent: status.fault.name }),
       ` – ${status.fault.cause}. What to do: ${status.fault.remedy}.`);
   }
+  fault.dataset.name = status.fault?.name ?? "";
   one("#reset").disabled = status.state !== "FAULT";
   if (status.lost) return;
   one("#position").textContent = `${steady(status.position_rad)} rad`;
@@ -57,13 +58,6 @@ function showState(status) {
   if (status.truth) one("#truth").textContent = `${steady(Number(status.truth.theta_rad))} rad`;
   all(".step-state").forEach((place) => { place.textContent = badge; });
   page.status = status;
-}
-
-function moveOf(form) {
-  return tried(async () => {
-    await post("/api/act/move", numbers(form));
-    return true;
-  });
 }
 
 // By the method, which of its values count; what is left empty stays as the drive has it.
@@ -104,7 +98,7 @@ function prepareControls() {
   all("[data-jog]").forEach((button) => {
     button.onclick = () => act("move", { position_rad: Number(button.dataset.jog), relative: true });
   });
-  const forms = { move: moveOf, velocity: (form) => act("velocity", numbers(form)),
+  const forms = { move: (form) => act("move", numbers(form)), velocity: (form) => act("velocity", numbers(form)),
                   "set-position": (form) => act("set-position", numbers(form)) };
   for (const [name, work] of Object.entries(forms)) {
     const form = one(`form#${name}`);
@@ -122,18 +116,20 @@ function prepareCaptures(dictionary) {
   form.onsubmit = (event) => {
     event.preventDefault();
     tried(async () => {
-      const { duration_s, rate_Hz, moves } = numbers(form), button = one("button", form);
+      const { duration_s, rate_Hz, moves } = numbers(form), button = one("button", form), end = one("#capture-end");
+      const move = moves ? numbers(one("form#move")) : null;
       button.disabled = true;
+      end.hidden = false;
       one("#capture-said").textContent = "capturing …";
       try {
-        const making = post("/api/capture", { signals: chosen(), duration_s, rate_Hz });
-        if (moves) setTimeout(() => moveOf(one("form#move")), 300);
-        const made = await making;
+        const made = await post("/api/capture", { signals: chosen(), duration_s, rate_Hz, move });
         captured.show(made);
         one("#capture-tools").hidden = false;
+        if (made.move_refused) say(`captured, but nothing moved: ${made.move_refused}`, true);
         one("#capture-said").textContent = `${made.time_s.length} samples, ${made.rate_Hz.toFixed(0)} Hz`;
       } finally {
         button.disabled = false;
+        end.hidden = true;
         if (one("#capture-said").textContent.startsWith("capturing")) one("#capture-said").textContent = "";
       }
     });
@@ -141,7 +137,7 @@ function prepareCaptures(dictionary) {
   all("[data-zoom]").forEach((button) => { button.onclick = () => captured.zoom(button.dataset.zoom); });
   all("[data-save]").forEach((button) => {
     button.onclick = () => tried(async () =>
-      download(`capture.${button.dataset.save}`, await file(`/api/capture.${button.dataset.save}`)));
+      download(`capture.${button.dataset.save}`, await file(`/api/capture/${captured.number}.${button.dataset.save}`)));
   });
 }
 
@@ -237,6 +233,11 @@ function prepareKeys() {
     }
   });
 }
+
+// What the keyboard goes to is not hidden behind what stays above.
+new ResizeObserver(() => {
+  document.documentElement.style.scrollPaddingTop = `${one("header").offsetHeight + 8}px`;
+}).observe(one("header"));
 
 const page = {};
 prepareKeys();

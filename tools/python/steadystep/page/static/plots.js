@@ -27,7 +27,6 @@ function range(_, least, most) {
 
 export class Live {
   constructor(dictionary, host) {
-    this.signals = [];
     this.offset = Infinity;
     this.panels = [0, 1, 2, 3].map((n) => this.panel(dictionary, host, n));
     this.dictionary = dictionary;
@@ -55,11 +54,8 @@ export class Live {
   }
 
   take(message) {
-    if (String(message.signals) !== String(this.signals)) {
-      this.signals = message.signals;
-      this.panels.forEach((panel, n) => this.show(panel, this.signals[n]));
-    }
     if (!message.values) return;
+    this.panels.forEach((panel, n) => panel.name === message.signals[n] || this.show(panel, message.signals[n]));
     this.offset = Math.min(this.offset, performance.now() / 1000 - message.time_s);
     this.panels.forEach((panel, n) => {
       const [times, values] = panel.data;
@@ -76,7 +72,7 @@ export class Live {
 
   show(panel, name) {
     panel.data = [[], []];
-    panel.select.value = name;
+    panel.name = panel.select.value = name;
     panel.signal = this.dictionary.signals.find((signal) => signal.name === name);
     panel.unit.textContent = panel.signal?.unit ?? "";
   }
@@ -112,6 +108,7 @@ export class Captured {
     this.plots.forEach((plot) => plot.destroy());
     this.host.replaceChildren();
     this.times = capture.time_s;
+    this.number = capture.number;
     const units = Map.groupBy?.(Object.keys(capture.columns), (name) => this.unit(name)) ?? this.grouped(capture);
     this.plots = [...units].map(([unit, names]) => this.plot(capture, unit, names));
   }

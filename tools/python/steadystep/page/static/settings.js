@@ -1,5 +1,5 @@
 // Settings by group, with search.
-import { all, download, element, get, one, post, say, shown, text, tried } from "./wire.js";
+import { all, download, element, get, number, one, post, say, shown, text, tried } from "./wire.js";
 
 const bound = (limit) => (typeof limit === "object" && limit !== null
   ? (limit.rated === 1 ? "rated" : `${limit.rated} × rated`) : shown(limit));
@@ -24,6 +24,7 @@ export class Settings {
     search.oninput = () => this.search(search.value);
     one("#export").onclick = () => tried(async () =>
       download("drive.toml", new Blob([await text("/api/settings.toml")])));
+    one("#take-file").onclick = () => one("#import").click();
     one("#import").onchange = (event) => tried(() => this.load(event.target));
   }
 
@@ -35,7 +36,7 @@ export class Settings {
     if (setting.unit) entry.append(element("span", { textContent: setting.unit }));
     if (setting.group !== "Motor") {
       entry.append(element("button", { textContent: "default", title: `back to its default`,
-        onclick: () => this.put(row, null) }));
+        onclick: () => this.put(row, () => ({ default: true })) }));
     }
     const range = setting.type === "real" || setting.type === "count"
       ? `${bound(setting.least)} … ${bound(setting.most)}` : "";
@@ -50,31 +51,34 @@ export class Settings {
   input(setting, row) {
     const id = `setting-${setting.name}`;
     if (setting.type === "choice") {
-      const select = element("select", { id, onchange: () => this.put(row, select.value) });
+      const select = element("select", { id, onchange: () => this.put(row, () => ({ value: select.value })) });
       for (const choice of setting.choices) {
         select.append(element("option", { value: choice.name, textContent: choice.name, title: choice.meaning }));
       }
       return select;
     }
     if (setting.type === "flag") {
-      const box = element("input", { id, type: "checkbox", onchange: () => this.put(row, box.checked) });
+      const box = element("input", { id, type: "checkbox", onchange: () => this.put(row, () => ({ value: box.checked })) });
       return box;
     }
     const input = element("input", { id, inputMode: "decimal", spellcheck: false });
-    input.onchange = () => this.put(row, this.typed(setting, input.value));
+    input.oninput = () => { row.typing = true; };
+    input.onchange = () => this.put(row, () => ({ value: this.typed(setting, input.value) }));
     input.onkeydown = (event) => {
       if (event.key === "Escape") this.fill(row, row.value);
     };
     return input;
   }
 
+  // Throws what is no number. Of several one may be not given.
   typed(setting, words) {
-    const numbers = words.split(/[ ;]+/).filter(Boolean).map(Number);
-    return setting.elements > 1 ? numbers : numbers[0];
+    if (setting.elements === 1) return number(words);
+    return words.split(/[ ;]+/).filter(Boolean).map((word) => (word === "nan" ? null : number(word)));
   }
 
   fill(row, value) {
     row.value = value;
+    row.typing = false;
     if (row.setting.type === "flag") row.input.checked = value;
     else row.input.value = Array.isArray(value) ? value.map(shown).join("  ")
       : row.setting.type === "choice" ? value : shown(value);
@@ -84,15 +88,21 @@ export class Settings {
 
   async refresh() {
     this.values = await get("/api/settings");
+    this.fillAll();
+  }
+
+  // But for what is being typed.
+  fillAll(set) {
     for (const [name, row] of this.rows) {
-      if (document.activeElement !== row.input) this.fill(row, this.values[name]);
+      if (row === set || !row.typing) this.fill(row, this.values[name]);
     }
   }
 
-  async put(row, value) {
+  // `wanted` makes what is asked for, or throws what is wrong with it.
+  async put(row, wanted) {
     try {
-      this.values = await post("/api/settings", { name: row.setting.name, value });
-      for (const [name, other] of this.rows) this.fill(other, this.values[name]);
+      this.values = await post("/api/settings", { name: row.setting.name, ...wanted() });
+      this.fillAll(row);
       say(`${row.setting.name} is set; “Store” keeps it`);
     } catch (error) {
       row.input.classList.add("wrong");

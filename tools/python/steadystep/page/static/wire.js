@@ -29,7 +29,11 @@ async function response(method, path, body) {
 export const get = async (path) => (await response("GET", path)).json();
 export const text = async (path) => (await response("GET", path)).text();
 export const file = async (path) => (await response("GET", path)).blob();
-export const post = async (path, body) => (await response("POST", path, body)).json();
+export async function post(path, body) {
+  const begin = performance.now(), said = await response("POST", path, body);
+  if (complained < begin) say("");
+  return said.json();
+}
 
 // Calls `hear` with every message, `silence` when there is no server; tries again for ever.
 export function listen(hear, silence) {
@@ -65,8 +69,9 @@ export const shown = (number) =>
 export const steady = (number) =>
   (Math.abs(number) < 1 ? number.toFixed(4) : number.toPrecision(5)).replace(/^-(?=[0.]+$)/, "");
 
-let hiding;
+let hiding, complained = Infinity; // since when something is said to be wrong
 export function say(words, bad = false) {
+  complained = bad ? performance.now() : Infinity;
   const message = one("#message");
   message.textContent = words;
   message.className = bad ? "notice bad" : "notice";
@@ -85,17 +90,28 @@ export async function tried(work) {
   }
 }
 
+// Throws what is none. A comma may be either kind of mark, and a unit another one.
+export function number(words) {
+  const text = words.trim();
+  if (text === "") throw new Error("a number is missing");
+  const value = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(text) ? Number(text) : NaN;
+  if (!Number.isFinite(value)) {
+    throw new Error(`“${text}” is not a number${text.includes(",") ? "; decimals stand behind a point" : ""}`);
+  }
+  return value;
+}
+
 // The numbers of a form by their names; what is empty or hidden is left out. Throws what is no number.
 export function numbers(form) {
   const values = {};
   for (const input of all("input:not([type=checkbox])", form)) {
     if (input.value.trim() === "" || input.closest("label")?.hidden) continue;
-    const number = Number(input.value.replace(",", "."));
-    if (!Number.isFinite(number)) {
+    try {
+      values[input.name] = number(input.value);
+    } catch (error) {
       input.focus();
-      throw new Error(`“${input.value}” is not a number`);
+      throw error;
     }
-    values[input.name] = number;
   }
   for (const box of all("input[type=checkbox]", form)) values[box.name] = box.checked;
   return values;
