@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 
 from canopen_bus import Bus, wait_for
 from operated import Simulated, environment, steadystep
@@ -30,20 +31,50 @@ def each_command_does_its_own(port, folder):
     for words, code, said in (
             (("settings", "set", "current_limit_A", 2), 0, "current_limit_A = 2.0  # A"),
             (("settings", "set", "law", "best"), 2, "steadystep: law: expected one of"),
+            (("settings", "set", "current_limit_A", "1,5"), 2, "current_limit_A: expected a number in 0.01 × rated…2 × rated A, got '1,5'"),
+            (("settings", "get", "current_limit_A"), 0, "current_limit_A = 2.0  # A"),
+            (("command", "sine", "amplitude_rad"), 2, "amplitude_rad: expected a parameter as NAME=NUMBER"),
             (("move", 1.5, "--enable"), 0, "at 1."),
             (("move", -0.5, "--relative"), 0, "at "),
+            (("move", "-5e-1", "--relative"), 0, "at 0.5"),
             (("capture", "theta_est_rad", "--duration", 0.1, "--out", f"{folder}/a.csv"), 0, "samples"),
             (("home", "here", "--at", 1), 0, "homed; at "),
             (("home", "index-up"), 1, "not homed, index-up: none has passed"),
             (("home", "up"), 2, "expected one of here, stop-down"),
             (("faults",), 0, "now: none"),
-            (("--node", 7, "state"), 2, "node 7 does not answer")):
+            (("--node", 7, "state"), 2, "node 7 does not answer"),
+            (("--node", 0, "state"), 2, "expected a number in 1…127"),
+            (("page", "--http", 80000), 2, "expected a number in 0…65535"),
+            (("settings", "motor", "17hs4417"), 2, "disable first")):
         found, text = typed(port, *words)
         CHECKS.that(found == code and said in text, f"{words}: {found} {text}")
     code, text = typed(port, "settings", "export")
     CHECKS.that(code == 0 and "current_limit_A = 2.0  # A\n" in text, f"export: {code}")
     code, said = typed(port, "settings", "import", "-", given=text.replace("limit_A = 2.0", "limit_A = 2.5"))
     CHECKS.that("changed: current_limit_A\n" in said, f"import: {code} {said}")
+
+
+def a_motor_is_chosen_beside_another_program(port, share):
+    """Whose transfers wait while the console is asked what follows."""
+    wrong, ended = [], threading.Event()
+
+    def read(drive):
+        while not ended.is_set():
+            begin = time.monotonic()
+            if drive.settings["rotor_teeth"] != 50 or time.monotonic() - begin > 1.5:
+                wrong.append(f"{time.monotonic() - begin:.2f} s")
+
+    with steadystep.Drive(share.line()) as drive:
+        drive.disable()
+        reader = threading.Thread(target=read, args=(drive,))
+        reader.start()
+        code, text = typed(port, "settings", "motor", "17hs4417")
+        CHECKS.that(code == 0 and "current_limit_A = 1.7  # A, rated; what follows from a motor follows this one\n" in text, text)
+        code, text = typed(port, "settings", "export")
+        CHECKS.that(code == 0 and "hold_current_A = nan  # A\n" in text, text)
+        ended.set()
+        reader.join()
+    CHECKS.that(not wrong, f"it has its answers, soon: {wrong}")
 
 
 def programs_take_turns(share):
@@ -92,6 +123,7 @@ with tempfile.TemporaryDirectory() as scratch, Simulated(program=SIL) as simulat
     programs_take_turns(SHARE)
     with steadystep.Drive(SHARE.line()) as DRIVE:
         a_foreign_client_shares_it(LINK, DRIVE)
+    a_motor_is_chosen_beside_another_program(LINK, SHARE)
     SHARE.close()
     CHECKS.that(not os.path.lexists(LINK), "no link stays")
 CHECKS.end()

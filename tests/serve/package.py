@@ -39,7 +39,33 @@ def settings_go_out_and_come_back(drive):
     CHECKS.that(drive.settings.export() == text, "and the law before")
 
 
-def what_is_no_setting_is_refused(drive):
+def what_nobody_has_given_is_not_exported(drive):
+    """It has followed another motor, and is not this one's before it is enabled."""
+    text = drive.settings.export()
+    followed = [name for name, row in drive.known.settings.items() if row.follows and row.elements == 1]
+    followed.remove("speed_limit_rad_s")  # the drive always gives that
+    CHECKS.that(all(f"{name} = nan" in text for name in followed), text)
+    CHECKS.that(drive.settings.load(text) == [], "to what follows it is no change")
+    drive.settings["hold_current_A"] = 1.5
+    given = drive.settings.export()
+    CHECKS.that("hold_current_A = 1.5  # A\n" in given and "idle_current_A = nan  # A\n" in given, "what is given is")
+    CHECKS.that(drive.settings.load(text) == ["hold_current_A"], "and comes back as not given")
+    speed_limit = drive.settings["speed_limit_rad_s"]
+    drive.settings.take_motor("17hs4417")
+    CHECKS.that(drive.settings["speed_limit_rad_s"] != speed_limit, "a limit that the drive computes is computed anew")
+    of_motor = drive.settings.export()
+    CHECKS.that("hold_current_A = nan  # A\n" in of_motor, of_motor)
+    drive.settings.load(text)
+    drive.enable()
+    CHECKS.that("hold_current_A = 3.0  # A; given, or what followed at the last enable\n" in drive.settings.export(),
+                "an enabled drive does not say")
+    CHECKS.that(drive.settings.load(drive.settings.export()) == [], "and takes it back")
+    CHECKS.that("disable first" in refusal(lambda: drive.settings.load(text)), "but nothing that is not given")
+    drive.disable()
+    CHECKS.that(drive.state != "OPERATION ENABLED" and drive.settings.export() == text, "off it says so again")
+
+
+def what_is_no_setting_is_refused(drive, folder):
     for name, value, said in (("current_limit_A", 100.0, "0.01 × rated…2 × rated A, got 100.0"),
                               ("law", "best", "one of state-feedback, pid"),
                               ("curent_limit_A", 1.0, "is it current_limit_A"),
@@ -53,9 +79,46 @@ def what_is_no_setting_is_refused(drive):
                        ("law_gains.nothing = 1.0", "drive.toml:1: law_gains.nothing")):
         found = refusal(lambda text=text: drive.settings.load(text, "drive.toml"))
         CHECKS.that(found.startswith(said), f"{text}: {found}")
-        is_read = "node_id" in text  # it is the drive that refuses that
-        CHECKS.that((drive.settings["current_limit_A"] == before) != is_read, f"{text}: is read as a whole")
-        drive.settings["current_limit_A"] = before
+        CHECKS.that(drive.settings["current_limit_A"] == before, f"{text}: is read as a whole")
+    for text, said in (("current_limit_A = 0.5\nrated_current_A = 0.4\nhold_current_A = 0.5", "drive.toml:3: hold_current_A"),
+                       ("current_limit_A = 1.0\nlaw = \"foc\"\nlaw_gains.nothing = 1.0", "drive.toml:3: law_gains.nothing"),
+                       ("current_limit_A = 1.0\nrotor_teeth = 1000000000000", "drive.toml:2: rotor_teeth: expected a whole")):
+        found = refusal(lambda text=text: drive.settings.load(text, "drive.toml"))
+        CHECKS.that(found.startswith(said) and found.endswith("nothing has been set"), f"{text}: {found}")
+        CHECKS.that(drive.settings["current_limit_A"] == before, f"{text}: nothing is")
+    found = refusal(lambda: drive.settings.__setitem__("rotor_teeth", 10**12))
+    CHECKS.that("rotor_teeth: expected a whole number in" in found, f"more than the object holds: {found}")
+    (folder / "binary.toml").write_bytes(b"\xff\xfe\x00")
+    found = refusal(lambda: drive.settings.load_file(folder / "binary.toml"))
+    CHECKS.that(found.startswith(f"{folder / 'binary.toml'}: expected settings as text"), found)
+
+
+def a_motor_takes_back_what_was_given_for_another(drive):
+    text = drive.settings.export()
+    for name, value in (("current_limit_A", 3.0), ("law_bandwidth_rad_s", 100.0), ("feed_forward", False)):
+        drive.settings[name] = value
+    drive.settings.take_motor("14hs10-0404s")
+    CHECKS.that(drive.settings["current_limit_A"] == drive.settings["rated_current_A"] == 0.4, "the limit is the new motor's")
+    CHECKS.that(drive.settings["law_bandwidth_rad_s"] != 100.0, "what follows from a motor follows this one")
+    CHECKS.that(drive.settings["feed_forward"] is False, "and nothing else is touched")
+    drive.settings.load(text)
+    drive.settings.default("law_bandwidth_rad_s")
+
+
+def numbers_of_numpy_are_numbers(drive):
+    """Its scalars and arrays, or what looks so."""
+    class Scalar:
+        def __init__(self, value):
+            self.value = value
+
+        def item(self):
+            return self.value
+
+    for name, value in (("current_limit_A", 2.5), ("rotor_teeth", 50), ("feed_forward", True)):
+        drive.settings[name] = Scalar(value)
+        CHECKS.that(drive.settings[name] == value, f"{name}: {drive.settings[name]}")
+    drive.settings["detent_torque_Nm"] = tuple(Scalar(0.0) for _ in range(6))
+    drive.settings.default("current_limit_A")
 
 
 def a_torque_is_a_drive_s_with_an_encoder(drive):
@@ -93,6 +156,8 @@ def it_moves(drive, knobs):
     time.sleep(0.1)
     drive.move(1.0)
     CHECKS.that(abs(drive.position_rad - 1.0) < 0.01, "a newer target counts at once")
+    found = refusal(lambda: drive.velocity(1e9))
+    CHECKS.that(found.startswith("speed_rad_s: expected a number in ±"), found)
     drive.velocity(10, wait=True)
     CHECKS.that(abs(float(drive.read("omega_ref_rad_s")) - 10) < 0.1, "it turns at a speed")
     drive.stop()
@@ -153,7 +218,7 @@ def parquet_has_what_csv_has(made, path, rows):
     CHECKS.that(table.column_names == list(rows[0]), f"the columns of the CSV: {table.column_names}")
     units = {"time_s": "s", **{signal.name: signal.unit for signal in made.signals}}
     for name in table.column_names:
-        CHECKS.that([f"{value:.9g}" for value in table[name].to_pylist()] == [row[name] for row in rows],
+        CHECKS.that([f"{value:.12g}" for value in table[name].to_pylist()] == [f"{float(row[name]):.12g}" for row in rows],
                     f"the values of {name}")
         CHECKS.that(table.field(name).metadata[b"unit"].decode() == units[name], f"and its unit, {units[name]}")
 
@@ -264,6 +329,8 @@ def the_recorder_is_one_program_s(drive):
         CHECKS.that("another program has taken the drive's recorder" in found, f"{what}: {found}")
         CHECKS.that(drive.objects.read(control, arm) == capture_in_drive.DONE, "it has its own")
     drive.objects.write(control, capture_in_drive.OFF, arm)
+    found = refusal(lambda: drive.capture(["period"], 0.1, trigger=steadystep.Trigger("reference_moving", before_s=-1)))
+    CHECKS.that("before_s: expected a number in 0…0.1 s" in found, found)
 
 
 def what_is_asked_for_lasts_as_long(drive):
@@ -352,6 +419,13 @@ def what_is_no_drive_is_said(place, folder):
                         ("tcp://127.0.0.1:1", "Connection refused"), ("tcp://here", "expected tcp://HOST:PORT")):
         found = refusal(lambda wrong=wrong: steadystep.Drive(wrong), steadystep.WrongPort)
         CHECKS.that(said in found, f"{wrong}: {found}")
+    found = refusal(lambda: steadystep.Drive(place, node=0), steadystep.Refused)
+    CHECKS.that(found == "node: expected a number in 1…127, got 0", found)
+    closed = steadystep.Drive(place)
+    closed.close()
+    for what in (lambda: closed.state, closed.quick_stop, closed.enable):
+        found = refusal(what, steadystep.LostLink)
+        CHECKS.that("the drive has been closed" in found, f"closed by this program: {found}")
     found = refusal(lambda: steadystep.Drive(place, node=5), steadystep.WrongPort)
     CHECKS.that("node 5 does not answer; heard: 1" in found, found)
     known = steadystep.dictionary()
@@ -395,7 +469,10 @@ with tempfile.TemporaryDirectory() as scratch, Simulated(program=SIL) as simulat
     what_is_no_drive_is_said(simulated.place, FOLDER)
     with steadystep.Drive(simulated.place) as DRIVE:
         settings_go_out_and_come_back(DRIVE)
-        what_is_no_setting_is_refused(DRIVE)
+        what_nobody_has_given_is_not_exported(DRIVE)
+        what_is_no_setting_is_refused(DRIVE, FOLDER)
+        a_motor_takes_back_what_was_given_for_another(DRIVE)
+        numbers_of_numpy_are_numbers(DRIVE)
         a_torque_is_a_drive_s_with_an_encoder(DRIVE)
         it_moves(DRIVE, simulated.knobs)
         it_is_homed(DRIVE, simulated.knobs)

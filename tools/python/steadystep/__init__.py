@@ -6,6 +6,7 @@
     drive.move(1.5)
     drive.capture(["theta_est_rad"], duration_s=1).save("move.csv")
 """
+from . import simulator
 from .capture import Capture
 from .capture_in_drive import Trigger
 from .dictionary import dictionary
@@ -13,4 +14,4 @@ from .drive import Drive
 from .errors import DriveFault, LostLink, NotHomed, Refused, SteadystepError, TimedOut, WrongPort, WrongVersion
 
 __all__ = ["Capture", "Drive", "DriveFault", "LostLink", "NotHomed", "Refused", "SteadystepError", "TimedOut",
-           "Trigger", "WrongPort", "WrongVersion", "dictionary"]
+           "Trigger", "WrongPort", "WrongVersion", "dictionary", "simulator"]

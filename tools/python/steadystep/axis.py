@@ -3,12 +3,11 @@ import math
 import time
 from typing import Callable, NoReturn
 
-from canopen.profiles.p402 import State402
-
 from .dictionary import Dictionary, Fault
 from .errors import DriveFault, NotHomed, Refused, TimedOut
 from .objects import Objects, OutOfRange
 from .settings import Progress, unseen
+from .states import state_of
 
 LOOK_S = 0.01
 
@@ -129,9 +128,9 @@ class Axis:
         if others:
             raise Refused(f"node {self.objects.number} refuses to be enabled: settings or rotor forbid it; why, says the "
                           f"console of its own line, as this one is shared with node {', '.join(map(str, others))}")
-        answer = self.objects.bus.ask_console("enable")
-        if not answer.startswith("ok"):
-            raise Refused(answer.removeprefix("error: ") or "the drive refuses to be enabled")
+        for answer in self.objects.ask_console("enable") or ["the drive refuses to be enabled"]:
+            if not answer.startswith("ok"):
+                raise Refused(answer.removeprefix("error: "))
 
     def disable(self) -> None:
         """Opens the bridge."""
@@ -178,17 +177,17 @@ class Axis:
             if value is not None and index in self.objects.entries:  # 6084h: not of every version
                 self.objects.write(index, _whole(name, value, self._unit_rad))
 
-    def _position_units(self, position_rad: float) -> int:
+    def _units(self, name: str, value: float, unit: str = "rad") -> int:
         most = (2**31 - 1) * self._unit_rad
-        if not abs(position_rad) <= most:
-            raise Refused(f"position_rad: expected a number in ±{most:.6g} rad, got {position_rad:g}")
-        return round(position_rad / self._unit_rad)
+        if not abs(value) <= most:
+            raise Refused(f"{name}: expected a number in ±{most:.6g} {unit}, got {value:g}")
+        return round(value / self._unit_rad)
 
     def move(self, position_rad: float, *, relative: bool = False, speed_rad_s: float | None = None,
              acceleration_rad_s2: float | None = None, wait: bool = True, timeout_s: float = 60.0,
              progress: Progress = unseen) -> None:
         """To a position, from whatever motion. What is not given stays as it was, at first the motor's."""
-        units = self._position_units(position_rad)
+        units = self._units("position_rad", position_rad)
         self._in_mode(PROFILE_POSITION)
         self._profile(speed_rad_s, acceleration_rad_s2)
         self._control(ENABLE_OPERATION)
@@ -218,7 +217,7 @@ class Axis:
     def velocity(self, speed_rad_s: float, *, acceleration_rad_s2: float | None = None,
                  wait: bool = False, timeout_s: float = 60.0) -> None:
         """A speed for ever; 0 comes to rest."""
-        units = self._position_units(speed_rad_s)
+        units = self._units("speed_rad_s", speed_rad_s, "rad/s")
         self._in_mode(PROFILE_VELOCITY)
         self._profile(None, acceleration_rad_s2)
         self._control(ENABLE_OPERATION)
@@ -285,7 +284,7 @@ class Axis:
         Raises NotHomed, DriveFault."""
         if method not in HOMING_METHODS:
             raise Refused(f"method: expected one of {', '.join(HOMING_METHODS)}, got {method}")
-        offset = self._position_units(position_rad)
+        offset = self._units("position_rad", position_rad)
         self._in_mode(HOMING)
         try:
             self.objects.write(0x6098, HOMING_METHODS[method])
@@ -354,12 +353,4 @@ def _whole(name: str, value: float, unit: float, end: int = 2**32) -> int:
     if not 0 < units < end:
         raise Refused(f"{name}: expected a number above 0, at most {unit * (end - 1):.6g}, got {value:g}")
     return units
-
-
-def state_of(status: int) -> str:
-    """The state of CiA 402 in a statusword."""
-    for name, (mask, bits) in State402.SW_MASK.items():
-        if status & mask == bits:
-            return str(name)
-    return "UNKNOWN"
 

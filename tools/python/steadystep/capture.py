@@ -84,6 +84,7 @@ class ProcessData:
         self.polled.append(signal)
 
     def __enter__(self) -> "ProcessData":
+        self._objects.is_capturing = True
         for n, indexes in enumerate(self.frames):
             self._kept.append(self._parameters(n))
             if indexes:
@@ -96,6 +97,7 @@ class ProcessData:
         return self
 
     def __exit__(self, *_: object) -> None:
+        self._objects.is_capturing = False
         for n in range(PDOS):
             if self.frames[n]:
                 self._objects.network.unsubscribe(self._id(n), self._take)

@@ -1,8 +1,10 @@
 """A capture as a file: .csv, .parquet (pyarrow) or .mcap (mcap)."""
 import csv
+import importlib
 import json
+import os
 import pathlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Iterable
 
 from .dictionary import Signal
 from .errors import SteadystepError
@@ -13,10 +15,17 @@ if TYPE_CHECKING:
 
 TOPIC = "/drive"  # as layouts/ has it
 ROWS = 1000  # between two looks at the progress
+PACKAGES = {".parquet": ("pyarrow", "pyarrow.parquet"), ".mcap": ("mcap.writer",),
+            ".png": ("matplotlib.figure",), ".svg": ("matplotlib.figure",)}
 
 
 def _needs(package: str, suffix: str, error: ImportError) -> SteadystepError:
     return SteadystepError(f"{suffix} needs the package {package}: pip install {package} ({error})")
+
+
+def cell(value: float) -> str:
+    """With as many digits as it has."""
+    return repr(value).removesuffix(".0")
 
 
 def _cells(capture: "Capture", row: int) -> list[float]:
@@ -28,17 +37,16 @@ def _save_csv(capture: "Capture", path: pathlib.Path, progress: Progress) -> Non
         writer = csv.writer(file)
         writer.writerow(["time_s", *(signal.name for signal in capture.signals)])
         for row in range(len(capture)):
-            writer.writerow([f"{value:.9g}" for value in _cells(capture, row)])
+            time_s, *values = _cells(capture, row)
+            writer.writerow([f"{time_s:.12g}", *map(cell, values)])
             if row % ROWS == 0:
                 progress("writing", row / len(capture))
 
 
 def _save_parquet(capture: "Capture", path: pathlib.Path, progress: Progress) -> None:
-    try:
-        import pyarrow
-        import pyarrow.parquet
-    except ImportError as error:
-        raise _needs("pyarrow", ".parquet", error) from None
+    import pyarrow
+    import pyarrow.parquet
+
     fields = [pyarrow.field("time_s", pyarrow.float64(), metadata={"unit": "s"})]
     fields += [pyarrow.field(signal.name, pyarrow.float64(), metadata=_described(signal))
                for signal in capture.signals]
@@ -61,10 +69,8 @@ def _schema(capture: "Capture") -> dict[str, Any]:
 
 
 def _save_mcap(capture: "Capture", path: pathlib.Path, progress: Progress) -> None:
-    try:
-        from mcap.writer import Writer
-    except ImportError as error:
-        raise _needs("mcap", ".mcap", error) from None
+    from mcap.writer import Writer
+
     names = ["time_s", *(signal.name for signal in capture.signals)]
     with path.open("wb") as file:
         writer = Writer(file)
@@ -84,8 +90,22 @@ def _save_mcap(capture: "Capture", path: pathlib.Path, progress: Progress) -> No
 WRITERS = {".csv": _save_csv, ".parquet": _save_parquet, ".mcap": _save_mcap}
 
 
+def check_place(path: pathlib.Path, suffixes: Iterable[str] = WRITERS) -> None:
+    """Before what goes there is made."""
+    if path.suffix not in suffixes:
+        raise SteadystepError(f"{path}: expected a name that ends with {', '.join(suffixes)}")
+    if not path.parent.is_dir():
+        raise SteadystepError(f"{path}: there is no folder {path.parent}")
+    if path.is_dir() or not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise SteadystepError(f"{path}: it cannot be written")
+    for package in PACKAGES.get(path.suffix, ()):
+        try:
+            importlib.import_module(package)
+        except ImportError as error:
+            raise _needs(package.partition(".")[0], path.suffix, error) from None
+
+
 def save(capture: "Capture", path: pathlib.Path, progress: Progress) -> None:
-    if path.suffix not in WRITERS:
-        raise SteadystepError(f"{path}: expected a name that ends with {', '.join(WRITERS)}")
+    check_place(path)
     WRITERS[path.suffix](capture, path, progress)
     progress("writing", 1.0)

@@ -50,6 +50,8 @@ def record_in_drive(objects: Objects, signals: Sequence[Signal], duration_s: flo
     same."""
     divider = min(max(1, round(1 / (rate_Hz * period_s))), 0xFFFF)
     samples = max(1, round(duration_s / (divider * period_s)))
+    if trigger and not 0 <= trigger.before_s <= duration_s:
+        raise Refused(f"before_s: expected a number in 0…{duration_s:g} s, got {trigger.before_s:g}")
     before = min(round(trigger.before_s / (divider * period_s)), samples - 1) if trigger else 0
     if not take_over:
         _check_that_it_is_free(objects)

@@ -8,12 +8,13 @@ import sys
 import time
 from typing import Callable, Sequence
 
+from .capture_files import check_place
 from .capture_in_drive import Trigger
 from .cli_words import PORT, command_name, parser
 from .dictionary import Value, dictionary
 from .drive import Drive
 from .errors import DriveFault, LostLink, NotHomed, Refused, SteadystepError, TimedOut, WrongPort, WrongVersion
-from .resonance_curve import NOT_SURE
+from .resonance_curve import NOT_SURE, SUFFIXES
 from .settings_text import line_of
 
 HELD, NOT_DONE, BAD_INPUT = 0, 1, 2
@@ -69,10 +70,11 @@ def typed(name: str, text: str) -> Value:
     if setting.type == "flag":
         return {"true": True, "false": False}.get(text, text)
     try:
-        numbers: list[float] = [float(one) for one in text.strip("[]").split(",")]
+        if setting.elements > 1:
+            return [float(one) for one in text.strip("[]").split(",")]
+        return float(text)
     except ValueError:
-        return text
-    return numbers if setting.elements > 1 else setting.value_of(numbers[0]) if setting.type == "real" else numbers[0]
+        return text  # which is refused with what is expected
 
 
 def settings_get(drive: Drive, arguments: Arguments) -> None:
@@ -108,9 +110,10 @@ def settings_import(drive: Drive, arguments: Arguments) -> None:
 
 def settings_motor(drive: Drive, arguments: Arguments) -> None:
     motor = drive.known.motor(arguments.motor)
-    for name, value in motor.settings.items():
-        drive.settings[name] = value
-    print(f"{motor.name}, {motor.description}: {len(motor.settings)} settings; they act at the next enable")
+    stays = drive.settings.take_motor(motor.name)
+    print(f"{motor.name}, {motor.description}: {len(motor.settings)} settings; they act at the next enable\n"
+          f"current_limit_A = {said(drive.settings['current_limit_A'])}  # A, rated; what follows from a motor follows this one"
+          + (f", but for {', '.join(stays)}" if stays else ""))
 
 
 # ---- state and motion ----
@@ -170,11 +173,18 @@ def home(drive: Drive, arguments: Arguments) -> None:
 
 
 def give_command(drive: Drive, arguments: Arguments) -> None:
-    pairs = [pair.partition("=") for pair in arguments.parameters]
-    drive.command(arguments.name, **{name: float(value) for name, _, value in pairs})
+    values = {}
+    for pair in arguments.parameters:
+        name, _, text = pair.partition("=")
+        try:
+            values[name] = float(text)
+        except ValueError:
+            raise Refused(f"{pair}: expected a parameter as NAME=NUMBER") from None
+    drive.command(arguments.name, **values)
 
 
 def capture(drive: Drive, arguments: Arguments) -> None:
+    check_place(pathlib.Path(arguments.out))
     trigger = Trigger(arguments.trigger, arguments.level, not arguments.falling, arguments.before) \
         if arguments.trigger else None
     made = drive.capture(arguments.signals, arguments.duration, arguments.rate, trigger=trigger,
@@ -187,6 +197,8 @@ def find_resonance(drive: Drive, arguments: Arguments) -> None:
     from . import resonance
     from .resonance_proposal import propose
 
+    if arguments.out:
+        check_place(pathlib.Path(arguments.out), SUFFIXES)
     plan = resonance.plan(drive, arguments.lowest, arguments.highest, arguments.torque)
     print(f"the axis swings by ±{math.degrees(plan.most_amplitude_rad):.2g}° at {plan.lowest_Hz:g} Hz, by less above; before and "
           "behind that the bridge opens, and a hanging load falls", flush=True)

@@ -1,13 +1,15 @@
 """The words of the command `steadystep`."""
 import argparse
 import os
-from typing import TYPE_CHECKING
+import re
+from typing import TYPE_CHECKING, Callable
 
 from .axis import HOMING_METHODS
 
 if TYPE_CHECKING:
     Commands = argparse._SubParsersAction[argparse.ArgumentParser]
 
+NEGATIVE = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$")  # argparse takes -1e-3 for an option
 PORT, COMMAND = "STEADYSTEP_PORT", "STEADYSTEP_COMMAND"
 
 
@@ -16,8 +18,23 @@ def command_name() -> str:
     return os.environ.get(COMMAND, "steadystep")
 
 
+def _number_in(least: int, most: int) -> Callable[[str], int]:
+    """A type of argparse, which says the range."""
+    def number(text: str) -> int:
+        if not text.isdecimal() or not least <= int(text) <= most:
+            raise argparse.ArgumentTypeError(f"expected a number in {least}…{most}, got {text}")
+        return int(text)
+
+    return number
+
+
+PORT_NUMBER = _number_in(0, 65535)
+
+
 def _add(commands: "Commands", name: str, about: str) -> argparse.ArgumentParser:
-    return commands.add_parser(name, help=about, description=about)
+    parser = commands.add_parser(name, help=about, description=about)
+    parser._negative_number_matcher = NEGATIVE
+    return parser
 
 
 def _add_settings(commands: "Commands") -> None:
@@ -106,13 +123,13 @@ def _add_programs(commands: "Commands") -> None:
     simulate.add_argument("--link", default="/tmp/steadystep", help="of the drive; its knobs: with -knobs behind it")
     simulate.add_argument("more", nargs="*", help="behind --: options of steadystep-sil serve")
     page.add_argument("--simulate", action="store_true", help="with a simulated drive of its own")
-    page.add_argument("--http", type=int, default=0, metavar="PORT", help="of the page; 0: a free one")
+    page.add_argument("--http", type=PORT_NUMBER, default=0, metavar="PORT", help="of the page; 0: a free one")
     page.add_argument("--open", action="store_true", help="in the browser")
     page.add_argument("--knobs", help="tcp://127.0.0.1:PORT of a simulated drive that is served elsewhere")
     page.add_argument("--link", help="pseudo-terminal for another program")
     share.add_argument("--link", help="pseudo-terminal for a program", default="/tmp/steadystep")
     for each in (page, share):
-        each.add_argument("--tcp", type=int, default=0, metavar="PORT",
+        each.add_argument("--tcp", type=PORT_NUMBER, default=0, metavar="PORT",
                           help="for any number of other programs; 0: a free one")
 
 
@@ -120,7 +137,7 @@ def parser() -> argparse.ArgumentParser:
     top = argparse.ArgumentParser(prog="steadystep", description="Operates a steadystep drive.")
     top.add_argument("--port", help=f"serial port, pseudo-terminal or tcp://127.0.0.1:PORT; else {PORT}, or the only "
                                     "serial adapter there is")
-    top.add_argument("--node", type=int, default=1, help="the drive's number on a bus (1)")
+    top.add_argument("--node", type=_number_in(1, 127), default=1, help="the drive's number on a bus (1)")
     top.add_argument("--any-version", action="store_true", help="go on with a drive of another version")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     _add_signals(commands)

@@ -11,6 +11,7 @@ from .errors import Refused
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 EDS = FOLDER / "steadystep.eds"
+EDGE = 1e-9  # of a bound: what rounding leaves
 
 _Row = TypeVar("_Row")
 Scalar = bool | int | float | str
@@ -55,13 +56,33 @@ class Setting:
     choices: tuple[Choice, ...]
 
     @property
+    def elements_named(self) -> list[str]:
+        """As the console names each."""
+        return [self.name] if self.elements == 1 else [f"{self.name}.{n + 1}" for n in range(self.elements)]
+
+    @property
+    def follows(self) -> bool:
+        """From motor, board and period, unless it is given."""
+        return self.default is None and self.group != "Motor"
+
+    def check(self, number: float, rated_current_A: float) -> None:
+        """Raises Refused beyond the range; what is at its edge the drive knows best."""
+        if self.type not in ("real", "count") or (math.isnan(number) and self.follows):
+            return
+        least, most = (bound.value(rated_current_A) for bound in (self.least, self.most))
+        if not least - EDGE * abs(least) <= number <= most + EDGE * abs(most):
+            raise self.out_of_range(self.value_of(number) if math.isfinite(number) else number)
+
+    @property
     def range(self) -> str:
         if self.type == "choice":
             return ", ".join(choice.name for choice in self.choices)
         return "true, false" if self.type == "flag" else f"{self.least}…{self.most}"
 
     def number_of(self, value: object) -> float:
-        """An element as the drive has it; raises Refused."""
+        """An element as the drive has it, numpy's scalars, too; raises Refused."""
+        if callable(item := getattr(value, "item", None)):
+            value = item()
         if self.type == "choice":
             for number, choice in enumerate(self.choices):
                 if value == choice.name:

@@ -2,6 +2,7 @@
 import contextlib
 import logging
 import queue
+import struct
 import threading
 import time
 from typing import Any, Callable, Iterator
@@ -44,6 +45,8 @@ class Objects:
     """A node on a line. Threads take turns."""
 
     def __init__(self, line: ByteLine, node: int) -> None:
+        if not 1 <= node <= 127:
+            raise Refused(f"node: expected a number in 1…127, got {node}")
         self.number = node
         self.bus = TextBus(line)
         self.network = canopen.Network(self.bus)
@@ -56,6 +59,8 @@ class Objects:
         self._lock = threading.RLock()
         self._markers, self._begun_s = Markers(), 0.0
         self._is_late = False  # an answer to what has been given up may come yet
+        self._is_closed = False
+        self.is_capturing = False
         try:
             self.read(0x1000)
         except LostLink:
@@ -65,6 +70,7 @@ class Objects:
                             f"{', '.join(map(str, heard)) or 'none'}") from None
 
     def close(self) -> None:
+        self._is_closed = True
         self.network.disconnect()
 
     @property
@@ -84,7 +90,13 @@ class Objects:
         return self._asked(lambda: self._variable(index, sub).raw)
 
     def write(self, index: int, value: Number, sub: int = 0) -> None:
-        self._asked(lambda: setattr(self._variable(index, sub), "raw", value))
+        def put() -> None:
+            try:
+                self._variable(index, sub).raw = value
+            except (ValueError, OverflowError, struct.error):
+                raise OutOfRange("out of range") from None  # of the object's type
+
+        self._asked(put)
 
     def _asked(self, work: Callable[[], Any]) -> Any:
         """Anew, if the request or its answer was lost on a line that is alive."""
@@ -99,12 +111,24 @@ class Objects:
 
     def send_controlword(self, word: int) -> None:
         """By RPDO1, as it is mapped unless a client has mapped something else; then it is passed over."""
+        self.check()
         self.network.send_message(0x200 + self.number, word.to_bytes(2, "little"))
 
     def check(self) -> None:
         """Raises LostLink if there is no link any more."""
         if self._is_over:
             raise self._loss("")
+
+    def ask_console(self, *lines: str) -> list[str]:
+        """Its answers; fewer, or none, where it does not answer, where other nodes are on the line, whose console it may be, or
+        while process data is captured. For all programs the channel is as if it had just been opened."""
+        if self.others or self.is_capturing:
+            return []
+        with self._lock:
+            self._pass_what_is_late()
+            answers = self.bus.ask_console(lines)
+            self.node.nmt.state = "OPERATIONAL"
+        return answers
 
     @contextlib.contextmanager
     def transfer(self) -> Iterator[None]:
@@ -122,7 +146,11 @@ class Objects:
                     raise self._refusal(error) from None
                 self._is_late = True
                 raise self._loss(str(error)) from None
+            except Refused:  # by this package
+                raise
             except BaseException:
+                if self._is_closed:  # by another thread, in the midst of it
+                    raise self._loss("") from None
                 self._give_up()
                 raise
 
@@ -132,7 +160,7 @@ class Objects:
 
     @property
     def _is_over(self) -> bool:
-        return self.bus.lost is not None or self.bus.restarted
+        return self._is_closed or self.bus.lost is not None or self.bus.restarted
 
     def _pass_what_is_late(self) -> None:
         """With the answer to a marker it has come. While others are heard, the marker waits for its turn."""
@@ -170,6 +198,8 @@ class Objects:
         return Refused(str(error))
 
     def _loss(self, said: str) -> LostLink:
+        if self._is_closed:
+            return LostLink(f"{self.bus.channel_info}: the drive has been closed; open it again")
         if self.bus.lost:
             return self.bus.lost
         if self.bus.restarted:

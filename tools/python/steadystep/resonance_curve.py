@@ -9,8 +9,9 @@ import math
 import pathlib
 from typing import Sequence
 
-from .errors import SteadystepError
+from .capture_files import check_place
 
+SUFFIXES = (".csv", ".png", ".svg")
 FOUND, NOT_SURE, NONE = "found", "not sure", "none"
 REACH = 2.5                       # ratio of frequencies within which what is beside a minimum is looked for
 BESIDE = 1.2                      # ratio of frequencies across which the angle turns
@@ -211,20 +212,17 @@ class Resonance:
     def save(self, path: str | pathlib.Path) -> None:
         """To .csv, or as a picture to .png or .svg."""
         place = pathlib.Path(path)
+        check_place(place, SUFFIXES)
         if place.suffix == ".csv":
             rows = (f"{one.frequency_Hz:.6g},{abs(one.inertia):.6g},{math.degrees(cmath.phase(one.inertia)):.4g}\n"
                     for one in self.points)
             place.write_text("frequency_Hz,inertia_share,angle_deg\n" + "".join(rows), encoding="utf-8")
-        elif place.suffix in (".png", ".svg"):
-            self._draw(place)
         else:
-            raise SteadystepError(f"{place}: expected a name that ends with .csv, .png or .svg")
+            self._draw(place)
 
     def _draw(self, place: pathlib.Path) -> None:
-        try:
-            from matplotlib.figure import Figure
-        except ImportError:
-            raise SteadystepError("a picture needs the package matplotlib: pip install 'steadystep[plot]'") from None
+        from matplotlib.figure import Figure
+
         figure = Figure(figsize=(7, 4), layout="constrained")
         axes = figure.subplots()
         shown = [abs(one.inertia) for one in self.points]

@@ -1,12 +1,13 @@
 """The settings of a drive, as a mapping by name."""
 import math
 import pathlib
-from typing import Callable, Iterator, Mapping
+from typing import Callable, Container, Iterator, Mapping, Sequence
 
 from .dictionary import Dictionary, Setting, Value, same
 from .errors import Refused
 from .objects import Objects, OutOfRange
 from .settings_text import Given, given_in, text_of
+from .states import BRIDGE_ON, state_of
 
 Progress = Callable[[str, float], None]  # what, and the share of it that is done
 
@@ -37,10 +38,11 @@ class Settings(Mapping[str, Value]):
         if setting.elements == 1:
             self._write(setting, 0, setting.number_of(value))
             return
-        if not isinstance(value, list) or len(value) != setting.elements:
+        several = value.tolist() if hasattr(value, "tolist") else value
+        if not isinstance(several, (list, tuple)) or len(several) != setting.elements:
             raise Refused(f"{name}: expected {setting.elements} numbers, got {value!r}")
-        for n, one in enumerate(value):
-            self._write(setting, n, setting.number_of(one))
+        for n, number in enumerate([setting.number_of(one) for one in several]):
+            self._write(setting, n, number)
 
     def _read(self, setting: Setting, element: int) -> float:
         return float(self._objects.read(setting.index + element))
@@ -65,8 +67,48 @@ class Settings(Mapping[str, Value]):
         else:
             number = setting.default.value(float(self._objects.read(
                 self._known.setting("rated_current_A").index)))
-        for n in range(setting.elements):
-            self._write(setting, n, number)
+        try:
+            for n in range(setting.elements):
+                self._write(setting, n, number)
+        except Refused:
+            if not math.isnan(number) or not self._set_to_default(setting):
+                raise
+
+    def _set_to_default(self, setting: Setting) -> bool:
+        """Of what the drive has always given, computed from its motor, which it does when its console is asked to."""
+        answers = self._objects.ask_console(f"set {setting.name} default") if setting.elements == 1 and self._is_off else []
+        return bool(answers) and answers[0].startswith("ok")
+
+    @property
+    def _is_off(self) -> bool:
+        return state_of(int(self._objects.read(0x6041))) not in BRIDGE_ON
+
+    def _following(self) -> set[str] | None:
+        """What nobody has given. SDO shows what followed at the last enable, as if it were given; the console says which.
+        That is asked while the bridge is off, as its channel is closed for it. None: it could not be asked."""
+        names = [name for row in self._known.settings.values() if row.follows for name in row.elements_named]
+        if not self._is_off:
+            return None
+        answers = self._objects.ask_console(*(f"get {name}" for name in names))
+        if len(answers) < len(names):
+            return None
+        return {name for name, answer in zip(names, answers)
+                if any(word in answer.partition(";")[0] for word in ("(follows)", "(not given)"))}
+
+    def take_motor(self, name: str) -> list[str]:
+        """Those of a motor of the library. What was given for the motor before is taken back: the current limit is its rated
+        current, and what follows from the motor follows. The names of what stays, where other nodes are on the line."""
+        motor = self._known.motor(name)
+        for setting, value in motor.settings.items():
+            self[setting] = value
+        stays = []
+        for one in self._known.settings.values():
+            if one.follows or (one.default is not None and one.default.of_rated):
+                try:
+                    self.default(one.name)
+                except Refused:
+                    stays.append(one.name)
+        return stays
 
     def all(self, progress: Progress = unseen) -> dict[str, Value]:
         values = {}
@@ -76,40 +118,72 @@ class Settings(Mapping[str, Value]):
         return values
 
     def export(self, progress: Progress = unseen) -> str:
-        """As text, a line each."""
-        return text_of(self._known, self.all(progress))
+        """As text, a line each; what nobody has given is not given there. An enabled drive does not say what that is: what may be
+        is marked."""
+        return text_of(self._known, self.all(progress), self._following())
 
     def load(self, text: str, place: str = "settings", progress: Progress = unseen) -> list[str]:
-        """Of such a text what differs from what the drive has; the names of that. All of it is read before
+        """Of such a text what differs from what the drive has; the names of that. All of it is read, and looked at, before
         anything is written. In the order of the table, as feedback and law bring their defaults with them."""
         order = list(self)
         given = sorted(given_in(self._known, text, place), key=lambda one: order.index(one.setting.name))
-        changed = []
+        nan = any(math.isnan(number) for one in given for number in one.numbers if isinstance(number, float))
+        following = (self._following() if nan else None) or set()
+        self._check(given, place, following)
+        changed: list[str] = []
         for n, one in enumerate(given):
             try:
-                if self._put(one):
-                    changed.append(one.setting.name + (f".{one.gain}" if one.gain else ""))
+                if self._put(one, following):
+                    changed.append(one.name)
             except Refused as error:
-                raise Refused(f"{place}:{one.line}: {error}") from None
+                before = f"; set before it: {', '.join(changed)}" if changed else ""
+                raise Refused(f"{place}:{one.line}: {error}{before}") from None
             progress("settings", (n + 1) / len(given))
         return changed
 
     def load_file(self, path: str | pathlib.Path, progress: Progress = unseen) -> list[str]:
-        return self.load(pathlib.Path(path).read_text(encoding="utf-8"), str(path), progress)
+        try:
+            text = pathlib.Path(path).read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            raise Refused(f"{path}: expected settings as text, a line each: name = value") from None
+        return self.load(text, str(path), progress)
 
-    def _put(self, one: Given) -> bool:
+    def _check(self, given: Sequence[Given], place: str, following: Container[str]) -> None:
+        """What the drive would refuse, as far as one knows."""
+        whole = {one.setting.name: one.value for one in given if not one.gain}
+        rated = whole.get("rated_current_A", self["rated_current_A"])
+        law = str(whole.get("law", self["law"]))
+        assert isinstance(rated, (int, float))
+        is_off = self._is_off
+        for one in given:
+            try:
+                numbers = self._numbers(one, law)
+                for number in numbers.values():
+                    one.setting.check(number, rated)
+                if not is_off and not one.setting.in_motion and self._differing(one.setting, numbers, following):
+                    raise Refused(f"{one.name}: it changes while the bridge is off: disable first")
+            except Refused as error:
+                raise Refused(f"{place}:{one.line}: {error}; nothing has been set") from None
+
+    def _numbers(self, one: Given, law: str) -> dict[int, float]:
+        """By element."""
         setting = one.setting
         if one.gain:
-            gains = self._known.law_gains[str(self["law"])]
+            gains = self._known.law_gains[law]
             if one.gain not in gains:
-                raise Refused(f"{setting.name}.{one.gain}: this law has {', '.join(gains) or 'none'}")
-            elements: dict[int, object] = {gains.index(one.gain): one.value}
-        else:
-            values: list[object] = [*one.value] if isinstance(one.value, list) else [one.value]
-            elements = dict(enumerate(values))
-        numbers = {n: setting.number_of(value) for n, value in elements.items()}
-        written = {n: number for n, number in numbers.items()
-                   if not same(number, self._read(setting, n))}
+                raise Refused(f"{one.name}: this law has {', '.join(gains) or 'none'}")
+            return {gains.index(one.gain): setting.number_of(one.value)}
+        values: list[object] = [*one.value] if isinstance(one.value, list) else [one.value]
+        return {n: setting.number_of(value) for n, value in enumerate(values)}
+
+    def _differing(self, setting: Setting, numbers: Mapping[int, float], following: Container[str]) -> dict[int, float]:
+        """`following`: what the drive shows is not given."""
+        names = setting.elements_named
+        return {n: number for n, number in numbers.items()
+                if not (math.isnan(number) if names[n] in following else same(number, self._read(setting, n)))}
+
+    def _put(self, one: Given, following: Container[str]) -> bool:
+        written = self._differing(one.setting, self._numbers(one, str(self["law"])), following)
         for n, number in written.items():
-            self._write(setting, n, number)
+            self._write(one.setting, n, number)
         return bool(written)

@@ -3,12 +3,13 @@ import dataclasses
 import math
 import re
 import tomllib
-from typing import Iterable, Mapping
+from typing import Container, Iterable, Mapping
 
 from .dictionary import Dictionary, Scalar, Setting, Value
 from .errors import Refused
 
 NOT_GIVEN = math.nan  # it follows from motor, board and period
+MAY_FOLLOW = "given, or what followed at the last enable"
 
 
 def _text(setting: Setting, value: Scalar) -> str:
@@ -19,24 +20,32 @@ def _text(setting: Setting, value: Scalar) -> str:
     return str(value) if setting.type == "count" else repr(float(value))
 
 
-def _line(setting: Setting, name: str, text: str) -> str:
-    return f"{name} = {text}" + (f"  # {setting.unit}" if setting.unit else "") + "\n"
+def _line(setting: Setting, name: str, text: str, mark: str) -> str:
+    remark = "; ".join(filter(None, (setting.unit, mark)))
+    return f"{name} = {text}" + (f"  # {remark}" if remark else "") + "\n"
 
 
-def line_of(known: Dictionary, setting: Setting, value: Value, law: str) -> str:
+def line_of(known: Dictionary, setting: Setting, value: Value, law: str, mark: str = "") -> str:
     """The lines of a setting; of a law's gains one for each that it has."""
     if not isinstance(value, list):
-        return _line(setting, setting.name, _text(setting, value))
+        return _line(setting, setting.name, _text(setting, value), mark)
     if setting.name == "law_gains":
-        return "".join(_line(setting, f"{setting.name}.{gain}", _text(setting, number))
+        return "".join(_line(setting, f"{setting.name}.{gain}", _text(setting, number), mark)
                        for gain, number in zip(known.law_gains[law], value))
-    return _line(setting, setting.name, "[" + ", ".join(_text(setting, one) for one in value) + "]")
+    return _line(setting, setting.name, "[" + ", ".join(_text(setting, one) for one in value) + "]", mark)
 
 
-def text_of(known: Dictionary, values: Mapping[str, Value]) -> str:
-    law = str(values["law"])
-    return "# Settings of a drive; nan: not given, it follows from motor and board.\n" + "".join(
-        line_of(known, known.setting(name), value, law) for name, value in values.items())
+def text_of(known: Dictionary, values: Mapping[str, Value], following: Container[str] | None) -> str:
+    """`following`: what is not given, by the console's names; None: that is not known."""
+    law, lines = str(values["law"]), ["# Settings of a drive; nan: not given, it follows from motor and board.\n"]
+    for name, value in values.items():
+        setting = known.setting(name)
+        if setting.follows and following is not None:
+            shown = value if isinstance(value, list) else [value]
+            numbers = [NOT_GIVEN if one in following else float(number) for one, number in zip(setting.elements_named, shown)]
+            value = numbers if isinstance(value, list) else numbers[0]
+        lines.append(line_of(known, setting, value, law, MAY_FOLLOW if setting.follows and following is None else ""))
+    return "".join(lines)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -47,6 +56,14 @@ class Given:
     setting: Setting
     gain: str  # "": the whole setting
     value: Value
+
+    @property
+    def numbers(self) -> list[Scalar]:
+        return [*self.value] if isinstance(self.value, list) else [self.value]
+
+    @property
+    def name(self) -> str:
+        return self.setting.name + (f".{self.gain}" if self.gain else "")
 
 
 def given_in(known: Dictionary, text: str, place: str = "settings") -> Iterable[Given]:

@@ -16,6 +16,7 @@ from .sdo_marker import AGAIN_S
 from .sdo_turns import ABORT, Turns
 from .text_bus import NODE_BITS, Pieces, TextBus, frame_of
 
+CONSOLE_S = 0.5  # behind its last line or answer the console gives way to the channel again
 TURN_S = (ANSWER_S + LOST_S) / 2  # of silence ends a turn: a program has given up by then, and who waits has not yet
 REQUEST, RESPONSE, HEARTBEAT = 0x600, 0x580, 0x700
 NMT_STATES = {1: 0x05, 2: 0x04, 0x80: 0x7F}  # by the command that brings about each
@@ -45,6 +46,8 @@ class Share:
         self._clients: list[Client] = []
         self._turns: dict[int, Turns[Client]] = collections.defaultdict(Turns)
         self._asks_console: Client | None = None
+        self._asked_s = 0.0
+        self._held: list[bytes] = []  # requests that wait for the channel meanwhile
         self._nmt: dict[int, int] = {}  # states of the nodes that have been heard
         self._lock = threading.RLock()
         self._listener: socket.socket | None = None
@@ -127,6 +130,7 @@ class Share:
     def _obey(self, client: Client, text: bytes) -> None:
         letter = text[:1]
         if letter in (b"O", b"L", b"C"):
+            self._leave_console(client)
             client.open = letter != b"C"
             client.send(b"\r")
             if client.open:  # a node that has been here for long is announced, as one that starts is
@@ -140,11 +144,21 @@ class Share:
             client.send(ANSWERS.get(letter, b"\r" if letter in b"SsMmZ" else b"\a"))
 
     def _ask_console(self, client: Client, line: bytes) -> None:
-        """For all programs the channel is as if it had just been opened."""
+        """For all programs the channel is as if it had just been opened. It is closed until the one that asks opens its own,
+        or says no more."""
         with self._lock:
-            if self._asks_console is None:
-                self._asks_console = client
-                self._line.write(b"C\r" + line + b"\n")
+            if self._asks_console not in (None, client):
+                return
+            begins = b"" if self._asks_console else b"C\r"
+            self._asks_console, self._asked_s = client, time.monotonic()
+            self._put(begins + line + b"\n")
+
+    def _leave_console(self, client: Client | None) -> None:
+        with self._lock:
+            if self._asks_console and client in (None, self._asks_console):
+                self._asks_console = None
+                held, self._held = self._held, []
+                self._put(b"O\r" + b"".join(held))
 
     def _forward(self, client: Client, text: bytes) -> None:
         try:
@@ -173,8 +187,16 @@ class Share:
                 self._nmt[known] = NMT_STATES[command]
 
     def _to_drive(self, text: bytes) -> None:
+        with self._lock:
+            if self._asks_console and text[1:2] in b"67":  # SDO; process data does not wait
+                self._held.append(text + b"\r")
+                return
+            self._leave_console(None)
+            self._put(text + b"\r")
+
+    def _put(self, data: bytes) -> None:
         try:
-            self._line.write(text + b"\r")
+            self._line.write(data)
         except LostLink as error:
             self._lose(error)
 
@@ -202,6 +224,8 @@ class Share:
             except LostLink as error:
                 self._lose(error)
             with self._lock:
+                if self._asks_console and time.monotonic() - self._asked_s > CONSOLE_S:
+                    self._leave_console(None)
                 for node, turns in list(self._turns.items()):
                     self._end_what_is_silent(node, turns)
 
@@ -216,10 +240,10 @@ class Share:
     def _deliver(self, text: bytes, ending: bytes) -> None:
         if ending == b"\n" and text.startswith(b"steadystep "):
             self._lose(LostLink(f"{self._line.place}: the drive has restarted"))
-        if ending == b"\n" and self._asks_console and text.startswith((b"ok", b"error:")):
-            self._asks_console.send(text + b"\n")
-            self._asks_console = None
-            self._line.write(b"O\r")
+        asks = self._asks_console
+        if ending == b"\n" and asks and text.startswith((b"ok", b"error:")):
+            self._asked_s = time.monotonic()
+            asks.send(text + b"\n")
         frame = frame_of(text) if ending == b"\r" else None
         if frame is None:
             return

@@ -2,7 +2,7 @@
 import collections
 import threading
 import time
-from typing import Any, Callable
+from typing import Any, Callable, Sequence
 
 import can
 
@@ -117,21 +117,29 @@ class TextBus(can.BusABC):
                     self._answer = text.decode(errors="replace")
                     self._said.notify_all()
 
-    def ask_console(self, line: str) -> str:
-        """The answer to a line of the console. The channel is closed for it, and opened anew."""
-        self._answer = ""
-        with self._lock:
-            self._line.write(b"C\r" + line.encode() + b"\n")
-        with self._said:
-            self._said.wait_for(lambda: self._answer, LOST_S)
-        with self._lock:
-            self._line.write(b"O\r")
-        return self._answer
+    def ask_console(self, lines: Sequence[str]) -> list[str]:
+        """The answers to lines of the console, up to the first that has none. The channel is closed for them, and opened
+        anew."""
+        answers: list[str] = []
+        self._put(b"C\r")
+        for line in lines:
+            self._answer = ""
+            self._put(line.encode() + b"\n")
+            with self._said:
+                self._said.wait_for(lambda: self._answer or self.lost, LOST_S)
+            if not self._answer:
+                break
+            answers.append(self._answer)
+        self._put(b"O\r")
+        return answers
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
+        self._put(frame_text(msg))
+
+    def _put(self, data: bytes) -> None:
         try:
             with self._lock:
-                self._line.write(frame_text(msg))
+                self._line.write(data)
         except LostLink as error:
             self._end(error)
 

@@ -4,7 +4,6 @@ import threading
 import time
 from typing import Any, Callable, Mapping
 
-from ..axis import state_of
 from ..byte_line import open_line
 from ..capture import Capture
 from ..dictionary import dictionary
@@ -12,6 +11,7 @@ from ..drive import Drive
 from ..errors import LostLink, Refused, SteadystepError
 from ..share import Share
 from ..simulator import Knobs
+from ..states import state_of
 
 SAMPLE_S, LOOK_S, RETRY_S = 0.05, 0.2, 1.0
 CAPTURING_LOOK_S = 0.5  # of a capture that is polled a look takes some samples
@@ -190,7 +190,7 @@ class Operation:
                 str(values.get("method")), _number(values, "position_rad"), torque_share=_optional(values, "torque_share"),
                 travel_rad=_optional(values, "travel_rad"), speed_rad_s=_optional(values, "speed_rad_s"),
                 progress=self._progress),
-            "motor": lambda drive: self._take_motor(drive, str(values.get("motor"))),
+            "motor": lambda drive: drive.settings.take_motor(str(values.get("motor"))),
         }
         if action not in actions:
             raise Refused(f"{action}: expected one of {', '.join(actions)}")
@@ -210,10 +210,6 @@ class Operation:
         finally:
             self._doing = ""
             self._acting.release()
-
-    def _take_motor(self, drive: Drive, name: str) -> None:
-        for setting, value in drive.known.motor(name).settings.items():
-            drive.settings[setting] = value
 
     def capture(self, signals: list[str], duration_s: float, rate_Hz: float,
                 move: Mapping[str, Any] | None = None) -> tuple[Capture, str]:

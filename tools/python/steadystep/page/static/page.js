@@ -127,6 +127,9 @@ function prepareCaptures(dictionary) {
         one("#capture-tools").hidden = false;
         if (made.move_refused) say(`captured, but nothing moved: ${made.move_refused}`, true);
         one("#capture-said").textContent = `${made.time_s.length} samples, ${made.rate_Hz.toFixed(0)} Hz`;
+      } catch (error) {
+        if (error.message !== "the capture has been ended") throw error;
+        one("#capture-said").textContent = "ended";
       } finally {
         button.disabled = false;
         end.hidden = true;
@@ -205,7 +208,7 @@ function prepareGuide(dictionary) {
   fill();
   one("#take-motor").onclick = async () => {
     if (await act("motor", { motor: select.value })) {
-      say(`${select.value}: its values act at the next enable`);
+      say(`${select.value}: its values act at the next enable; the current limit is its rated current, and what follows from a motor follows this one`);
       await tried(() => page.settings.refresh().then(check));
     }
   };
