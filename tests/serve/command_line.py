@@ -10,7 +10,7 @@ import threading
 import time
 
 from canopen_bus import Bus, wait_for
-from operated import Simulated, environment, steadystep
+from operated import Simulated, environment, refusal, steadystep
 from served import Checks
 from steadystep.byte_line import open_line
 from steadystep.share import Share
@@ -116,6 +116,22 @@ def a_foreign_client_shares_it(link, drive):
     CHECKS.that(drive.state == "OPERATION ENABLED", "behind it the drive goes on")
 
 
+def what_goes_on_ends_in_order(port, folder):
+    """Terminated, it takes its links and its simulation along; so does a program that does not close its simulation."""
+    for words, links in ((("simulate", "--simulator", SIL, "--link", f"{folder}/simulated"), ("simulated", "simulated-knobs")),
+                         (("--port", port, "share", "--link", f"{folder}/shared"), ("shared",))):
+        process = subprocess.Popen([sys.executable, "-m", "steadystep", *words], env=environment(), stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        CHECKS.that(wait_for(lambda: all(os.path.exists(f"{folder}/{link}") for link in links)), f"{words}: it serves")
+        process.terminate()
+        process.communicate(timeout=20)
+        CHECKS.that(not any(os.path.lexists(f"{folder}/{link}") for link in links), f"{words}: no link stays")
+    done = subprocess.run([sys.executable, "-c", f"import steadystep; print(steadystep.simulator.Simulated(program={SIL!r}).place)"],
+                          env=environment(), capture_output=True, text=True, timeout=60, check=False)
+    found = refusal(lambda: open_line(done.stdout.strip()), steadystep.WrongPort)
+    CHECKS.that("no drive is served there" in found, f"{done.stdout}{done.stderr}: {found}")
+
+
 with tempfile.TemporaryDirectory() as scratch, Simulated(program=SIL) as simulated:
     LINK = f"{scratch}/drive"
     SHARE = Share(open_line(simulated.place), LINK, 0)
@@ -125,5 +141,6 @@ with tempfile.TemporaryDirectory() as scratch, Simulated(program=SIL) as simulat
         a_foreign_client_shares_it(LINK, DRIVE)
     a_motor_is_chosen_beside_another_program(LINK, SHARE)
     SHARE.close()
+    what_goes_on_ends_in_order(simulated.place, scratch)
     CHECKS.that(not os.path.lexists(LINK), "no link stays")
 CHECKS.end()

@@ -453,6 +453,16 @@ def a_terminal_serves_as_well():
         drive.enable()
         drive.move(0.5)
         CHECKS.that(abs(drive.position_rad - 0.5) < 0.01, "on a pseudo-terminal")
+        for place in (str(served.link), f"tcp://{served.serial[-1]}"):  # the latter serves one at a time
+            first = steadystep.Drive(place)
+            again = steadystep.Drive(place)
+            CHECKS.that(abs(again.position_rad - 0.5) < 0.01, f"{place}: opened once more, as by a notebook's cell")
+            found = refusal(lambda first=first: first.state, steadystep.LostLink)
+            CHECKS.that("another Drive of this program has taken its line" in found, f"{place}: {found}")
+            found = refusal(lambda place=place: steadystep.Drive(place, node=2), steadystep.WrongPort)
+            CHECKS.that("has it open, of node 1" in found or "node 2 does not answer" in found, f"{place}: {found}")
+            again.close()
+        drive = steadystep.Drive(str(served.link))
         served.end()
         CHECKS.that("drive" in refusal(lambda: drive.state, steadystep.LostLink), "whose end is noticed")
 

@@ -3,14 +3,16 @@ not read, answers that come late.
 
 usage: share.py SIL    (which it does not need)
 """
+import os
 import socket
+import tempfile
 import threading
 import time
 
-from operated import steadystep
+from operated import refusal, steadystep
 from served import Checks
 from steadystep.byte_line import PairedLine
-from steadystep.program_lines import ProgramLine
+from steadystep.program_lines import ProgramLine, TerminalLine
 from steadystep.sdo_turns import Turns
 from steadystep.share import TURN_S, Share
 
@@ -99,6 +101,24 @@ def a_browser_is_no_program():
     listener.close()
 
 
+def a_link_is_one_server_s():
+    """Until it has gone; what another one has put there is not its own."""
+    with tempfile.TemporaryDirectory() as scratch:
+        link = f"{scratch}/drive"
+        first = TerminalLine(link)
+        found = refusal(lambda: TerminalLine(link), steadystep.WrongPort)
+        CHECKS.that("which another program serves" in found, found)
+        os.unlink(link)
+        second = TerminalLine(link)
+        first.close()
+        CHECKS.that(os.path.exists(link), "the first one's end leaves the second's link")
+        second.close()
+        CHECKS.that(not os.path.lexists(link), "which goes with the second")
+        os.symlink("/dev/pts/no-such", link)
+        TerminalLine(link).close()
+        CHECKS.that(not os.path.lexists(link), "one that was left behind is replaced")
+
+
 class Scripted:
     """A drive that answers nothing but the opening of its channel; the test does."""
 
@@ -153,6 +173,7 @@ a_program_that_gives_up_is_not_served_later()
 a_program_that_goes_leaves_no_turn()
 a_program_that_does_not_read_holds_up_nobody()
 a_browser_is_no_program()
+a_link_is_one_server_s()
 a_late_answer_is_for_nobody("given up", lambda program: program.write(GIVES_UP), 1.0)
 a_late_answer_is_for_nobody("gone", lambda program: program.close(), 1.0)
 a_late_answer_is_for_nobody("silent", lambda program: None, TURN_S + 2)

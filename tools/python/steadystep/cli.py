@@ -3,10 +3,12 @@ import argparse
 import math
 import os
 import pathlib
+import signal
 import subprocess
 import sys
+import threading
 import time
-from typing import Callable, Sequence
+from typing import Callable, NoReturn, Sequence
 
 from .capture_files import check_place
 from .capture_in_drive import Trigger
@@ -18,6 +20,7 @@ from .resonance_curve import NOT_SURE, SUFFIXES
 from .settings_text import line_of
 
 HELD, NOT_DONE, BAD_INPUT = 0, 1, 2
+END_S = 20.0  # for a simulation to end
 
 Arguments = argparse.Namespace
 
@@ -250,11 +253,16 @@ def simulate(arguments: Arguments) -> int:
                *arguments.more]
     print(f"{' '.join(command)}\nin another terminal: {command_name()} --port {arguments.link} move 1.5 --enable", flush=True)
     try:
-        return subprocess.run(command, check=False).returncode
+        process = subprocess.Popen(command)
     except OSError as error:
         raise SteadystepError(f"{command[0]}: {error.strerror}") from None
+    try:
+        return process.wait()
     except KeyboardInterrupt:
         return HELD
+    finally:
+        process.terminate()
+        process.wait(END_S)
 
 
 def share(arguments: Arguments) -> int:
@@ -311,7 +319,14 @@ def run(arguments: Arguments) -> int:
     return HELD
 
 
+def interrupt(*_: object) -> NoReturn:
+    raise KeyboardInterrupt
+
+
 def main(given: Sequence[str] | None = None) -> int:
+    """A termination is an interrupt: what has been begun is put in order."""
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, interrupt)
     try:
         return run(parser().parse_args(given))
     except (DriveFault, LostLink, NotHomed, TimedOut) as error:

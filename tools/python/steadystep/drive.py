@@ -1,4 +1,6 @@
 """A drive that one operates: its connection, its settings, captures; what the axis does is in axis.py."""
+import os
+import weakref
 from types import TracebackType
 from typing import TYPE_CHECKING, Sequence
 
@@ -8,7 +10,7 @@ from .byte_line import ByteLine, open_line
 from .capture import Armed, Capture, Recorder, record
 from .capture_in_drive import CONTROL_PERIOD_S, Trigger
 from .dictionary import dictionary
-from .errors import Refused, WrongVersion
+from .errors import Refused, WrongPort, WrongVersion
 from .objects import Objects
 from .settings import Progress, Settings, unseen
 
@@ -23,12 +25,8 @@ class Drive(Axis):
     drive goes on with what it does."""
 
     def __init__(self, place: str | ByteLine, node: int = 1, *, any_version: bool = False) -> None:
-        line = place if isinstance(place, ByteLine) else open_line(place)
-        try:
-            objects = Objects(line, node)
-        except BaseException:
-            line.close()
-            raise
+        objects = _objects_on(place, node) if isinstance(place, ByteLine) else _objects_at(place, node)
+        line = objects.bus.line
         try:
             self.name = str(objects.read(0x1008))
             self.version = str(objects.read(0x100A))
@@ -97,6 +95,40 @@ class Drive(Axis):
         from . import resonance
 
         return resonance.plan(self, lowest_Hz, highest_Hz, torque_share).run(progress)
+
+
+_open: "weakref.WeakValueDictionary[tuple[str, int], Objects]" = weakref.WeakValueDictionary()  # of this process
+
+
+def _objects_on(line: ByteLine, node: int) -> Objects:
+    try:
+        return Objects(line, node)
+    except BaseException:
+        line.close()
+        raise
+
+
+def _objects_at(place: str, node: int) -> Objects:
+    """A port has one reader: an earlier Drive of this process gives it up, as that of a notebook's cell that is run again. On TCP
+    there may be room for both."""
+    is_tcp = "://" in place
+    where = place if is_tcp else os.path.realpath(place)
+    earlier = {number: one for (at, number), one in list(_open.items()) if at == where and not one.closed}
+    objects = None
+    if is_tcp or not earlier:
+        try:
+            objects = _objects_on(open_line(place), node)
+        except WrongPort:
+            if not earlier:
+                raise
+    if objects is None:
+        if node not in earlier:
+            raise WrongPort(f"{place}: a Drive of this program has it open, of node {', '.join(map(str, earlier))}; close that, or "
+                            "share the line, steadystep.share")
+        earlier[node].close("another Drive of this program has taken its line")
+        objects = _objects_on(open_line(place), node)
+    _open[where, node] = objects
+    return objects
 
 
 def check_version(objects: Objects, version: str, place: str) -> None:

@@ -59,7 +59,7 @@ class Objects:
         self._lock = threading.RLock()
         self._markers, self._begun_s = Markers(), 0.0
         self._is_late = False  # an answer to what has been given up may come yet
-        self._is_closed = False
+        self.closed = ""  # why
         self.is_capturing = False
         try:
             self.read(0x1000)
@@ -69,9 +69,10 @@ class Objects:
             raise WrongPort(f"{line.place}: node {node} does not answer; heard: "
                             f"{', '.join(map(str, heard)) or 'none'}") from None
 
-    def close(self) -> None:
-        self._is_closed = True
-        self.network.disconnect()
+    def close(self, why: str = "the drive has been closed; open it again") -> None:
+        if not self.closed:
+            self.closed = why
+            self.network.disconnect()
 
     @property
     def others(self) -> list[int]:
@@ -149,7 +150,7 @@ class Objects:
             except Refused:  # by this package
                 raise
             except BaseException:
-                if self._is_closed:  # by another thread, in the midst of it
+                if self.closed:  # by another thread, in the midst of it
                     raise self._loss("") from None
                 self._give_up()
                 raise
@@ -160,7 +161,7 @@ class Objects:
 
     @property
     def _is_over(self) -> bool:
-        return self._is_closed or self.bus.lost is not None or self.bus.restarted
+        return bool(self.closed) or self.bus.lost is not None or self.bus.restarted
 
     def _pass_what_is_late(self) -> None:
         """With the answer to a marker it has come. While others are heard, the marker waits for its turn."""
@@ -198,8 +199,8 @@ class Objects:
         return Refused(str(error))
 
     def _loss(self, said: str) -> LostLink:
-        if self._is_closed:
-            return LostLink(f"{self.bus.channel_info}: the drive has been closed; open it again")
+        if self.closed:
+            return LostLink(f"{self.bus.channel_info}: {self.closed}")
         if self.bus.lost:
             return self.bus.lost
         if self.bus.restarted:

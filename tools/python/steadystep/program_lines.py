@@ -1,5 +1,6 @@
 """Where programs come in that share a drive. None of them can make the others wait: what is for one that does not
 read is lost, as on a wire."""
+import contextlib
 import os
 import pathlib
 import select
@@ -59,17 +60,27 @@ class TerminalLine(ByteLine):
         self._inner, outer = os.openpty()
         tty.setraw(outer, termios.TCSANOW)
         os.set_blocking(self._inner, False)
-        path = pathlib.Path(link)
+        self._path, self._name = pathlib.Path(link), os.ttyname(outer)
         try:
-            if path.is_symlink():
-                path.unlink()
-            path.symlink_to(os.ttyname(outer))
+            self._link()
         except OSError as error:
+            os.close(self._inner)
             raise WrongPort(f"{link}: {error.strerror}") from None
+        except WrongPort:
+            os.close(self._inner)
+            raise
         finally:
             os.close(outer)
-        self._path = path
         self.closed = False
+
+    def _link(self) -> None:
+        """In the place of one whose server has gone, and its terminal with it."""
+        if self._path.is_symlink():
+            if self._path.exists() and os.readlink(self._path) != self._name:
+                raise WrongPort(f"{self.place}: it is a link to {os.readlink(self._path)}, which another program serves; choose "
+                                "another one, or remove it")
+            self._path.unlink()
+        self._path.symlink_to(self._name)
 
     def read(self, timeout_s: float) -> bytes:
         """Raises LostLink while nobody is there."""
@@ -95,5 +106,7 @@ class TerminalLine(ByteLine):
     def close(self) -> None:
         if not self.closed:
             self.closed = True
-            self._path.unlink(missing_ok=True)
+            with contextlib.suppress(OSError):
+                if os.readlink(self._path) == self._name:
+                    self._path.unlink()
             os.close(self._inner)

@@ -5,6 +5,7 @@ import shutil
 import signal
 import subprocess
 import threading
+import weakref
 from types import TracebackType
 
 from .byte_line import TcpLine
@@ -82,6 +83,7 @@ class Simulated:
                                             start_new_session=True)  # an interrupt is for who has started it
         except OSError as error:
             raise SteadystepError(f"{command[0]}: {error.strerror}") from None
+        weakref.finalize(self, _end, self.process)  # at the end of a program that does not close it, too
         assert self.process.stdout
         self.places = [self.process.stdout.readline().split()[1:] for _ in range(2)]
         if not all(self.places):
@@ -99,6 +101,11 @@ class Simulated:
 
     def close(self) -> None:
         self.knobs.close()
-        if self.process.poll() is None:
-            self.process.send_signal(signal.SIGTERM)
-        self.process.communicate(timeout=20)
+        _end(self.process)
+
+
+def _end(process: "subprocess.Popen[str]") -> None:
+    if process.poll() is None:
+        process.send_signal(signal.SIGTERM)
+    if process.stdout and not process.stdout.closed:
+        process.communicate(timeout=20)

@@ -50,7 +50,7 @@ class TextBus(can.BusABC):
     """Opens the drive's channel; `lost` says why there is none any more."""
 
     def __init__(self, line: ByteLine, **kwargs: Any) -> None:
-        self._line = line
+        self.line = line
         self._frames: collections.deque[can.Message] = collections.deque()
         self._pieces = Pieces()
         self._lock = threading.Lock()
@@ -70,10 +70,10 @@ class TextBus(can.BusABC):
             raise
 
     def _ask(self, command: bytes, answers: tuple[bytes, ...]) -> bool:
-        self._line.write(command)
+        self.line.write(command)
         end = time.monotonic() + LOST_S
         while time.monotonic() < end:
-            for text, ending in self._pieces.of(self._line.read(max(0.0, end - time.monotonic()))):
+            for text, ending in self._pieces.of(self.line.read(max(0.0, end - time.monotonic()))):
                 if ending == b"\r" and text.startswith(answers):
                     return True
         return False
@@ -82,9 +82,9 @@ class TextBus(can.BusABC):
         """What an earlier client left behind is answered before V is."""
         try:
             if not self._ask(b"\rV\r", (b"V1010",)):
-                raise WrongPort(f"{self._line.place}: no drive answers; is it a steadystep drive, powered, at 921600 "
+                raise WrongPort(f"{self.line.place}: no drive answers; is it a steadystep drive, powered, at 921600 "
                                 "baud, and not in use by another program?")
-            self._line.write(b"S6\rO\r")
+            self.line.write(b"S6\rO\r")
         except LostLink as error:
             raise WrongPort(str(error)) from None
 
@@ -98,7 +98,7 @@ class TextBus(can.BusABC):
                 time.sleep(left)
                 return None, False
             try:
-                self._take(self._line.read(left))
+                self._take(self.line.read(left))
             except LostLink as error:
                 self._end(error)
         return self._frames.popleft(), False
@@ -139,7 +139,7 @@ class TextBus(can.BusABC):
     def _put(self, data: bytes) -> None:
         try:
             with self._lock:
-                self._line.write(data)
+                self.line.write(data)
         except LostLink as error:
             self._end(error)
 
@@ -152,7 +152,7 @@ class TextBus(can.BusABC):
         if not self._is_shutdown:
             super().shutdown()
             try:
-                self._line.write(b"C\r")
+                self.line.write(b"C\r")
             except LostLink:
                 pass
-            self._line.close()
+            self.line.close()

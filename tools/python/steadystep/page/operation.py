@@ -95,10 +95,10 @@ class Operation:
                 if looks or not is_capturing:
                     message = self._sample(not is_capturing, looks)
                     looked_s = begin if "status" in message else looked_s
-                    self._tell(message)
+                    self._report(message)
             self._ended.wait(max(0.005, SAMPLE_S - (time.monotonic() - begin)))
 
-    def _tell(self, message: dict[str, Any]) -> None:
+    def _report(self, message: dict[str, Any]) -> None:
         for listener in list(self.listeners):
             listener(message)
 
@@ -229,7 +229,7 @@ class Operation:
                 raise Stopped("the capture has been ended")
             if time.monotonic() - shown_s >= LOOK_S or share >= 1:
                 shown_s = time.monotonic()
-                self._tell({"capturing": share})
+                self._report({"capturing": share})
 
         try:
             self._ends_capture.clear()
