@@ -318,7 +318,7 @@ def the_recorder_is_one_program_s(drive):
     found = refusal(lambda: drive.capture(["period"], 0.01), steadystep.Refused)
     CHECKS.that("records for another program" in found, f"it waits for that one's trigger: {found}")
     CHECKS.that(drive.objects.read(control, arm) == 2 and drive.objects.read(signals, 1) == bus_V, "and goes on with that")
-    CHECKS.that(len(drive.capture(["period"], 0.01, take_over=True)) == 10, "unless it is taken over")
+    CHECKS.that(len(drive.capture(["period"], 0.01, preempt=True)) == 10, "unless it is preempted")
     another_arms(bus_V, 0)
     time.sleep(0.1)
     made = drive.capture(["period"], 0.01)

@@ -193,7 +193,9 @@ def what_is_said_and_focused_is_seen(tab):
     view(tab, "settings")
     tab.locator("#export").focus()
     tab.keyboard.press("Tab")
+    expect(tab.locator("#take-file")).to_be_focused()
     with tab.expect_file_chooser():
+        tab.wait_for_timeout(200)  # until it is waited for
         tab.keyboard.press("Enter")
 
 

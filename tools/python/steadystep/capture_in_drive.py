@@ -44,16 +44,16 @@ def is_there(objects: Objects) -> bool:
 
 def record_in_drive(objects: Objects, signals: Sequence[Signal], duration_s: float, rate_Hz: float,
                     period_s: float, progress: Progress, trigger: Trigger | None = None,
-                    armed: Armed | None = None, take_over: bool = False) -> Capture:
+                    armed: Armed | None = None, preempt: bool = False) -> Capture:
     """At rate_Hz, rounded to a whole part of the control rate; the time counts from the trigger. `armed` is called
-    when the drive waits for it. Raises TooMuch, and Refused while it records for another program; `take_over`: all the
+    when the drive waits for it. Raises TooMuch, and Refused while it records for another program; `preempt`: all the
     same."""
     divider = min(max(1, round(1 / (rate_Hz * period_s))), 0xFFFF)
     samples = max(1, round(duration_s / (divider * period_s)))
     if trigger and not 0 <= trigger.before_s <= duration_s:
         raise Refused(f"before_s: expected a number in 0…{duration_s:g} s, got {trigger.before_s:g}")
     before = min(round(trigger.before_s / (divider * period_s)), samples - 1) if trigger else 0
-    if not take_over:
+    if not preempt:
         _check_that_it_is_free(objects)
     _arm(objects, signals, divider, samples, before, trigger)
     asked = _asked_for(objects)
@@ -80,7 +80,7 @@ def _check_that_it_is_free(objects: Objects) -> None:
     while (state := objects.read(CONTROL, ARM)) != OFF:
         if state != DONE:
             raise Refused("the drive records for another program, until that has its capture; from one that has ended "
-                          "take_over takes it")
+                          "preempt takes it")
         if time.monotonic() > end:
             return
         time.sleep(LOOK_S)

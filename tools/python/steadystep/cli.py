@@ -191,7 +191,7 @@ def capture(drive: Drive, arguments: Arguments) -> None:
     trigger = Trigger(arguments.trigger, arguments.level, not arguments.falling, arguments.before) \
         if arguments.trigger else None
     made = drive.capture(arguments.signals, arguments.duration, arguments.rate, trigger=trigger,
-                         take_over=arguments.take_over, progress=Bar())
+                         preempt=arguments.preempt, progress=Bar())
     made.save(arguments.out, Bar())
     print(f"{arguments.out}: {len(made)} samples, {made.rate_Hz:.4g} Hz")
 

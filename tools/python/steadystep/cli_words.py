@@ -98,7 +98,7 @@ def _add_signals(commands: "Commands") -> None:
     capture.add_argument("--level", type=float, default=0.5)
     capture.add_argument("--falling", action="store_true", help="or falls to it")
     capture.add_argument("--before", type=float, default=0.0, metavar="S", help="what lies before the trigger")
-    capture.add_argument("--take-over", action="store_true", help="even if the drive records for another program")
+    capture.add_argument("--preempt", action="store_true", help="even if the drive records for another program")
     capture.add_argument("--out", required=True, metavar="FILE")
     resonance = _add(commands, "resonance", "of a belt or a coupling, by small sines, and the settings that it asks for")
     resonance.add_argument("--rotor-inertia", type=float, metavar="KGM2", help="the rotor's own, of its data sheet")

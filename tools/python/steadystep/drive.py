@@ -64,17 +64,17 @@ class Drive(Axis):
 
     def capture(self, signals: Sequence[str], duration_s: float, rate_Hz: float = 1000.0, *,
                 trigger: Trigger | None = None, recorder: Recorder | None = None, armed: Armed | None = None,
-                take_over: bool = False, progress: Progress = unseen) -> Capture:
+                preempt: bool = False, progress: Progress = unseen) -> Capture:
         """These signals over a time. `recorder`: how; else the drive records them by itself, at rate_Hz, or, if it cannot or
         has not the memory, they are asked for as quickly as the link allows, up to rate_Hz. `armed` is called when it has
-        begun, or waits for its trigger. `take_over`: even if the drive records for another program, or for one that has ended."""
+        begun, or waits for its trigger. `preempt`: even if the drive records for another program, or for one that has ended."""
         rows = [self.known.signal(name) for name in signals]
         if not rows or not 0 < duration_s <= 86400 or not 0 < rate_Hz <= 1e5:
             raise Refused("capture: expected signals, a duration of up to 86400 s and a rate of up to 100000 Hz")
         if recorder is None and capture_in_drive.is_there(self.objects):
             try:
                 return capture_in_drive.record_in_drive(self.objects, rows, duration_s, rate_Hz, CONTROL_PERIOD_S,
-                                                        progress, trigger, armed, take_over)
+                                                        progress, trigger, armed, preempt)
             except capture_in_drive.TooMuch:
                 if trigger:
                     raise

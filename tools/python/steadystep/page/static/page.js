@@ -208,7 +208,8 @@ function prepareGuide(dictionary) {
   fill();
   one("#take-motor").onclick = async () => {
     if (await act("motor", { motor: select.value })) {
-      say(`${select.value}: its values act at the next enable; the current limit is its rated current, and what follows from a motor follows this one`);
+      say(`${select.value}: its values act at the next enable; the current limit is its rated current, and what follows ` +
+        "from a motor follows this one");
       await tried(() => page.settings.refresh().then(check));
     }
   };
