@@ -76,8 +76,8 @@ class Objects:
 
     @property
     def others(self) -> list[int]:
-        """Nodes on the line that have been heard beside this one."""
-        return sorted({*self.bus.heard_s} - {0, self.number})
+        """Nodes on the line that have been heard beside this one, by what only a node sends."""
+        return sorted({*self.network.scanner.nodes} - {0, self.number})
 
     @property
     def entries(self) -> Any:
