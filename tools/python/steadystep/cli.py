@@ -270,8 +270,8 @@ def share(arguments: Arguments) -> int:
     from .share import Share
 
     shared = Share(open_line(arguments.port or default_port()), arguments.link, arguments.tcp)
-    print(f"shared: {arguments.link} tcp://127.0.0.1:{shared.tcp_port}", flush=True)
     try:
+        print(f"shared: {arguments.link} tcp://127.0.0.1:{shared.tcp_port}", flush=True)
         while not shared.lost:
             time.sleep(0.2)
         raise shared.lost

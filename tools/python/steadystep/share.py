@@ -61,7 +61,7 @@ class Share:
                 self._serve(TerminalLine(link))
             if tcp_port is not None:
                 self._listen(tcp_port)
-        except WrongPort:
+        except BaseException:  # an interrupt, too
             self.close()
             raise
 
