@@ -66,13 +66,13 @@ static void go_on(struct application *application)
     if (homing->phase == HOMING_CROSSES_SWITCH) {
         axis_homing_enter(application, HOMING_SETTLES);
         axis_homing_go(application, DRIVE_COMMAND_VELOCITY, 0.0, 0.0f,
-                       objects->quick_stop_deceleration);
+                       objects->homing_acceleration);
     } else if (homing->phase == HOMING_SEEKS_SWITCH && homing->comes_on) {
         go(application, HOMING_LEAVES_SWITCH, -homing->crosses, objects->homing_zero_speed,
-           objects->quick_stop_deceleration);
+           objects->homing_acceleration);
     } else {
         go(application, HOMING_CROSSES_SWITCH, homing->crosses, objects->homing_zero_speed,
-           objects->quick_stop_deceleration);
+           objects->homing_acceleration);
     }
 }
 
