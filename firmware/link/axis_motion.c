@@ -62,6 +62,7 @@ float axis_motion_speed_limit(const struct application *application)
 
 /* Of what the supply drives: its voltage and the motor are not quite as stated. */
 static const float supply_share = 0.9f;
+static const float torque_share = 0.75f; /* of a torque, which comes in one step */
 
 /* By the time that it accelerates no more it has come nearer to its speed by half of a jerk phase.
  */
@@ -94,7 +95,7 @@ float axis_motion_acceleration_limit(const struct application *application, floa
 
 int32_t axis_motion_braking_thousandths(const struct application *application, float speed_rad_s)
 {
-    return (int32_t)(1e3f * supply_share * supplied(application, speed_rad_s).braking_A /
+    return (int32_t)(1e3f * torque_share * supplied(application, speed_rad_s).braking_A /
                      (float)application->drive.settings.motor.rated_current_A);
 }
 

@@ -1481,6 +1481,8 @@ MUTANTS = [
            "motion->not_homed = motion->not_homed || motion->homing.phase != HOMING_ENDED;", ""),
     Mutant(LINK + "axis_torque.c", "axis_torque", "a_limit_switch_that_is_passed_bars_the_way",
            "axis_motion_is_barred(application, torque) || ", ""),
+    Mutant(LINK + "axis_torque.c", "axis_torque", "a_torque_that_brakes_a_fast_rotor_is_what_the_supply_drives",
+           "brakes ? braking - braking % BRAKING_STEP : limit", "limit + 0 * (int32_t)brakes"),
     Mutant(APPLICATION + "machine_io.c", "machine_io", "what_switches_off_at_rest_is_said_on_the_bus",
            "    if (on && application->chosen.inputs_used != 0) {", "    if (moving && application->chosen.inputs_used != 0) {"),
     Mutant(APPLICATION + "machine_io.c", "machine_io", "what_switches_off_at_rest_is_said_on_the_bus",

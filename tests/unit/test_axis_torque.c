@@ -1,4 +1,5 @@
 /* Cyclic synchronous torque of a drive with an encoder, of which the test turns the rotor. */
+#include "firmware/drive/board_limits.h"
 #include "firmware/link/axis_torque.h"
 #include "firmware/drive/interrupt_view.h"
 #include "firmware/link/axis_motion.h"
@@ -112,6 +113,29 @@ static void test_a_target_beyond_the_largest_torque_is_cut_and_said(void)
     put(0x6072, 0, 2, 1000);
     TEST_ASSERT_EQUAL(LITTLE, demand());
     TEST_ASSERT_EQUAL_HEX32(0, status(LIMITED));
+}
+
+/* The supply drives less the faster it turns; what accelerates it limits by itself. */
+static void test_a_torque_that_brakes_a_fast_rotor_is_what_the_supply_drives(void)
+{
+    const struct drive_settings *settings = &bench.application.drive.settings;
+    const double rated_A = settings->motor.rated_current_A;
+
+    put(0x6071, 0, 2, -1000);
+    enable();
+    for (int speed = 20; speed <= 100; speed += 20) {
+        bench_link.axis.signals.omega_est_rad_s = speed;
+        bench_link.axis.signals_in = bench.application.drive.supervision.period;
+        axis_torque_background(&bench.application);
+        const double braking_A = (double)board_limits_current(
+                                     settings, bench.application.drive.board->facts, (float)speed)
+                                     .braking_A;
+        const double expected = fmin(1000.0, 750.0 * braking_A / rated_A);
+
+        TEST_ASSERT_DOUBLE_WITHIN(16.0, -expected, bench_link.axis.motion.target);
+        TEST_ASSERT_EQUAL(expected < 1000.0, bench_link.axis.motion.limited);
+        bench_periods(20);
+    }
 }
 
 static void test_the_speed_is_held_below_6080h(void)
@@ -259,6 +283,7 @@ int main(void)
     RUN_TEST(test_the_mode_is_there_with_an_encoder_and_only_so);
     RUN_TEST(test_the_target_is_the_demand_in_thousandths_of_the_rated_torque);
     RUN_TEST(test_a_target_beyond_the_largest_torque_is_cut_and_said);
+    RUN_TEST(test_a_torque_that_brakes_a_fast_rotor_is_what_the_supply_drives);
     RUN_TEST(test_the_speed_is_held_below_6080h);
     RUN_TEST(test_a_halt_holds_and_lets_it_go_on);
     RUN_TEST(test_a_quick_stop_controls_the_position);
