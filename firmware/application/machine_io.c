@@ -213,7 +213,8 @@ static void stop(struct application *application, enum machine_stop stop)
 
     if (codes[stop] == LIMIT_CODE && link_operates(application) &&
         axis_homing_seeks_switch(&application->link->axis.motion.homing)) {
-        return; /* which looks, too */
+        application->io.stop = MACHINE_STOP_NONE; /* looks again, should the homing end */
+        return;
     }
     if (has_link(application)) {
         link_begin_error(application,

@@ -122,10 +122,13 @@ void axis_homing_start(struct application *application)
         return;
     }
     motion->homed = false;
+    motion->limited = false;
+    motion->barred = 0;
     if (method >= HERE_BEFORE) {
         set_position(application, 0.0);
     } else if (method >= AXIS_HOMING_SWITCH_FIRST && method <= AXIS_HOMING_SWITCH_LAST) {
-        motion->not_homed = !axis_homing_switch_start(application, method);
+        motion->not_homed = false;
+        motion->not_homed = !axis_homing_switch_start(application, method) || motion->not_homed;
     } else {
         search(application, method);
     }

@@ -49,6 +49,9 @@ struct axis_homing {
     bool on_stop;
     bool comes_on; /* the switch, where that is crossed */
     bool turned;   /* at a limit switch */
+    /* Under way to the edge: what has been left beyond its other end while it still went on the old
+       way is come back to first. */
+    bool before_edge;
     uint8_t input; /* the switch, HAL_INPUT_... */
     float crosses; /* the way on which it is crossed, 1 or -1 */
 };

@@ -47,6 +47,7 @@ static void go(struct application *application, enum homing_phase phase, float w
 
     axis_homing_enter(application, phase);
     homing->way = way;
+    homing->before_edge = false;
     homing->began_rad = cia402_signals(application)->theta_ref_rad;
     axis_homing_go(application, DRIVE_COMMAND_VELOCITY, 0.0,
                    way * axis_motion_speed(application, speed), acceleration);
@@ -86,10 +87,15 @@ void axis_homing_switch_look(struct application *application)
     const bool awaits_on = seeks || (homing->phase == HOMING_CROSSES_SWITCH && homing->comes_on);
     const double travel_rad = cia402_unit_rad(objects) * (double)objects->homing_travel;
 
+    const bool on = (active & homing->input) != 0u;
+
     if (((machine_io_seen(application) & homing->input) != 0u) != awaits_on) {
         homing->edge_rad = now->theta_est_rad;
     }
-    if (((active & homing->input) != 0u) == awaits_on) {
+    if (on != awaits_on && now->omega_ref_rad_s * (double)homing->way > 0.0) {
+        homing->before_edge = true;
+    }
+    if (on == awaits_on && (seeks || homing->before_edge)) {
         go_on(application);
     } else if ((active & limit_of(homing->way)) != 0u && seeks && !homing->turned) {
         homing->turned = true;

@@ -227,6 +227,7 @@ bool axis_motion_post(struct application *application, enum drive_command_kind k
     const float jerk_s = jerk_share * axis_size(speed_rad_s) / acceleration;
     const float jerk = jerk_to_end(motion_of(application),
                                    acceleration / (jerk_s > jerk_min_s ? jerk_s : jerk_min_s));
+    motion_of(application)->acceleration = acceleration;
     struct drive_command command = {
         .kind = kind,
         .position_rad = position_rad,
@@ -257,6 +258,25 @@ void axis_motion_brake(struct application *application, bool quickly)
     if (moves(&application->drive) &&
         !axis_motion_post(application, DRIVE_COMMAND_VELOCITY, 0.0, 0.0f, deceleration)) {
         (void)cia402_command(application, &stop);
+    }
+    motion_of(application)->brakes = deceleration;
+}
+
+/* The supply drives the more, the slower it has become: by a quarter, the stop gets steeper. */
+void axis_motion_brake_on(struct application *application)
+{
+    struct axis_motion *motion = motion_of(application);
+    const uint32_t brakes = motion->brakes;
+    const float present = (float)cia402_signals(application)->omega_ref_rad_s;
+    const float deceleration = axis_lesser(units(application) * (float)brakes,
+                                           axis_motion_acceleration_limit(application, present));
+
+    if (axis_motion_rests(application)) {
+        motion->brakes = 0;
+    } else if (brakes > 0u && deceleration > 1.25f * motion->acceleration &&
+               !command_queue_holds_any(&application->drive.commands)) {
+        (void)axis_motion_post(application, DRIVE_COMMAND_VELOCITY, 0.0, 0.0f, brakes);
+        motion->brakes = brakes;
     }
 }
 
@@ -496,7 +516,7 @@ static void go_at_speed(struct application *application)
                                         (float)objects->target_velocity,
                                     -most, most);
     }
-    if (speed == 0.0f) {
+    if (objects->target_velocity == 0) {
         motion->barred = 0;
     }
     if (axis_motion_is_barred(application, speed)) {
@@ -524,7 +544,7 @@ static void halt(struct application *application, bool quickly)
 {
     struct axis_motion *motion = motion_of(application);
 
-    motion->pending = motion->pending || !axis_motion_rests(application);
+    motion->pending = motion->pending || (motion->barred == 0 && !axis_motion_rests(application));
     motion->halted = true;
     axis_motion_brake(application, quickly);
 }

@@ -38,6 +38,9 @@ void axis_motion_look(struct application *application);
 /* To rest, with the quick stop's deceleration or the profile's. */
 void axis_motion_brake(struct application *application, bool quickly);
 
+/* Background, once in a millisecond, in whatever state: a stop goes on. */
+void axis_motion_brake_on(struct application *application);
+
 /* With the profile's speed and acceleration. */
 void axis_motion_go(struct application *application, double position_rad);
 

@@ -141,7 +141,7 @@ static void follow(struct application *application, double position_rad)
     if (!moves && (stream->stays || !is_open(application))) {
         return;
     }
-    stream->stays = !moves;
+    stream->stays = false;
     if (!is_open(application) && axis_motion_rests(application)) {
         begin(application);
         motion->limited = motion->limited || stream->refused;
@@ -153,6 +153,9 @@ static void follow(struct application *application, double position_rad)
         motion->limited =
             !put(application, within_limits(application, position_rad)) || motion->limited;
         stream->asked_rad = position_rad;
+        stream->stays = !moves;
+    } else {
+        stream->due += application->drive.planner.set_points.interval_periods;
     }
 }
 
@@ -247,8 +250,12 @@ static void make_up(struct application *application)
     const double step_rad = stream->last_rad - stream->before_rad;
 
     if (step_rad != 0.0 && stream->owed < OWED_MAX && late(application) > OVERDUE &&
-        waiting(application) < MOST_IN_HAND && put(application, stream->last_rad + step_rad)) {
-        stream->owed++;
+        waiting(application) < MOST_IN_HAND) {
+        const bool follows = stream->asked_rad == stream->last_rad;
+        if (put(application, within_limits(application, stream->last_rad + step_rad))) {
+            stream->owed++;
+            stream->asked_rad = follows ? stream->last_rad : stream->asked_rad;
+        }
     }
 }
 
@@ -258,7 +265,9 @@ static void make_up(struct application *application)
 static void stay_within_switch(struct application *application)
 {
     struct axis_motion *motion = &application->link->axis.motion;
-    const double end_rad = drive_planned_end_rad(&application->drive);
+    const double end_rad = axis_motion_rests(application)
+                               ? drive_planned_end_rad(&application->drive)
+                               : cia402_signals(application)->theta_ref_rad;
 
     if (axis_motion_is_barred(application, (float)(motion->target_rad - end_rad))) {
         motion->target_rad = end_rad;
@@ -294,7 +303,8 @@ static void end(struct application *application)
     const struct axis_motion *motion = &application->link->axis.motion;
 
     if (stream->last_rad != motion->target_rad && !motion->halted && !stream->refused &&
-        late(application) > (float)OWED_MAX && axis_motion_rests(application)) {
+        motion->barred == 0 && late(application) > (float)OWED_MAX &&
+        axis_motion_rests(application)) {
         stream->last_rad = motion->target_rad;
         stream->before_rad = motion->target_rad;
         axis_motion_go(application, motion->target_rad);

@@ -22,7 +22,8 @@ static int32_t limited_target(struct application *application)
     const int32_t limit = cia402_thousandths(application, 0x6072);
     const int32_t braking = axis_motion_braking_thousandths(application, speed);
     const bool brakes = (float)target * speed < 0.0f && braking < limit;
-    const int32_t most = brakes ? braking - braking % BRAKING_STEP : limit;
+    const int32_t left = braking < BRAKING_STEP ? BRAKING_STEP : braking - braking % BRAKING_STEP;
+    const int32_t most = brakes ? left : limit;
 
     application->link->axis.motion.limited = target > most || target < -most;
     return target > most ? most : target < -most ? -most : target;

@@ -46,6 +46,7 @@ bool cia402_command(struct application *application, struct drive_command *comma
     const uint32_t period = interrupt_view_period(&application->drive);
     char refusal[DRIVE_ERROR_TEXT];
 
+    application->link->axis.motion.brakes = 0;
     command->at_period = period;
     return application_command(application, command, period, refusal);
 }
@@ -264,6 +265,7 @@ void cia402_control(struct application *application, uint16_t word)
 
 void cia402_look(struct application *application)
 {
+    axis_motion_brake_on(application);
     if (application->link->axis.state == CIA402_OPERATION_ENABLED) {
         axis_motion_look(application);
     }
@@ -282,6 +284,14 @@ void cia402_lose(struct application *application)
     } else if (axis->state == CIA402_SWITCHED_ON || axis->asked) {
         switch_off(application, CIA402_SWITCH_ON_DISABLED);
         axis->controlword = 0;
+    }
+}
+
+void cia402_switch_off(struct application *application)
+{
+    cia402_lose(application);
+    if (application->link->axis.state == CIA402_FAULT) {
+        switch_off(application, CIA402_SWITCH_ON_DISABLED);
     }
 }
 

@@ -52,7 +52,9 @@ struct axis_motion {
     float jerk;                         /* of what is in motion */
     float way;                          /* by its sign to the limit at which a torque has ended */
     uint32_t max_speed_rpm;             /* of the torque commanded last */
-    int16_t target;                     /* that, in thousandths */
+    uint32_t brakes;    /* deceleration in units of the stop that is under way; 0: of none */
+    float acceleration; /* of the command posted last, rad/s^2 */
+    int16_t target;     /* that, in thousandths */
     uint16_t in_window_ms, off_ms;
     int8_t barred;     /* the way on which a limit switch has ended the motion: 1 up, -1 down */
     uint8_t steady_ms; /* for so long the reference's speed has been constant */
@@ -95,6 +97,9 @@ void cia402_look(struct application *application);
 
 /* Whoever commands the drive is heard no more: stops, then switches off. */
 void cia402_lose(struct application *application);
+
+/* A node that is reset: stops, then switches off; a fault ends. */
+void cia402_switch_off(struct application *application);
 
 /* The objects of CiA 402 that code answers for. */
 void cia402_ask(struct application *application, const struct object *object, uint8_t *value);

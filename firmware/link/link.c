@@ -243,6 +243,19 @@ void link_reset_communication(struct application *application)
     send_state(application, 0); /* boot-up */
 }
 
+/* Once the drive is off: settings are recalled then alone. */
+static void reset_node(struct application *application)
+{
+    struct link *link = application->link;
+
+    if (link->resets && interrupt_view_state(&application->drive) == DRIVE_SWITCH_ON_DISABLED) {
+        link->resets = false;
+        application_recall_settings(application);
+        put_presets(link);
+        link_reset_communication(application);
+    }
+}
+
 static void obey_nmt(struct application *application, enum nmt_command command)
 {
     struct link *link = application->link;
@@ -264,10 +277,8 @@ static void obey_nmt(struct application *application, enum nmt_command command)
         link->nmt = LINK_PRE_OPERATIONAL;
         break;
     case NMT_RESET_NODE:
-        application_recall_settings(application);
-        put_presets(link);
-        link_reset_communication(application);
-        cia402_lose(application); /* off, as soon as it rests */
+        cia402_switch_off(application); /* as soon as it rests */
+        link->resets = true;
         break;
     case NMT_RESET_COMMUNICATION:
         link_reset_communication(application);
@@ -318,13 +329,15 @@ static bool is_text(const char *line, size_t length, const char *text)
 static void open_channel(struct application *application, bool listens_only)
 {
     struct link *link = application->link;
+    const bool was_open = link_has_line(link);
 
-    if (!link_has_line(link)) {
+    if (!was_open) {
         can_bus_leave(application);
         link->open = true;
     }
-    link->listens_only = listens_only;
+    link->listens_only = listens_only && !was_open; /* what the other one has begun is braked */
     link_reset_communication(application);
+    link->listens_only = listens_only;
 }
 
 /* The console goes on with what happens from now on. */
@@ -466,6 +479,7 @@ void link_beside_console(struct application *application)
         can_bus_background(application);
     } else if (link->axis.lost) {
         cia402_background(application);
+        reset_node(application);
     } else if (link->can != NULL) {
         can_bus_join(application);
     }
@@ -480,6 +494,7 @@ void link_background(struct application *application)
         end_modbus_request(application);
     }
     cia402_background(application);
+    reset_node(application);
     sdo_block_send(application);
     if (link_since(link, link->looked_us) < MILLISECOND_us) {
         return;

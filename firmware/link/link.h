@@ -34,6 +34,7 @@ struct link {
     bool listens_only;         /* the client does: it sends nothing */
     bool modbus;               /* the line carries Modbus RTU (modbus.h), not frames */
     bool byte_came;            /* of Modbus, in this pass */
+    bool resets;               /* the node, when the drive is off */
     uint8_t node;              /* its number: the setting's when communication began */
     uint8_t nmt;               /* enum link_nmt */
     uint8_t errors;            /* in the field 1003h */

@@ -23,7 +23,7 @@ static const double limit_minus_rad = -0.6, switch_from_rad = 0.3, switch_to_rad
 static double origin_rad;
 
 static double rotor_rad, began_rad, furthest_rad, least_rad;
-static bool switch_is_mute, switch_sticks, emergency_came;
+static bool switch_is_mute, switch_sticks, limits_stick, emergency_came;
 
 static void put(unsigned index, unsigned sub, unsigned bytes, uint32_t value)
 {
@@ -49,12 +49,13 @@ static void put_rotor(double angle_rad)
     rotor_rad = angle_rad;
     furthest_rad = fmax(furthest_rad, rotor_rad);
     least_rad = fmin(least_rad, rotor_rad);
-    bench.inputs = (rotor_rad < limit_minus_rad ? HAL_INPUT_LIMIT_MINUS : 0u) |
-                   (rotor_rad > limit_plus_rad ? HAL_INPUT_LIMIT_PLUS : 0u) |
-                   (switch_sticks || (!switch_is_mute && rotor_rad > switch_from_rad &&
-                                      rotor_rad < switch_to_rad)
-                        ? HAL_INPUT_HOME
-                        : 0u);
+    bench.inputs =
+        (limits_stick ? LIMITS : 0u) | (rotor_rad < limit_minus_rad ? HAL_INPUT_LIMIT_MINUS : 0u) |
+        (rotor_rad > limit_plus_rad ? HAL_INPUT_LIMIT_PLUS : 0u) |
+        (switch_sticks ||
+                 (!switch_is_mute && rotor_rad > switch_from_rad && rotor_rad < switch_to_rad)
+             ? HAL_INPUT_HOME
+             : 0u);
 }
 
 /* At an angle, disabled, with these inputs wired. */
@@ -83,6 +84,7 @@ void setUp(void)
 {
     switch_is_mute = false;
     switch_sticks = false;
+    limits_stick = false;
     emergency_came = false;
 }
 
@@ -245,6 +247,35 @@ static void test_a_limit_before_the_edge_ends_it(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.1, limit_plus_rad, rotor_rad);
 }
 
+/* A narrow cam, and a search that comes to rest behind it. */
+static void test_a_switch_that_is_passed_is_come_back_to(void)
+{
+    for (int method = 19; method <= AXIS_HOMING_SWITCH_LAST; method++) {
+        const struct meaning meaning = meaning_of(method, false);
+
+        start(0.0, LIMITS | HAL_INPUT_HOME);
+        put(0x6099, 1, 4, TURN / 2);
+        put(0x609a, 0, 4, 3 * TURN);
+        begin(method);
+        turn_until_homed();
+        TEST_ASSERT_TRUE(furthest_rad > switch_to_rad + 0.05 || least_rad < limit_minus_rad);
+        TEST_ASSERT_EQUAL_HEX32(REACHED | ATTAINED, status());
+        TEST_ASSERT_DOUBLE_WITHIN(0.01, 1000.0 * unit_rad - meaning.edge_rad + origin_rad,
+                                  zero_rad());
+    }
+}
+
+/* A wire that is broken, or the wrong level. */
+static void test_both_limits_at_once_are_an_error(void)
+{
+    start(0.0, LIMITS | HAL_INPUT_HOME);
+    limits_stick = true;
+    put_rotor(0.0);
+    bench_periods(40);
+    begin(24);
+    TEST_ASSERT_EQUAL_HEX32(REACHED | FAILED, status());
+}
+
 static void test_one_look_is_no_switch(void)
 {
     start(0.0, LIMITS | HAL_INPUT_HOME);
@@ -298,6 +329,8 @@ int main(void)
     RUN_TEST(test_no_switch_between_the_limits_is_an_error);
     RUN_TEST(test_no_switch_within_the_travel_is_an_error);
     RUN_TEST(test_a_limit_before_the_edge_ends_it);
+    RUN_TEST(test_a_switch_that_is_passed_is_come_back_to);
+    RUN_TEST(test_both_limits_at_once_are_an_error);
     RUN_TEST(test_one_look_is_no_switch);
     RUN_TEST(test_bit_4_and_a_halt_interrupt_it);
     RUN_TEST(test_in_another_mode_a_limit_switch_stops_as_before);

@@ -264,6 +264,61 @@ static void test_a_jump_ends_at_its_target(void)
     }
 }
 
+/* One that is lost or late, of a fast motion: its place is taken, and nothing is made up for. */
+static void test_a_target_that_is_lost_does_not_show_in_the_speed(void)
+{
+    const int32_t step = (int32_t)(0.35 * speed_limit_rad_s() * CYCLE * PERIOD_S / unit_rad);
+    const double speed = step * unit_rad / (CYCLE * PERIOD_S);
+
+    for (int32_t least = 50; least < step; least += 25) { /* up to speed */
+        stream(1, least);
+    }
+    stream(20, step);
+    target += step;
+    pass(CYCLE);
+    for (int i = 0; i < 30; i++) {
+        send(target + step);
+        for (int k = 0; k < CYCLE; k++) {
+            pass(1);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-3 * speed, speed, link_bench_speed_rad_s());
+        }
+    }
+    TEST_ASSERT_EQUAL_HEX32(0, status(LIMITED));
+}
+
+/* A master that is faster than 60c2h: what is too much is left out. */
+static void test_targets_that_come_too_fast_end_at_the_last_one(void)
+{
+    static const int every[] = {20, 30, 38, 39};
+
+    for (size_t i = 0; i < 4; i++) {
+        setUp();
+        for (int k = 0; k < 200; k++) {
+            send(target + 300);
+            pass(every[i]);
+        }
+        for (int k = 0; k < 300; k++) {
+            send(target);
+            pass(every[i]);
+        }
+        TEST_ASSERT_TRUE(rests());
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, target, reference_units());
+    }
+}
+
+/* Neither by what takes the place of a target that does not come. */
+static void test_a_stream_that_ends_before_a_software_limit_does_not_pass_it(void)
+{
+    put(0x607d, 2, 4, TURN);
+    for (int32_t step = 50; target < TURN - 2 * step; step += step < 1500 ? 25 : 0) {
+        stream(1, step);
+    }
+    for (int k = 0; k < 4000; k++) {
+        pass(1);
+        TEST_ASSERT_TRUE(reference_units() < TURN + 0.5 * swing_units());
+    }
+}
+
 /* A stream that goes on beyond is no reason to pass it. */
 static void test_a_stream_stops_at_a_software_limit(void)
 {
@@ -558,6 +613,9 @@ int main(void)
     RUN_TEST(test_targets_in_a_heap_are_one);
     RUN_TEST(test_a_jump_is_followed_at_the_speed_that_the_drive_can);
     RUN_TEST(test_a_jump_ends_at_its_target);
+    RUN_TEST(test_a_target_that_is_lost_does_not_show_in_the_speed);
+    RUN_TEST(test_targets_that_come_too_fast_end_at_the_last_one);
+    RUN_TEST(test_a_stream_that_ends_before_a_software_limit_does_not_pass_it);
     RUN_TEST(test_a_stream_stops_at_a_software_limit);
     RUN_TEST(test_an_interval_that_is_none_is_said);
     RUN_TEST(test_a_halt_takes_no_target_and_is_no_following);

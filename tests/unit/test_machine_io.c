@@ -272,6 +272,56 @@ static void test_no_cyclic_target_behind_a_limit_switch_is_followed(void)
     TEST_ASSERT_FALSE(axis_motion_rests(&bench.application));
 }
 
+/* The master falls silent, as it may when it hears of the switch. */
+static void test_a_stream_that_ends_at_a_limit_switch_stays_there(void)
+{
+    int32_t target = 0;
+
+    enable_on_bus(8);
+    stream(100, &target, 200);
+    bench.inputs |= HAL_INPUT_LIMIT_PLUS;
+    bench_periods(30);
+    stream(1, &target, 200); /* while it brakes */
+    bench.inputs &= ~(uint32_t)HAL_INPUT_LIMIT_PLUS;
+    bench_periods(4000);
+    const double end_rad = now().theta_ref_rad;
+
+    TEST_ASSERT_TRUE(end_rad > 0.9 * target / TURN * TWO_PI - 0.3);
+    bench_periods(20000);
+    TEST_ASSERT_EQUAL_DOUBLE(end_rad, now().theta_ref_rad);
+}
+
+/* Nor lets a halt, or another mode for a moment, go on what a switch has ended. */
+static void test_a_halt_does_not_free_the_way(void)
+{
+    enable_on_bus(3);
+    put(0x60ff, 0, 4, TURN);
+    bench_periods(4000);
+    pass_limit_switch();
+    put(0x6040, 0, 2, 0x10f);
+    bench_periods(100);
+    put(0x6040, 0, 2, 0x0f);
+    bench_periods(2000);
+    TEST_ASSERT_TRUE(axis_motion_rests(&bench.application));
+
+    setUp();
+    enable_on_bus(1);
+    put(0x607a, 0, 4, 10 * TURN);
+    put(0x6040, 0, 2, 0x1f);
+    bench_periods(3000);
+    bench.inputs |= HAL_INPUT_LIMIT_PLUS;
+    bench_periods(60);
+    TEST_ASSERT_FALSE(axis_motion_rests(&bench.application));
+    put(0x6040, 0, 2, 0x10f);
+    bench.inputs &= ~(uint32_t)HAL_INPUT_LIMIT_PLUS;
+    bench_periods(4000);
+    put(0x6040, 0, 2, 0x0f);
+    const double end_rad = now().theta_ref_rad;
+
+    bench_periods(8000);
+    TEST_ASSERT_EQUAL_DOUBLE(end_rad, now().theta_ref_rad);
+}
+
 static void test_a_homing_that_a_limit_switch_ends_is_an_error(void)
 {
     enable_on_bus(6);
@@ -502,6 +552,8 @@ int main(void)
     RUN_TEST(test_a_speed_that_a_limit_switch_has_ended_does_not_come_back);
     RUN_TEST(test_a_target_that_waits_behind_a_limit_switch_is_dropped);
     RUN_TEST(test_no_cyclic_target_behind_a_limit_switch_is_followed);
+    RUN_TEST(test_a_stream_that_ends_at_a_limit_switch_stays_there);
+    RUN_TEST(test_a_halt_does_not_free_the_way);
     RUN_TEST(test_a_homing_that_a_limit_switch_ends_is_an_error);
     RUN_TEST(test_what_switches_off_at_rest_is_said_on_the_bus);
     RUN_TEST(test_a_quick_stop_input_stops_and_refuses_to_move);

@@ -116,6 +116,7 @@ static void test_nmt_is_two_bytes_for_this_node_or_all(void)
 
 static void test_a_reset_of_the_node_stops_and_switches_off_and_one_of_communication_stops(void)
 {
+    TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1010, 1, 4, 0x65766173));
     enable();
     TEST_ASSERT_EQUAL_HEX32(0, link_bench_put(0x1017, 0, 2, 500));
     link_bench_heard("t701100\r", link_bench_nmt(RESET_COMMUNICATION, 20));
@@ -127,11 +128,15 @@ static void test_a_reset_of_the_node_stops_and_switches_off_and_one_of_communica
     TEST_ASSERT_EQUAL_HEX32(0x23, link_bench_get(0x6041, 0) & 0x6fu);
     enable();
     (void)link_bench_nmt(START, 2);
-    link_bench_heard("t701100\r", link_bench_nmt(RESET_NODE, 20));
-    TEST_ASSERT_EQUAL(LINK_PRE_OPERATIONAL, bench_link.nmt);
+    bench.application.chosen.current_limit_A *= 0.5; /* not stored */
+    const double chosen_A = bench.application.chosen.current_limit_A;
+
+    (void)link_bench_nmt(RESET_NODE, 20);
     TEST_ASSERT_FALSE(is_off()); /* brakes */
     TEST_ASSERT_EQUAL_HEX32(0x07, link_bench_get(0x6041, 0) & 0x6fu);
-    bench_periods(8000);
+    link_bench_heard("t701100\r", link_bench_say("", 8000));
+    TEST_ASSERT_EQUAL(LINK_PRE_OPERATIONAL, bench_link.nmt);
+    TEST_ASSERT_EQUAL_DOUBLE(2.0 * chosen_A, bench.application.chosen.current_limit_A);
     TEST_ASSERT_TRUE(is_off());
     TEST_ASSERT_EQUAL_HEX32(0x40, link_bench_get(0x6041, 0) & 0x6fu);
 }
