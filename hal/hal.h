@@ -106,7 +106,7 @@ enum hal_output {
 enum hal_index { HAL_INDEX_PASSED, HAL_INDEX_RISES, HAL_INDEX_FALLS };
 
 /* Words that a board with follow_control has for what is captured. */
-enum { HAL_CAPTURE_WORDS = 5760 };
+enum { HAL_CAPTURE_WORDS = 5376 };
 
 /*
  * A board. Every function may be called from the background loop; bridge_disable also from any

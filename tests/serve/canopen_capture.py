@@ -14,7 +14,7 @@ from served import Checks, Line, Served  # noqa: E402
 CHECKS = Checks()
 SLOWED = 10 if IMAGE else 1
 SIGNALS = {"theta_ref_rad": 0x2313, "theta_est_rad": 0x2310, "reference_moving": 0x2302, "period": 0x2301}
-BEFORE, SAMPLES, DIVIDER = 100, 900, 3
+BEFORE, SAMPLES, DIVIDER = 100, 800, 3
 TURN = 65536
 ARM, DONE = 1, 4
 
