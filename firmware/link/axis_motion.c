@@ -267,14 +267,19 @@ void axis_motion_brake_on(struct application *application)
 {
     struct axis_motion *motion = motion_of(application);
     const uint32_t brakes = motion->brakes;
+
+    if (brakes == 0u || command_queue_holds_any(&application->drive.commands)) {
+        return;
+    }
+    if (!interrupt_view_moves(&application->drive)) {
+        motion->brakes = 0;
+        return;
+    }
     const float present = (float)cia402_signals(application)->omega_ref_rad_s;
     const float deceleration = axis_lesser(units(application) * (float)brakes,
                                            axis_motion_acceleration_limit(application, present));
 
-    if (axis_motion_rests(application)) {
-        motion->brakes = 0;
-    } else if (brakes > 0u && deceleration > 1.25f * motion->acceleration &&
-               !command_queue_holds_any(&application->drive.commands)) {
+    if (deceleration > 1.25f * motion->acceleration) {
         (void)axis_motion_post(application, DRIVE_COMMAND_VELOCITY, 0.0, 0.0f, brakes);
         motion->brakes = brakes;
     }

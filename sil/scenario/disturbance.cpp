@@ -223,7 +223,8 @@ std::uint32_t MachineSwitches::active(double angle_rad) const
     std::uint32_t inputs = 0;
     inputs |= angle_rad < limit_low_rad ? HAL_INPUT_LIMIT_MINUS : 0;
     inputs |= angle_rad > limit_high_rad ? HAL_INPUT_LIMIT_PLUS : 0;
-    inputs |= angle_rad > home_low_rad && angle_rad < home_high_rad ? HAL_INPUT_HOME : 0;
+    inputs |=
+        angle_rad > home_switch_low_rad && angle_rad < home_switch_high_rad ? HAL_INPUT_HOME : 0;
     return inputs & wired;
 }
 
@@ -236,9 +237,9 @@ void read_switches(TableReader &reader, MachineSwitches &switches)
     };
     read("limit_switch_low_rad", switches.limit_low_rad, HAL_INPUT_LIMIT_MINUS);
     read("limit_switch_high_rad", switches.limit_high_rad, HAL_INPUT_LIMIT_PLUS);
-    read("home_switch_low_rad", switches.home_low_rad, HAL_INPUT_HOME);
-    read("home_switch_high_rad", switches.home_high_rad, HAL_INPUT_HOME);
-    if (switches.home_high_rad <= switches.home_low_rad) {
+    read("home_switch_low_rad", switches.home_switch_low_rad, HAL_INPUT_HOME);
+    read("home_switch_high_rad", switches.home_switch_high_rad, HAL_INPUT_HOME);
+    if (switches.home_switch_high_rad <= switches.home_switch_low_rad) {
         reader.fail("home_switch_high_rad", "expected more than home_switch_low_rad");
     }
     if ((switches.wired & HAL_INPUT_LIMIT_MINUS) != 0 &&

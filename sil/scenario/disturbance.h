@@ -83,8 +83,8 @@ void read_stops(TableReader &reader, plant::StopConfig &stops);
 /* Switches that the machine works as it turns, on inputs that count as HAL_INPUT_...: at which
    angles of the rotor, mechanical, they are active. */
 struct MachineSwitches {
-    double home_low_rad = -std::numeric_limits<double>::infinity();
-    double home_high_rad = std::numeric_limits<double>::infinity();
+    double home_switch_low_rad = -std::numeric_limits<double>::infinity();
+    double home_switch_high_rad = std::numeric_limits<double>::infinity();
     double limit_low_rad = 0, limit_high_rad = 0; /* from there down, up */
     std::uint32_t wired = 0;
 

@@ -384,7 +384,7 @@ PLANTED = [
     ("memory.ld", "ORIGIN = 0x10000000", "ORIGIN = 0x10001000"),
     ("memory.ld", "ORIGIN = 0x20016340, LENGTH = 7360", "ORIGIN = 0x20016340, LENGTH = 8K"),
     ("memory.ld", "ORIGIN = 0x20016340", "ORIGIN = 0x20011C00"),
-    ("memory.ld", "ORIGIN = 0x2000FF00, LENGTH = 25664", "ORIGIN = 0x2000FF00, LENGTH = 25K"),
+    ("memory.ld", "ORIGIN = 0x2000FF00, LENGTH = 25664", "ORIGIN = 0x2000FF00, LENGTH = 26K"),
 ]
 
 

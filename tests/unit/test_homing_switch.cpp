@@ -14,8 +14,8 @@ constexpr const char *wired = "[drive]\ninputs_used = 7\n";
 Case on_home_switch(const char *numeric, int method, double load)
 {
     Case asked{"", numeric, wired, method, load, 0, 10 * 65536, 0, 0.04};
-    asked.switches.home_low_rad = stop_rad;
-    asked.switches.home_high_rad = stop_rad + 0.5;
+    asked.switches.home_switch_low_rad = stop_rad;
+    asked.switches.home_switch_high_rad = stop_rad + 0.5;
     asked.switches.limit_low_rad = -stop_rad;
     asked.switches.limit_high_rad = stop_rad + 1.0;
     asked.switches.wired = HAL_INPUT_HOME | HAL_INPUT_LIMIT_MINUS | HAL_INPUT_LIMIT_PLUS;
