@@ -36,11 +36,6 @@ static struct axis_homing *homing_of(struct application *application)
     return &application->link->axis.motion.homing;
 }
 
-static float lesser(float a, float b)
-{
-    return a < b ? a : b;
-}
-
 static float greater(float a, float b)
 {
     return a > b ? a : b;
@@ -211,7 +206,7 @@ static void approach(struct application *application)
     const float asked =
         speed_shares[homing->failures] * axis_motion_speed(application, objects->homing_zero_speed);
     const float least = approach_creeps * creep_rad_s(&application->drive);
-    const float speed = lesser(greater(asked, least), axis_motion_speed_limit(application));
+    const float speed = axis_lesser(greater(asked, least), axis_motion_speed_limit(application));
 
     axis_homing_enter(application, HOMING_SEEKS_STOP);
     homing->from = steps_to(application, cia402_signals(application)->theta_ref_rad);

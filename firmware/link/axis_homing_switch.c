@@ -6,7 +6,7 @@
 #include "firmware/link/axis_motion.h"
 #include "firmware/link/link.h"
 
-enum { LIMIT_BELOW = 17, LIMIT_ABOVE = 18 };
+enum { LIMIT_ABOVE = 18 }; /* the last method on a limit switch */
 
 /* Of a method: in which direction of the axis it looks for the switch, in which it crosses the
    edge, and whether the switch is active behind that. */
@@ -85,9 +85,9 @@ void axis_homing_switch_look(struct application *application)
     const uint32_t active = machine_io_active(application);
     const bool seeks = homing->phase == HOMING_SEEKS_SWITCH;
     const bool awaits_on = seeks || (homing->phase == HOMING_CROSSES_SWITCH && homing->comes_on);
-    const double travel_rad = cia402_unit_rad(objects) * (double)objects->homing_travel;
-
     const bool on = (active & homing->input) != 0u;
+    const bool at_limit = (active & limit_of(homing->way)) != 0u;
+    const double travel_rad = cia402_unit_rad(objects) * (double)objects->homing_travel;
 
     if (((machine_io_seen(application) & homing->input) != 0u) != awaits_on) {
         homing->edge_rad = now->theta_est_rad;
@@ -97,11 +97,10 @@ void axis_homing_switch_look(struct application *application)
     }
     if (on == awaits_on && (seeks || homing->before_edge)) {
         go_on(application);
-    } else if ((active & limit_of(homing->way)) != 0u && seeks && !homing->turned) {
+    } else if (at_limit && seeks && !homing->turned) {
         homing->turned = true;
         look_for_it(application, -homing->way, objects->quick_stop_deceleration);
-    } else if ((active & limit_of(homing->way)) != 0u ||
-               magnitude(now->theta_ref_rad - homing->began_rad) > travel_rad) {
+    } else if (at_limit || magnitude(now->theta_ref_rad - homing->began_rad) > travel_rad) {
         axis_homing_give_up(application);
     }
 }

@@ -64,10 +64,6 @@ float axis_motion_speed_limit(const struct application *application)
 static const float supply_share = 0.9f;
 static const float torque_share = 0.75f; /* of a torque, which comes in one step */
 
-/* By the time that it accelerates no more it has come nearer to its speed by half of a jerk phase.
- */
-static const float still_accelerates = 1.0f - 0.5f * 0.25f;
-
 static struct supplied_current supplied(const struct application *application, float speed_rad_s)
 {
     const struct drive *drive = &application->drive;
@@ -104,10 +100,11 @@ float axis_motion_ramp_limit(const struct application *application, float from_r
 {
     const float from = axis_size(from_rad_s);
     const float to = axis_size(to_rad_s);
-    const float rising =
-        supply_share * supplied(application, still_accelerates * to).accelerating_A;
+    /* the acceleration falls from half of a jerk phase before */
+    const float rising_to = (1.0f - 0.5f * jerk_share) * to;
+    const float rising_A = supply_share * supplied(application, rising_to).accelerating_A;
 
-    return axis_lesser(acceleration_of(application, rising),
+    return axis_lesser(acceleration_of(application, rising_A),
                        axis_motion_acceleration_limit(application, to > from ? to : from));
 }
 

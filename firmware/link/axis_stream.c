@@ -91,14 +91,17 @@ static void begin(struct application *application)
 static const float closing_share = 0.5f;
 
 /* Of set-points that get slower by `change` in each interval: the speed from which they come to
-   rest within a way. */
-static float stopping_speed(float way_rad, float change, float T)
+   rest within a way, `most` where that is no more. */
+static float stopping_speed(float way_rad, float change, float T, float most)
 {
-    const float half = 0.5f * change;
+    const float half = 0.5f * change, twice = 2.0f * change * way_rad / T;
 
-    return way_rad > 0.0f
-               ? (float)square_root((double)(half * half + 2.0f * change * way_rad / T)) - half
-               : 0.0f;
+    if (twice <= 0.0f) {
+        return 0.0f;
+    }
+    return twice < most * (most + change)
+               ? axis_lesser(most, (float)square_root((double)(half * half + twice)) - half)
+               : most;
 }
 
 /* As far towards the target as speed and acceleration allow, so that it stops where the target
@@ -118,14 +121,13 @@ static double within_limits(struct application *application, double target_rad)
     const float behind_rad = (float)(stream->asked_rad - stream->last_rad);
     const bool follows = behind_rad == 0.0f && axis_size(asked - before) <= slower;
     const float change = follows ? slower : gentle * T;
-    const float closing = stopping_speed(axis_size(behind_rad), gentle * T, T);
+    const float closing = stopping_speed(axis_size(behind_rad), gentle * T, T, 2.0f * most);
     const float down_rad = (float)(stream->last_rad - axis_motion_limit_rad(application, -1.0f));
     const float up_rad = (float)(axis_motion_limit_rad(application, 1.0f) - stream->last_rad);
     float speed = axis_motion_limited(application, asked, of_target - closing, of_target + closing);
 
-    speed = axis_motion_limited(application, speed,
-                                -axis_lesser(most, stopping_speed(down_rad, gentle * T, T)),
-                                axis_lesser(most, stopping_speed(up_rad, gentle * T, T)));
+    speed = axis_motion_limited(application, speed, -stopping_speed(down_rad, gentle * T, T, most),
+                                stopping_speed(up_rad, gentle * T, T, most));
     speed = axis_motion_limited(application, speed, before - (before > 0.0f ? slower : change),
                                 before + (before < 0.0f ? slower : change));
     return speed == asked ? target_rad : stream->last_rad + (double)(T * speed);

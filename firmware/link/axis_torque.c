@@ -19,12 +19,14 @@ static int32_t limited_target(struct application *application)
 {
     const int32_t target = application->link->objects.target_torque;
     const float speed = (float)cia402_signals(application)->omega_est_rad_s;
-    const int32_t limit = cia402_thousandths(application, 0x6072);
-    const int32_t braking = axis_motion_braking_thousandths(application, speed);
-    const bool brakes = (float)target * speed < 0.0f && braking < limit;
-    const int32_t left = braking < BRAKING_STEP ? BRAKING_STEP : braking - braking % BRAKING_STEP;
-    const int32_t most = brakes ? left : limit;
+    int32_t most = cia402_thousandths(application, 0x6072);
 
+    if ((float)target * speed < 0.0f) {
+        const int32_t left = axis_motion_braking_thousandths(application, speed);
+        const int32_t step = left < BRAKING_STEP ? BRAKING_STEP : left - left % BRAKING_STEP;
+
+        most = left < most ? step : most;
+    }
     application->link->axis.motion.limited = target > most || target < -most;
     return target > most ? most : target < -most ? -most : target;
 }

@@ -268,6 +268,12 @@ inline Counts homing_of_all(Case asked)
     return counts;
 }
 
+inline void begin(int argc, char **argv)
+{
+    whole_library = argc > 1 && std::string(argv[1]) == "all";
+    UNITY_BEGIN();
+}
+
 /* At least so many of the whole library, and of its every fourth. */
 struct Least {
     int of_all, of_some;

@@ -95,8 +95,7 @@ void tearDown()
 
 int main(int argc, char **argv)
 {
-    homing::whole_library = argc > 1 && std::string(argv[1]) == "all";
-    UNITY_BEGIN();
+    homing::begin(argc, argv);
     RUN_TEST(test_without_a_load_without_an_encoder);
     RUN_TEST(test_against_a_quarter_of_the_rated_load_without_an_encoder);
     RUN_TEST(test_with_an_encoder);

@@ -33,8 +33,7 @@ void tearDown()
 
 int main(int argc, char **argv)
 {
-    homing::whole_library = argc > 1 && std::string(argv[1]) == "all";
-    UNITY_BEGIN();
+    homing::begin(argc, argv);
     RUN_TEST(test_without_a_load);
     RUN_TEST(test_against_a_quarter_of_the_rated_load);
     return UNITY_END();

@@ -54,8 +54,7 @@ void tearDown()
 
 int main(int argc, char **argv)
 {
-    homing::whole_library = argc > 1 && std::string(argv[1]) == "all";
-    UNITY_BEGIN();
+    homing::begin(argc, argv);
     RUN_TEST(test_the_home_switch_is_where_it_is_entered);
     RUN_TEST(test_the_home_switch_behind_a_turn_is_found);
     RUN_TEST(test_a_limit_switch_is_where_it_is_left);

@@ -35,6 +35,13 @@ def lines_of_link(_):
             "table": table(["code of", "lines"], [[what, f"{count:,}"] for what, count in groups])}
 
 
+@entry("capture-bytes", "tools/figures --only capture-bytes")
+def capture_bytes(_):
+    """Of a board's memory for what it captures."""
+    words = re.search(r"HAL_CAPTURE_WORDS = (\d+)", (ROOT / "hal/hal.h").read_text(encoding="utf-8"))[1]
+    return f"{4 * int(words):,}"
+
+
 MODES = {"pp": "profile position", "pv": "profile velocity", "csp": "cyclic position", "sync": "cyclic position with SYNC",
          "cst": "cyclic torque"}
 
